@@ -4,6 +4,7 @@
 
 #include "entities/effects/effects_history.h"
 #include "sensor/framefile/ground_cutout.h"
+#include "terrain/landscape/photo_blocks.h"
 
 static const double earth_m = 1e8;    /* of a position in ECEF: far beyond any in an image */
 static const double local_m = 2e7;    /* of a position in a local frame */
@@ -228,6 +229,8 @@ static void grid_values(Fields *f, const GroundCutout *kept, void **values, int 
     }
     *values = fields_good(f) ? arena_alloc(f->arena, (size_t)nx * (size_t)ny, (size_t)octets) : NULL;
     if (fields_good(f) && !*values) f->no_memory = true;
+    if (*values && octets == (int)sizeof(PhotoBlock)) /* omitted: not covered */
+        for (size_t n = 0; n < (size_t)nx * (size_t)ny; n++) ((PhotoBlock *)*values)[n].index = 0xffffffff;
     if (*values) cutout_get(f->from, &grid, *values);
 }
 
@@ -279,7 +282,9 @@ static void photo_fields(Fields *f, Photo *p, const GroundCutout *kept)
         field_int(f, "pixels of the photograph", &p->nx[k], 1, 65536);
         field_int(f, "pixels of the photograph", &p->ny[k], 1, 65536);
         limit(f, "pixels of the photograph", &pixels, p->nx[k], p->ny[k], landscape_parts_pixels);
-        grid_values(f, kept, (void **)&p->rgba[k], p->nx[k], p->ny[k], 4, p->x0_m, p->y0_m, ldexp(p->cell_m, k));
+        const int across = (int)photo_blocks_across(p->nx[k]), up = (int)photo_blocks_across(p->ny[k]);
+        grid_values(f, kept, (void **)&p->block[k], across, up, sizeof **p->block, p->x0_m, p->y0_m,
+                    ldexp(p->cell_m, k + 2));
     }
 }
 

@@ -2,6 +2,7 @@
 #include "terrain/landscape/landscape_parts.h"
 
 #include "terrain/landscape/landscape_private.h"
+#include "terrain/landscape/photo_blocks.h"
 
 #include <stdlib.h>
 
@@ -99,7 +100,7 @@ static const char *photo_fault(const Photo *p)
     if (p->mips < 0 || p->mips > ground_image_mips) return "the sizes of the photograph";
     for (int k = 0; k < p->mips; k++) {
         const bool half = k == 0 || (p->nx[k] == (p->nx[k - 1] + 1) / 2 && p->ny[k] == (p->ny[k - 1] + 1) / 2);
-        if (p->nx[k] < 1 || p->ny[k] < 1 || !half || !p->rgba[k] ||
+        if (p->nx[k] < 1 || p->ny[k] < 1 || !half || !p->block[k] ||
             (size_t)p->nx[k] * (size_t)p->ny[k] > landscape_parts_pixels)
             return "the sizes of the photograph";
     }
@@ -138,16 +139,18 @@ static Status copy_cover(Cover *out, const LandscapeParts *parts)
     for (int w = 0; w < cover_windows; w++) {
         const CoverGrid *from = &parts->cover[w];
         if (from->nx == 0) continue;
-        out->grid[w]         = *from;
+        out->grid[w]          = *from;
+        out->grid[w].borrowed = false;
         out->grid[w].surface = copied(from->surface, (size_t)from->nx * (size_t)from->ny);
         if (!out->grid[w].surface) return STATUS_NO_MEMORY;
     }
     if (parts->photo.mips == 0) return STATUS_OK;
     out->photo = parts->photo;
-    memset(out->photo.rgba, 0, sizeof out->photo.rgba);
+    out->photo.borrowed = false;
+    memset(out->photo.block, 0, sizeof out->photo.block);
     for (int k = 0; k < parts->photo.mips; k++) {
-        out->photo.rgba[k] = copied(parts->photo.rgba[k], 4 * (size_t)parts->photo.nx[k] * (size_t)parts->photo.ny[k]);
-        if (!out->photo.rgba[k]) return STATUS_NO_MEMORY;
+        out->photo.block[k] = copied(parts->photo.block[k], photo_block_count(&parts->photo, k) * sizeof(PhotoBlock));
+        if (!out->photo.block[k]) return STATUS_NO_MEMORY;
     }
     return STATUS_OK;
 }
