@@ -51,8 +51,7 @@ static bool is_whole(double x, double low)
     return x >= low && x <= 1e6 && fabs(x - rint(x)) <= 1e-6;
 }
 
-/* The seams of terrain/elevation/elevation.h: a level's outline runs along cell edges of the next one, inside it. */
-static bool is_nested(const ElevationLevel *fine, const ElevationLevel *coarse)
+bool landscape_parts_nested(const ElevationLevel *fine, const ElevationLevel *coarse)
 {
     const double ratio = coarse->spacing_m / fine->spacing_m;
     const double low[2] = {fine->x0_m - coarse->x0_m, fine->y0_m - coarse->y0_m};
@@ -77,7 +76,7 @@ static const char *levels_fault(const Elevation *e)
         if (!(l->spacing_m >= 0.1 && l->spacing_m <= 1e5) || !(l->step_m > 0 && l->step_m <= 100) ||
             !is_place(l->x0_m) || !is_place(l->y0_m) || !is_place(l->z0_m))
             return "the place or the steps of a level";
-        if (n > 0 && !is_nested(&e->level[n - 1], l)) return "a level that does not lie on the next one's cells";
+        if (n > 0 && !landscape_parts_nested(&e->level[n - 1], l)) return "a level that does not lie on the next one's cells";
     }
     return NULL;
 }
