@@ -62,7 +62,7 @@ typedef struct ElevationLevel {
     double    z0_m, step_m;    /* dequantisation */
     int            tiles_x, tiles_y; /* of elevation_tile_cells a side, the last ones filled up */
     ElevationTile *tile;             /* [tiles_y][tiles_x] */
-    uint16_t      *stored;           /* [tiles_y * tiles_x][elevation_tile_side][elevation_tile_side], row j northwards */
+    uint16_t      *stored;           /* [tiles_y * tiles_x][65][65], row j northwards */
     bool           plain;            /* every tile has base 0 and shift 0 */
     bool           borrowed;         /* the arrays belong to a mapped file */
     /* Highest post of a square of (1 << k) x (1 << k) cells, rounded up: pyramid_base + (entry << pyramid_shift).
@@ -91,6 +91,12 @@ size_t elevation_level_stored(const ElevationLevel *level); /* elements of `stor
 Status elevation_level_create(Elevation *elevation, int index, int nx, int ny, double x0_m, double y0_m,
                               double spacing_m, double z0_m, double step_m);
 void   elevation_build_pyramids(Elevation *elevation); /* not those of borrowed levels */
+
+/* The same of one level, in parts: begin, the rows of tiles (on any threads), finish. */
+void   elevation_begin_pyramid(ElevationLevel *level);
+void   elevation_build_pyramid_tiles(ElevationLevel *level, int tile_j);
+void   elevation_finish_pyramid(ElevationLevel *level);
+
 void   elevation_destroy(Elevation *elevation); /* accepts a half-built one */
 
 /* ---- writing: first the tiles' bases and shifts, then the posts ------------------------------------ */
@@ -103,10 +109,15 @@ ElevationTile elevation_tile_of(int32_t low, int32_t high);
  * able to hold it. */
 void elevation_set_post(ElevationLevel *level, int i, int j, int32_t post);
 
-/* The tiles tile_j of a level whose bases and shifts are set, from rows of posts: row[0] is the row 64 tile_j, [nx]
- * each, `rows` of them (65, fewer at the northern edge; nothing else is written, so rows of tiles can be filled on
- * several threads). Posts are rounded as by elevation_set_post. */
-void elevation_fill_tiles(ElevationLevel *level, int tile_j, const int32_t *row, int rows);
+/* The tiles tile_j of a level, from rows of posts [rows][nx]: row[0] is the row 64 tile_j of the level; 65 rows, fewer
+ * at the northern edge, nothing beyond nx, ny is read. First bases and shifts of all tiles (posts within the range
+ * above; set level->plain too), then the posts, rounded as by elevation_set_post: that writes nothing else, so rows of
+ * tiles can be filled on several threads. */
+void elevation_choose_tiles(ElevationLevel *level, int tile_j, const int32_t *row);
+void elevation_fill_tiles(ElevationLevel *level, int tile_j, const int32_t *row);
+
+/* Stored posts beyond nx, ny repeat the last: after elevation_set_post (elevation_build_pyramids begins with it). */
+void elevation_fill_edges(ElevationLevel *level);
 
 /* All of a level from [ny][nx] posts: bases and shifts (0 everywhere where all posts are 0 .. 65535), and posts.
  * STATUS_BAD_VALUE: a post out of range; nothing is written. */
@@ -141,6 +152,18 @@ static inline int32_t elevation_post(const ElevationLevel *level, int i, int j)
 static inline double elevation_post_m(const ElevationLevel *level, int i, int j)
 {
     return level->z0_m + level->step_m * elevation_post(level, i, j);
+}
+
+/* South-west, south-east, north-west and north-east post of cell (i, j), 0 <= i < nx - 1. */
+static inline void elevation_cell(int32_t post[4], const ElevationLevel *level, int i, int j)
+{
+    const size_t tile =
+        (size_t)(j / elevation_tile_cells) * (size_t)level->tiles_x + (size_t)(i / elevation_tile_cells);
+    const ElevationTile of = level->tile[tile];
+    const uint16_t *south = level->stored + tile * elevation_tile_posts +
+                            (size_t)(j % elevation_tile_cells * elevation_tile_side + i % elevation_tile_cells);
+    for (int k = 0; k < 4; k++)
+        post[k] = of.base + ((int32_t)south[k % 2 + k / 2 * elevation_tile_side] << of.shift);
 }
 
 /* Highest post of node (i, j) of pyramid level k, as rounded. */

@@ -70,7 +70,10 @@ static const char *levels_fault(const Elevation *e)
     if (e->level_count < 1 || e->level_count > elevation_max_levels) return "the number of levels";
     for (int n = 0; n < e->level_count; n++) {
         const ElevationLevel *l = &e->level[n];
-        if (l->nx < 2 || l->ny < 2 || l->nx > 32768 || l->ny > 32768 || !l->post) return "the size of a level";
+        if (l->nx < 2 || l->ny < 2 || l->nx > 32768 || l->ny > 32768 || !l->stored || !l->tile ||
+            l->tiles_x != (l->nx - 2) / elevation_tile_cells + 1 ||
+            l->tiles_y != (l->ny - 2) / elevation_tile_cells + 1)
+            return "the size of a level";
         posts += (size_t)l->nx * (size_t)l->ny;
         if (posts > landscape_parts_posts) return "the number of posts";
         if (!(l->spacing_m >= 0.1 && l->spacing_m <= 1e5) || !(l->step_m > 0 && l->step_m <= 100) ||
@@ -120,6 +123,13 @@ static void *copied(const void *from, size_t octets)
     return to ? memcpy(to, from, octets) : NULL;
 }
 
+static void copy_posts(ElevationLevel *to, const ElevationLevel *from)
+{
+    memcpy(to->tile, from->tile, (size_t)to->tiles_x * (size_t)to->tiles_y * sizeof *to->tile);
+    memcpy(to->stored, from->stored, elevation_level_stored(to) * sizeof *to->stored);
+    to->plain = from->plain;
+}
+
 static Status copy_levels(Elevation *out, const Elevation *from)
 {
     Status status = STATUS_OK;
@@ -127,7 +137,7 @@ static Status copy_levels(Elevation *out, const Elevation *from)
         const ElevationLevel *l = &from->level[n];
         status = elevation_level_create(out, n, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m);
         if (status == STATUS_OK)
-            memcpy(out->level[n].post, l->post, (size_t)l->nx * (size_t)l->ny * sizeof *l->post);
+            copy_posts(&out->level[n], l);
     }
     if (status == STATUS_OK) elevation_build_pyramids(out);
     return status;
