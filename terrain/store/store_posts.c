@@ -114,20 +114,8 @@ static void shape_tiles(void *user, int worker, int task)
     RowsJob        *job = user;
     ElevationLevel *level = &job->writer->elevation.level[job->index];
     const PostRows *rows = &job->writer->posts[job->index];
-    const int       tile_j = rows->shaped + task, j0 = tile_j * cells;
-    const int       j1 = j0 + cells < level->ny - 1 ? j0 + cells : level->ny - 1;
-    for (int tile_i = 0; tile_i < level->tiles_x; tile_i++) {
-        const int i0 = tile_i * cells, i1 = i0 + cells < level->nx - 1 ? i0 + cells : level->nx - 1;
-        int32_t   low = INT32_MAX, high = INT32_MIN;
-        for (int j = j0; j <= j1; j++) {
-            const int32_t *row = rows->row + (size_t)(j - rows->first) * (size_t)level->nx;
-            for (int i = i0; i <= i1; i++) {
-                low  = row[i] < low ? row[i] : low;
-                high = row[i] > high ? row[i] : high;
-            }
-        }
-        level->tile[(size_t)tile_j * (size_t)level->tiles_x + (size_t)tile_i] = elevation_tile_of(low, high);
-    }
+    const int       tile_j = rows->shaped + task;
+    elevation_choose_tiles(level, tile_j, rows->row + (size_t)(tile_j * cells - rows->first) * (size_t)level->nx);
 }
 
 static void fill_tiles(void *user, int worker, int task)
@@ -136,9 +124,8 @@ static void fill_tiles(void *user, int worker, int task)
     RowsJob        *job = user;
     ElevationLevel *level = &job->writer->elevation.level[job->index];
     const PostRows *rows = &job->writer->posts[job->index];
-    const int       tile_j = rows->first / cells + task, left = level->ny - tile_j * cells;
-    elevation_fill_tiles(level, tile_j, rows->row + (size_t)task * cells * (size_t)level->nx,
-                         left < cells + 1 ? left : cells + 1);
+    const int       tile_j = rows->first / cells + task;
+    elevation_fill_tiles(level, tile_j, rows->row + (size_t)task * cells * (size_t)level->nx);
     /* written back by the system when it likes; this process need not hold it */
     const size_t row = (size_t)level->tiles_x * elevation_tile_posts * sizeof *level->stored;
     const size_t at = (size_t)((uint8_t *)level->stored - job->writer->map) + (size_t)tile_j * row;
@@ -167,22 +154,27 @@ static void take_rows(RowsJob *job)
     rows->count -= gone;
 }
 
+static void pyramid_tiles(void *user, int worker, int task)
+{
+    (void)worker;
+    elevation_build_pyramid_tiles(user, task);
+}
+
 /* The level is complete: its pyramid, and what a header says of it. */
 static void finish_level(StoreWriter *w, int index)
 {
     ElevationLevel   *level = &w->elevation.level[index];
     StoreHeaderLevel *l = &w->header->level[index];
-    Elevation         one = {.level_count = 1};
     int32_t           shift = 0;
     level->plain = true;
     for (size_t t = 0; t < (size_t)level->tiles_x * (size_t)level->tiles_y; t++) {
         shift = level->tile[t].shift > shift ? level->tile[t].shift : shift;
         level->plain &= level->tile[t].shift == 0 && level->tile[t].base == 0;
     }
-    one.level[0] = *level;
-    elevation_build_pyramids(&one);
-    *level = one.level[0];
-    l->worst_m       = ldexp(level->step_m, shift - 1);
+    elevation_begin_pyramid(level);
+    store_run(w->pool, level->tiles_y, pyramid_tiles, level);
+    elevation_finish_pyramid(level);
+    l->worst_m       = 0.5 * level->step_m * (shift ? 1 + (1 << shift) : 1); /* rounded to steps, then to units */
     l->pyramid_base  = level->pyramid_base;
     l->pyramid_shift = level->pyramid_shift;
     l->rise_shift    = level->rise_shift;

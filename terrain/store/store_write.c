@@ -161,7 +161,6 @@ static Status begin(StoreWriter *w, const StorePlan *plan)
     for (int n = 0; n < w->elevation.level_count && status == STATUS_OK; n++) {
         StoreLevel level = plan->level[n];
         level.step_m = w->header->level[n].step_m;
-        w->elevation.level[n].borrowed = false; /* pyramids of borrowed levels are not built */
         status = store_posts_begin(w, n, level.seam_shift >= 0 ? level.seam_shift : default_seam_shift(&level));
     }
     return status == STATUS_OK ? store_albedo_begin(w) : status;
