@@ -4,7 +4,7 @@
 
 #include "entities/effects/effects_history.h"
 #include "sensor/framefile/ground_cutout.h"
-#include "terrain/landscape/photo_blocks.h"
+#include "terrain/landscape/photo.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,6 @@
  * points. */
 #include "terrain/landscape/ground_image.h"
 
-#include "terrain/landscape/photo_blocks.h"
 #include "terrain/landscape/raster_window.h"
 
 #include <stdlib.h>
@@ -374,10 +373,4 @@ done:
     photo_free(&p);
     raster_set_close(&set);
     return status;
-}
-
-void photo_free(Photo *photo)
-{
-    for (int k = 0; k < ground_image_mips && !photo->borrowed; k++) free(photo->block[k]);
-    *photo = (Photo){0};
 }

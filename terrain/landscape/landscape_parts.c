@@ -2,7 +2,7 @@
 #include "terrain/landscape/landscape_parts.h"
 
 #include "terrain/landscape/landscape_private.h"
-#include "terrain/landscape/photo_blocks.h"
+#include "terrain/landscape/photo.h"
 
 #include <stdlib.h>
 
@@ -201,3 +201,36 @@ Status landscape_from_parts(Landscape *out, const char **why, const LandscapePar
     if (status == STATUS_BAD_VALUE) *why = "the figures of the invented ground";
     return status;
 }
+
+/* ---- borrowed ------------------------------------------------------------------------------------ */
+
+Status landscape_borrow(Landscape *out, const LandscapeParts *parts, const LandscapeMap *map)
+{
+    Cover *cover = calloc(1, sizeof *cover);
+    if (!cover) return STATUS_NO_MEMORY;
+    cover->seed       = parts->cover_seed;
+    cover->real       = true;
+    cover->geoid_m    = parts->geoid_m;
+    cover->treeline_m = landscape_treeline_m(parts->frame.origin.lat_rad);
+    cover->photo      = parts->photo;
+    memcpy(cover->grid, parts->cover, sizeof cover->grid);
+    curve_of_frame(&cover->curve, &parts->frame);
+    if (map) cover->store = *map;
+    *out = (Landscape){.frame = parts->frame, .config = parts->config, .elevation = parts->elevation, .cover = cover};
+    return STATUS_OK;
+}
+
+LandscapeMap landscape_map(const Landscape *landscape)
+{
+    const Cover *cover = landscape->cover;
+    return cover ? cover->store : (LandscapeMap){0};
+}
+
+void landscape_photo_means(float mean[SURFACE_COUNT][photo_channels], Landscape *landscape)
+{
+    const Cover *cover = landscape->cover;
+    cover_measure_photo(landscape);
+    memcpy(mean, cover->photo.mean, sizeof cover->photo.mean);
+}
+
+uint64_t landscape_cover_seed(uint64_t seed) { return landscape_hash(seed, 2, 0); }

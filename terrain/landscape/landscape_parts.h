@@ -27,6 +27,16 @@ void landscape_parts(LandscapeParts *out, const Landscape *landscape);
  * one takes as long as landscape_create_from. */
 Status landscape_from_parts(Landscape *out, const char **why, const LandscapeParts *parts);
 
+/* A landscape from files that borrows the arrays of its parts (`borrowed` is set in them), which are trusted. Takes over
+ * map and its path, where not NULL: landscape_destroy unmaps it. treeline_m is not used. */
+Status landscape_borrow(Landscape *out, const LandscapeParts *parts, const LandscapeMap *map);
+/* cover_seed of a landscape from files, from the configuration's. */
+uint64_t landscape_cover_seed(uint64_t seed);
+/* The map of a landscape from a store; its path is NULL for any other. */
+LandscapeMap landscape_map(const Landscape *landscape);
+/* Means of the photograph over each class. */
+void landscape_photo_means(float mean[SURFACE_COUNT][photo_channels], Landscape *landscape);
+
 /* The seams of terrain/elevation/elevation.h: a level's outline runs along cell edges of the next one, inside it. */
 bool landscape_parts_nested(const ElevationLevel *fine, const ElevationLevel *coarse);
 
