@@ -15,6 +15,11 @@ void landscape_parts(LandscapeParts *out, const Landscape *landscape)
                             .said = landscape->fitted_to, .cover_seed = cover->seed, .geoid_m = cover->geoid_m,
                             .treeline_m = cover->treeline_m};
     if (out->invented) return;
+    if (cover->store.path) {
+        out->store         = cover->store.path;
+        out->store_content = cover->store.content;
+        return;
+    }
     out->elevation = landscape->elevation;
     out->photo     = cover->photo;
     memcpy(out->cover, cover->grid, sizeof out->cover);
@@ -193,6 +198,8 @@ static const char *arrays_fault(const LandscapeParts *parts)
 
 Status landscape_from_parts(Landscape *out, const char **why, const LandscapeParts *parts)
 {
+    *why = parts->store && *parts->store ? "it is in a terrain store" : NULL;
+    if (*why) return STATUS_BAD_VALUE;
     *why = parts->invented ? evidence_fault(&parts->said) : arrays_fault(parts);
     if (!*why && !v3_is_finite(parts->frame.origin_ecef)) *why = "the origin";
     if (*why) return STATUS_BAD_VALUE;

@@ -2,7 +2,8 @@
  * same terrain bit by bit without its original inputs.
  *
  * A synthetic terrain is a pure function of its configuration, frame and evidence, of which it keeps a copy. One from
- * files is its posts, land cover classes and photograph as resampled in ENU. */
+ * files is its posts, land cover classes and photograph as resampled in ENU. One from a terrain store is that store:
+ * landscape_open_store opens it, not landscape_from_parts. */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PARTS_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_PARTS_H
 
@@ -13,6 +14,8 @@ typedef struct LandscapeParts {
     LocalFrame        frame;
     LandscapeConfig   config;
     bool              invented;
+    const char       *store;               /* path of the terrain store; NULL or empty: none */
+    uint64_t          store_content;       /* its hash; config.seed is the seed it was opened with */
     LandscapeEvidence said;                /* synthetic: the evidence it was fitted to */
     Elevation         elevation;           /* of files: levels and posts; the pyramids are not used */
     CoverGrid         cover[cover_windows];

@@ -40,7 +40,7 @@ Status store_open(TerrainStore *out, const char *path)
     const char *why = NULL;
     Status      status = STATUS_IO;
     *out = (TerrainStore){0};
-    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0 || fstat(file, &about) != 0) {
         log_error("store: cannot open %s: %s; `pitviper terrain import` makes a terrain store", path, strerror(errno));
         if (file >= 0) close(file);
