@@ -4,6 +4,9 @@
 
 #include "entities/effects/effects_history.h"
 #include "sensor/framefile/ground_cutout.h"
+#include "terrain/landscape/photo_blocks.h"
+
+#include <stdlib.h>
 
 static const double earth_m = 1e8;    /* of a position in ECEF: far beyond any in an image */
 static const double local_m = 2e7;    /* of a position in a local frame */
@@ -228,6 +231,8 @@ static void grid_values(Fields *f, const GroundCutout *kept, void **values, int 
     }
     *values = fields_good(f) ? arena_alloc(f->arena, (size_t)nx * (size_t)ny, (size_t)octets) : NULL;
     if (fields_good(f) && !*values) f->no_memory = true;
+    if (*values && octets == (int)sizeof(PhotoBlock)) /* omitted: not covered */
+        for (size_t n = 0; n < (size_t)nx * (size_t)ny; n++) ((PhotoBlock *)*values)[n].index = 0xffffffff;
     if (*values) cutout_get(f->from, &grid, *values);
 }
 
@@ -236,6 +241,44 @@ static void limit(Fields *f, const char *name, size_t *sum, int nx, int ny, size
 {
     *sum += (size_t)nx * (size_t)ny;
     if (f->from && fields_good(f) && *sum > most) f->fault = name;
+}
+
+/* Posts row by row. */
+static void posts_to_rows(uint16_t *post, const ElevationLevel *l)
+{
+    for (int j = 0; j < l->ny; j++)
+        for (int i = 0; i < l->nx; i++) *post++ = (uint16_t)elevation_post(l, i, j);
+}
+
+static bool posts_from_rows(ElevationLevel *l, const uint16_t *post, Arena *arena)
+{
+    ElevationLevel described;
+    if (elevation_level_describe(&described, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m) !=
+        STATUS_OK)
+        return false;
+    *l        = described;
+    l->tile   = arena_alloc(arena, (size_t)l->tiles_x * (size_t)l->tiles_y, sizeof *l->tile);
+    l->stored = arena_alloc(arena, elevation_level_stored(l), sizeof *l->stored);
+    if (!l->tile || !l->stored) return false;
+    memset(l->tile, 0, (size_t)l->tiles_x * (size_t)l->tiles_y * sizeof *l->tile);
+    for (int j = 0; j < l->ny; j++)
+        for (int i = 0; i < l->nx; i++) elevation_set_post(l, i, j, *post++);
+    elevation_fill_edges(l);
+    return true;
+}
+
+static void post_fields(Fields *f, ElevationLevel *l, const GroundCutout *kept)
+{
+    uint16_t *post = NULL;
+    if (!fields_good(f)) return;
+    if (f->to) {
+        post = malloc((size_t)l->nx * (size_t)l->ny * sizeof *post);
+        f->no_memory |= !post;
+        if (post) posts_to_rows(post, l);
+    }
+    if (post || f->from) grid_values(f, kept, (void **)&post, l->nx, l->ny, 2, l->x0_m, l->y0_m, l->spacing_m);
+    if (f->to) free(post);
+    else if (post) f->no_memory |= !posts_from_rows(l, post, f->arena);
 }
 
 static void level_fields(Fields *f, ElevationLevel *l, size_t *posts, const GroundCutout *kept)
@@ -248,7 +291,7 @@ static void level_fields(Fields *f, ElevationLevel *l, size_t *posts, const Grou
     field_real(f, "height of a level", &l->z0_m, -local_m, local_m);
     field_real(f, "step of a level", &l->step_m, 1e-9, 100);
     limit(f, "posts of the ground", posts, l->nx, l->ny, landscape_parts_posts);
-    grid_values(f, kept, (void **)&l->post, l->nx, l->ny, 2, l->x0_m, l->y0_m, l->spacing_m);
+    post_fields(f, l, kept);
 }
 
 static void cover_fields(Fields *f, CoverGrid *g, size_t *cells, const GroundCutout *kept)
@@ -279,7 +322,9 @@ static void photo_fields(Fields *f, Photo *p, const GroundCutout *kept)
         field_int(f, "pixels of the photograph", &p->nx[k], 1, 65536);
         field_int(f, "pixels of the photograph", &p->ny[k], 1, 65536);
         limit(f, "pixels of the photograph", &pixels, p->nx[k], p->ny[k], landscape_parts_pixels);
-        grid_values(f, kept, (void **)&p->rgba[k], p->nx[k], p->ny[k], 4, p->x0_m, p->y0_m, ldexp(p->cell_m, k));
+        const int across = (int)photo_blocks_across(p->nx[k]), up = (int)photo_blocks_across(p->ny[k]);
+        grid_values(f, kept, (void **)&p->block[k], across, up, sizeof **p->block, p->x0_m, p->y0_m,
+                    ldexp(p->cell_m, k + 2));
     }
 }
 

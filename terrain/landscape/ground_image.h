@@ -14,6 +14,7 @@ typedef struct CoverGrid {
     int      nx, ny;       /* 0: none */
     double   x0_m, y0_m, cell_m; /* south-west corner of the first cell */
     uint8_t *surface;      /* [ny][nx]; SURFACE_NONE where the files have no data */
+    bool     borrowed;     /* the classes are another's: not freed */
 } CoverGrid;
 
 typedef struct CoverReport {
@@ -36,12 +37,19 @@ SurfaceClass cover_grid_at(const CoverGrid grid[cover_windows], double x_m, doub
 
 enum { photo_red, photo_green, photo_blue, photo_channels };
 
-/* A photograph: linear light encoded as sRGB in octets, and coverage. */
+/* Sixteen pixels: terrain/landscape/photo_blocks.h. */
+typedef struct PhotoBlock {
+    uint16_t first, second; /* colours of 5, 6 and 5 bits */
+    uint32_t index;         /* 2 bits a pixel, row by row from the south-west, the first lowest */
+} PhotoBlock;
+
+/* A photograph: linear light encoded as sRGB, and coverage, in blocks of 4 x 4 pixels. */
 typedef struct Photo {
     int      mips;         /* 0: none */
     int      nx[ground_image_mips], ny[ground_image_mips];
     double   x0_m, y0_m, cell_m; /* corner; of mip 0 */
-    uint8_t *rgba[ground_image_mips]; /* [ny][nx][4] */
+    PhotoBlock *block[ground_image_mips]; /* [(ny + 3) / 4][(nx + 3) / 4] */
+    bool     borrowed;     /* the blocks are another's: not freed */
     float    mean[SURFACE_COUNT][photo_channels]; /* linear, over each class: filled in by the caller, which has the
                                                    * classes */
 } Photo;
@@ -52,5 +60,7 @@ Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevat
 void   photo_free(Photo *photo);
 /* Linear light averaged over the footprint, and how much of it the photograph covers (0 .. 1). */
 double photo_at(double linear[photo_channels], const Photo *photo, double x_m, double y_m, double footprint_m);
+/* The second of these alone, of the finest pixels. */
+double photo_cover_at(const Photo *photo, double x_m, double y_m);
 
 #endif

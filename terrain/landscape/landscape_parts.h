@@ -27,6 +27,9 @@ void landscape_parts(LandscapeParts *out, const Landscape *landscape);
  * one takes as long as landscape_create_from. */
 Status landscape_from_parts(Landscape *out, const char **why, const LandscapeParts *parts);
 
+/* The seams of terrain/elevation/elevation.h: a level's outline runs along cell edges of the next one, inside it. */
+bool landscape_parts_nested(const ElevationLevel *fine, const ElevationLevel *coarse);
+
 /* Bounds that landscape_from_parts keeps: posts of all levels, cells of a cover window, pixels of a photograph, and
  * rows of each kind of evidence. */
 enum {

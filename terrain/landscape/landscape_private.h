@@ -209,6 +209,14 @@ Status    coast_shape(WorkLevel *level, const Coast *coast);
 
 /* ---- cover -------------------------------------------------------------------------------- */
 
+/* The mapped file of a landscape from a terrain store (terrain/store/store.h). */
+typedef struct StoreMap {
+    char    *path;   /* absolute; NULL: of no store */
+    void    *map;
+    size_t   octets;
+    uint64_t content;
+} StoreMap;
+
 typedef struct Cover {
     uint64_t  seed;
     bool      real;              /* elevation from files: no fields on steep slopes, woods instead */
@@ -217,7 +225,11 @@ typedef struct Cover {
     CoverGrid grid[cover_windows];
     Photo     photo;
     Coast     coast;
+    StoreMap  store;             /* grid, photo and the elevation borrow from it */
 } Cover;
+
+/* Height above the sea up to which trees grow. */
+double landscape_treeline_m(double lat_rad);
 
 /* Means of the photograph over each class, once the classes are known. */
 void cover_measure_photo(Landscape *landscape);

@@ -41,6 +41,7 @@ typedef struct StorePlan {
     StoreGrid          canopy_height, canopy_cover;
     double             posting_m; /* of the finest source, for reports */
     double             geoid_m;   /* at the origin; 0 where heights were above the ellipsoid */
+    uint64_t           seed;      /* of surfaces where no file says: for the photograph's means */
     int                source_count;
     const StoreSource *source;    /* [source_count] */
     const char        *options;   /* arguments of the import, a line each: what rebuilds the store */
@@ -56,8 +57,8 @@ typedef struct StoreWriter StoreWriter;
  * Failures are logged; on failure *out is NULL. */
 Status store_writer_create(StoreWriter **out, const char *path, const StorePlan *plan, Pool *pool);
 /* The next `rows` rows of posts of a level, from the south: ENU z, [rows][nx], finite. Any number of rows at a time
- * (whole rows of tiles, 64, are best). Level n + 1 must be complete. The outline of the level is replaced by the surface
- * of the next one; the caller blends the posts near it (levels_join). */
+ * (whole rows of tiles, 64, are best). Level n + 1 must be complete. The outline of the level is replaced by the
+ * surface of the next one; the caller blends the posts near it (levels_join). */
 Status store_write_posts(StoreWriter *writer, int level, int rows, const float *z_m);
 /* The next rows of a window of classes: SurfaceClass, SURFACE_NONE where no file says. */
 Status store_write_surface(StoreWriter *writer, int window, int rows, const uint8_t *surface);
@@ -70,7 +71,7 @@ Status store_write_crowns(StoreWriter *writer, int count, const Crown *crown);
 
 /* What the quantisation cost. */
 typedef struct StoreReport {
-    double   step_m[elevation_max_levels], worst_m[elevation_max_levels]; /* worst |stored - given|, the outline left out */
+    double   step_m[elevation_max_levels], worst_m[elevation_max_levels]; /* |stored - given|, the outlines left out */
     uint64_t octets;
     uint64_t crowns, buildings;
 } StoreReport;
@@ -90,6 +91,7 @@ bool store_source_look(StoreSource *source);
 typedef struct TerrainStore {
     const uint8_t *map;
     size_t         octets;
+    void          *header;        /* a copy: its texts */
     LocalFrame     frame;
     uint64_t       content;       /* hash of everything in it but where its sources lay */
     char           made[32];      /* UTC */
@@ -99,7 +101,7 @@ typedef struct TerrainStore {
     Photo          photo;
     StoreGrid      canopy_height_grid, canopy_cover_grid;
     const uint8_t *canopy_height, *canopy_cover; /* NULL: none */
-    double         worst_m[elevation_max_levels];
+    double         worst_m[elevation_max_levels]; /* largest error of a post's quantisation */
     uint64_t       crown_count, building_count;
     const Crown   *crown;
     const char    *sources, *options, *crs, *vertical_datum, *provenance; /* sources: `octets mtime_ns path` a line */
@@ -117,6 +119,16 @@ StoreSources store_sources(const TerrainStore *store, char *which, size_t which_
 /* The landscape of a store, which it keeps mapped until landscape_destroy. seed: of texture, and of surfaces that the
  * store does not have. */
 Status landscape_open_store(Landscape *out, const char *path, uint64_t seed);
+
+enum { store_sections_most = 24 };
+typedef struct StorePart {
+    const char *name;
+    uint64_t    octets;
+} StorePart;
+/* Sections that are not empty, the header first; returns their count. */
+int    store_parts(StorePart out[store_sections_most], const TerrainStore *store);
+/* Whether the data still have the hash they were written with: reads all of it. */
+bool   store_verify(const TerrainStore *store, Pool *pool);
 
 /* Makes a store again from its sources, with the options recorded in it. */
 typedef Status StoreRebuild(const char *path, const TerrainStore *old);

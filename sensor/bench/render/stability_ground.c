@@ -25,17 +25,17 @@ static bool field_open(Field *f, int shape, double x0_m, double y0_m)
     Dice dice = {.stream = 100 + (uint32_t)shape};
     *f = (Field){.shape = shape};
     if (elevation_level_create(&f->elevation, 0, side, side, x0_m, y0_m, 4, -64, 0.03125) != STATUS_OK) return false;
-    uint16_t *post = f->elevation.level[0].post;
     for (int j = 0; j < side; j++)
         for (int i = 0; i < side; i++) {
-            uint16_t *p = &post[j * side + i];
+            int post = 2048;
             switch (shape) {
-            case shape_rough:  *p = (uint16_t)dice_uniform(&dice, 2000, 2300); break;
-            case shape_flat:   *p = 2048; break;
-            case shape_spikes: *p = (i % 5 == 2 && j % 5 == 2) ? (i + j) % 2 ? 65535 : 0 : 2048; break;
-            case shape_cliffs: *p = (i / 4 + j / 6) % 2 ? 2048 : 40000; break;
-            default:           *p = (uint16_t)(2048 + 16 * i + 8 * j); break;
+            case shape_rough:  post = (int)dice_uniform(&dice, 2000, 2300); break;
+            case shape_flat:   break;
+            case shape_spikes: post = (i % 5 == 2 && j % 5 == 2) ? (i + j) % 2 ? 65535 : 0 : 2048; break;
+            case shape_cliffs: post = (i / 4 + j / 6) % 2 ? 2048 : 40000; break;
+            default:           post = 2048 + 16 * i + 8 * j; break;
             }
+            elevation_set_post(&f->elevation.level[0], i, j, post);
         }
     elevation_build_pyramids(&f->elevation);
     ground_prepare(&f->ground, &f->elevation);
@@ -44,8 +44,7 @@ static bool field_open(Field *f, int shape, double x0_m, double y0_m)
 
 static double post_m(const Field *f, int i, int j)
 {
-    const ElevationLevel *e = &f->elevation.level[0];
-    return e->z0_m + e->step_m * e->post[j * side + i];
+    return elevation_post_m(&f->elevation.level[0], i, j);
 }
 
 /* A ray of one of ten degenerate kinds. */
@@ -281,7 +280,8 @@ static double seams(void *user, bool quick)
     for (int k = 0; k < 2; k++) /* one slope through both, so that the outline is on straight edges */
         for (int j = 0; j < side; j++)
             for (int i = 0; i < side; i++)
-                e.level[k].post[j * side + i] = (uint16_t)(8192 + (k ? 64 : 4) * (2 * i + j) - (k ? 3 * 1024 : 3 * 64));
+                elevation_set_post(&e.level[k], i, j,
+                                   8192 + (k ? 64 : 4) * (2 * i + j) - (k ? 3 * 1024 : 3 * 64));
     elevation_build_pyramids(&e);
     ground_prepare(&ground, &e);
     for (int n = quick ? 20000 : 200000; n > 0; n--) {

@@ -54,8 +54,7 @@ static Status thinned(Elevation *out, const ElevationLevel *from, int step)
     if (status != STATUS_OK) return status;
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++)
-            out->level[0].post[(size_t)j * (size_t)nx + (size_t)i] =
-                from->post[(size_t)j * step * (size_t)from->nx + (size_t)i * step];
+            elevation_set_post(&out->level[0], i, j, elevation_post(from, i * step, j * step));
     elevation_build_pyramids(out);
     return STATUS_OK;
 }
