@@ -4,7 +4,7 @@
 
 #include "entities/effects/effects_history.h"
 #include "sensor/framefile/ground_cutout.h"
-#include "terrain/landscape/photo_blocks.h"
+#include "terrain/landscape/photo.h"
 
 #include <stdlib.h>
 
@@ -348,6 +348,10 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
         evidence_fields(f, &g->said);
         return;
     }
+    if (!g->store) g->store = "";
+    field_text(f, "terrain store", &g->store, 4096);
+    field_u64(f, &g->store_content);
+    if (!fields_good(f) || (g->store && *g->store)) return;
     field_u64(f, &g->cover_seed);
     field_real(f, "geoid", &g->geoid_m, -1e4, 1e4);
     field_real(f, "treeline", &g->treeline_m, -1e5, 1e5);

@@ -3,7 +3,6 @@
 #include "terrain/landscape/ground_image.h"
 
 #include "terrain/landscape/cover_table.h"
-#include "terrain/landscape/photo_blocks.h"
 #include "terrain/landscape/raster_window.h"
 
 #include <stdlib.h>
@@ -303,10 +302,4 @@ done:
     photo_free(&p);
     raster_set_close(&set);
     return status;
-}
-
-void photo_free(Photo *photo)
-{
-    for (int k = 0; k < ground_image_mips && !photo->borrowed; k++) free(photo->block[k]);
-    *photo = (Photo){0};
 }

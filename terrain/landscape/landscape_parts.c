@@ -2,7 +2,7 @@
 #include "terrain/landscape/landscape_parts.h"
 
 #include "terrain/landscape/landscape_private.h"
-#include "terrain/landscape/photo_blocks.h"
+#include "terrain/landscape/photo.h"
 
 #include <stdlib.h>
 
@@ -15,6 +15,11 @@ void landscape_parts(LandscapeParts *out, const Landscape *landscape)
                             .said = landscape->fitted_to, .cover_seed = cover->seed, .geoid_m = cover->geoid_m,
                             .treeline_m = cover->treeline_m};
     if (out->invented) return;
+    if (cover->store.path) {
+        out->store         = cover->store.path;
+        out->store_content = cover->store.content;
+        return;
+    }
     out->elevation = landscape->elevation;
     out->photo     = cover->photo;
     memcpy(out->cover, cover->grid, sizeof out->cover);
@@ -193,6 +198,8 @@ static const char *arrays_fault(const LandscapeParts *parts)
 
 Status landscape_from_parts(Landscape *out, const char **why, const LandscapeParts *parts)
 {
+    *why = parts->store && *parts->store ? "it is in a terrain store" : NULL;
+    if (*why) return STATUS_BAD_VALUE;
     *why = parts->invented ? evidence_fault(&parts->said) : arrays_fault(parts);
     if (!*why && !v3_is_finite(parts->frame.origin_ecef)) *why = "the origin";
     if (*why) return STATUS_BAD_VALUE;
@@ -201,3 +208,36 @@ Status landscape_from_parts(Landscape *out, const char **why, const LandscapePar
     if (status == STATUS_BAD_VALUE) *why = "the figures of the invented ground";
     return status;
 }
+
+/* ---- borrowed ------------------------------------------------------------------------------------ */
+
+Status landscape_borrow(Landscape *out, const LandscapeParts *parts, const LandscapeMap *map)
+{
+    Cover *cover = calloc(1, sizeof *cover);
+    if (!cover) return STATUS_NO_MEMORY;
+    cover->seed       = parts->cover_seed;
+    cover->real       = true;
+    cover->geoid_m    = parts->geoid_m;
+    cover->treeline_m = landscape_treeline_m(parts->frame.origin.lat_rad);
+    cover->photo      = parts->photo;
+    memcpy(cover->grid, parts->cover, sizeof cover->grid);
+    curve_of_frame(&cover->curve, &parts->frame);
+    if (map) cover->store = *map;
+    *out = (Landscape){.frame = parts->frame, .config = parts->config, .elevation = parts->elevation, .cover = cover};
+    return STATUS_OK;
+}
+
+LandscapeMap landscape_map(const Landscape *landscape)
+{
+    const Cover *cover = landscape->cover;
+    return cover ? cover->store : (LandscapeMap){0};
+}
+
+void landscape_photo_means(float mean[SURFACE_COUNT][photo_channels], Landscape *landscape)
+{
+    const Cover *cover = landscape->cover;
+    cover_measure_photo(landscape);
+    memcpy(mean, cover->photo.mean, sizeof cover->photo.mean);
+}
+
+uint64_t landscape_cover_seed(uint64_t seed) { return landscape_hash(seed, 2, 0); }

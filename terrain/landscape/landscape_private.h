@@ -209,14 +209,6 @@ Status    coast_shape(WorkLevel *level, const Coast *coast);
 
 /* ---- cover -------------------------------------------------------------------------------- */
 
-/* The mapped file of a landscape from a terrain store (terrain/store/store.h). */
-typedef struct StoreMap {
-    char    *path;   /* absolute; NULL: of no store */
-    void    *map;
-    size_t   octets;
-    uint64_t content;
-} StoreMap;
-
 typedef struct Cover {
     uint64_t  seed;
     bool      real;              /* elevation from files: no fields on steep slopes, woods instead */
@@ -225,7 +217,7 @@ typedef struct Cover {
     CoverGrid grid[cover_windows];
     Photo     photo;
     Coast     coast;
-    StoreMap  store;             /* grid, photo and the elevation borrow from it */
+    LandscapeMap store;           /* grid, photo and the elevation borrow from it */
 } Cover;
 
 /* Height above the sea up to which trees grow. */

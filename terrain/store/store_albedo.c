@@ -1,7 +1,7 @@
 /* terrain/store/store_albedo.c: rows of a photograph, south first, to blocks and mips. */
 #include "terrain/store/store_write_private.h"
 
-#include "terrain/landscape/photo_blocks.h"
+#include "terrain/landscape/photo.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #include "terrain/store/store_format.h"
 
 #include "terrain/landscape/landscape_parts.h"
-#include "terrain/landscape/photo_blocks.h"
+#include "terrain/landscape/photo.h"
 
 /* ---- hashes ------------------------------------------------------------------------------------- */
 

@@ -4,8 +4,7 @@
 
 #include "terrain/store/store_format.h"
 
-/* Borrows from the store, whose frame is set. */
-Status store_landscape(Landscape *out, const TerrainStore *store, uint64_t seed);
-void   store_landscape_means(float mean[store_classes][photo_channels], Landscape *landscape);
+/* Borrows from the store, whose frame is set; takes over map, where not NULL. */
+Status store_landscape(Landscape *out, const TerrainStore *store, uint64_t seed, const LandscapeMap *map);
 
 #endif

@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+StoreRebuild *store_rebuilder;
+
 /* The whole header with its texts, malloc'd; *why stays NULL for a failure of the system, in errno. */
 static StoreHeader *read_header(const char **why, Status *status, int file, uint64_t file_octets)
 {
@@ -38,7 +40,7 @@ Status store_open(TerrainStore *out, const char *path)
     const char *why = NULL;
     Status      status = STATUS_IO;
     *out = (TerrainStore){0};
-    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0 || fstat(file, &about) != 0) {
         log_error("store: cannot open %s: %s; `pitviper terrain import` makes a terrain store", path, strerror(errno));
         if (file >= 0) close(file);

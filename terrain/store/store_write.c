@@ -306,9 +306,9 @@ static Status measure_photo(StoreWriter *w)
     Status         status = local_frame_at(&store.frame, &origin);
     if (status != STATUS_OK || store.photo.mips == 0) return status;
     Landscape landscape;
-    status = store_landscape(&landscape, &store, w->seed);
+    status = store_landscape(&landscape, &store, w->seed, NULL);
     if (status != STATUS_OK) return status;
-    store_landscape_means(w->header->mean, &landscape);
+    landscape_photo_means(w->header->mean, &landscape); /* the first of store_classes rows */
     landscape_destroy(&landscape);
     return STATUS_OK;
 }

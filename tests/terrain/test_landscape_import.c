@@ -148,7 +148,7 @@ static void tables_can_be_named_and_their_faults_are_told(void **state)
     log_set_sink(NULL, NULL);
 }
 
-/* IEC 61966-2-1 by hand: 206/255 -> 0.617207, 41/255 -> 0.022174: octets that five bits hold (photo_blocks.h). */
+/* IEC 61966-2-1 by hand: 206/255 -> 0.617207, 41/255 -> 0.022174: octets that five bits hold (photo.h). */
 static const double bright = 0.617207, dark = 0.022174;
 
 static void a_photograph_is_relative_to_its_class(void **state)

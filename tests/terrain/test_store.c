@@ -3,7 +3,7 @@
  * with the next step. labels: threads */
 #include "tests/terrain/store_lab.h"
 
-#include "terrain/landscape/photo_blocks.h"
+#include "terrain/landscape/photo.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,7 +1,8 @@
-/* terrain/landscape/photo_blocks.c: a photograph's pixels to blocks of 4 x 4, their mips, and the light at a place. */
-#include "terrain/landscape/photo_blocks.h"
+/* terrain/landscape/photo.c: a photograph's pixels to blocks of 4 x 4, their mips, and the light at a place. */
+#include "terrain/landscape/photo.h"
 
 #include <pthread.h>
+#include <stdlib.h>
 
 /* ---- sRGB -------------------------------------------------------------------------------------- */
 
@@ -324,4 +325,10 @@ double photo_at(double linear[photo_channels], const Photo *photo, double x_m, d
     if (!(sum[3] > 0)) return 0;
     for (int c = 0; c < photo_channels; c++) linear[c] = sum[c] / sum[3];
     return fmin(sum[3], 1);
+}
+
+void photo_free(Photo *photo)
+{
+    for (int k = 0; k < ground_image_mips && !photo->borrowed; k++) free(photo->block[k]);
+    *photo = (Photo){0};
 }
