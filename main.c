@@ -10,9 +10,11 @@
 #include "sensor/commands/model.h"
 #include "sensor/commands/record.h"
 #include "sensor/commands/replay.h"
+#include "sensor/commands/terrain.h"
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
 #include "sensor/regress/regress.h"
+#include "terrain/import/terrain_import.h"
 #include "terrain/probe.h"
 
 #include <errno.h>
@@ -108,6 +110,7 @@ static const struct Command {
     {"exercise", exercise_command, "generate an exercise from a scenario: record it or send it", true},
     {"record", record_command, "record an exercise from the network", false},
     {"model", model_command, "list models; describe or draw one, built in or from a file", true},
+    {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true},
     {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false},
     {"bench", run_bench, "benchmark this build on this machine: times with their errors", true},
 };
@@ -224,6 +227,7 @@ int main(int argc, char **argv)
 {
     fill_closed();
     thread_flush_denormals(); /* so that a probe computes as a frame does */
+    store_rebuilder = terrain_store_rebuild;
     if (!take_verbosity(&argc, argv)) return 2;
     if (argc < 2) {
         usage(stderr);

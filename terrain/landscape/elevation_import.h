@@ -21,6 +21,7 @@ typedef struct ElevationFiles {
     ElevationVertical vertical;
     double            spacing_m;  /* of level 0; 0: the posting of the finest data at the origin */
     double            horizon_m;  /* half width of the outermost level */
+    double            size_m[2];  /* width of level 0, about the origin, x and y; 0: all data */
 } ElevationFiles;
 
 typedef struct ElevationReport {

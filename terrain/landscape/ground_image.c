@@ -2,6 +2,7 @@
  * points. */
 #include "terrain/landscape/ground_image.h"
 
+#include "terrain/landscape/cover_table.h"
 #include "terrain/landscape/raster_window.h"
 
 #include <stdlib.h>
@@ -25,82 +26,10 @@ static Status open_whole(RasterSet *set, const char *paths, const char *key, con
     return status;
 }
 
-enum { most_codes = 256 };
-
-typedef struct CoverTable {
-    bool    known[most_codes];
-    uint8_t surface[most_codes];
-} CoverTable;
-
-static Status cover_table_read(CoverTable *out, const char *path)
-{
-    Table  table = {0};
-    Status status = table_open(&table, path);
-    if (status != STATUS_OK) return status;
-    CoverTable t = {0};
-    const int code_column = table_column(&table, "code"), surface_column = table_column(&table, "surface");
-    status = STATUS_BAD_VALUE;
-    if (code_column < 0 || surface_column < 0) {
-        log_error("cover: %s needs the columns code and surface", path);
-        goto done;
-    }
-    for (int row = 0; row < table.rows; row++) {
-        double      code;
-        const char *name = table_text(&table, row, surface_column);
-        if (table_number(&code, &table, row, code_column, 1, most_codes - 1) != STATUS_OK) goto done;
-        const SurfaceClass surface = surface_find(name);
-        if (code != floor(code) || t.known[(int)code] || (surface == SURFACE_NONE && strcmp(name, "none") != 0)) {
-            log_error(
-                "cover: %s:%d: code %g is not whole, given twice, or its surface '%s' unknown; terrain/surface.h and "
-                "etc/surfaces.csv list them",
-                path, table.line[row + 1], code, name);
-            goto done;
-        }
-        t.known[(int)code]   = true;
-        t.surface[(int)code] = (uint8_t)surface;
-    }
-    *out   = t;
-    status = STATUS_OK;
-done:
-    table_close(&table);
-    return status;
-}
-
 Status cover_table_check(const char *path)
 {
     CoverTable table;
     return cover_table_read(&table, path);
-}
-
-static const char *const built_in[] = {"worldcover", "nlcd", "fbfm40"};
-
-/* The table with most of the pixels' codes; of equals the first. */
-static Status choose_table(CoverTable *out, const char **name, const char *asked, const long histogram[most_codes])
-{
-    char path[4096], file[64];
-    bool named = false;
-    for (size_t k = 0; k < sizeof built_in / sizeof *built_in; k++) named |= strcmp(asked, built_in[k]) == 0;
-    if (*asked) {
-        *name = asked;
-        if (!named) return cover_table_read(out, asked);
-        snprintf(file, sizeof file, "cover_%s.csv", asked);
-        return etc_path(path, sizeof path, file) ? cover_table_read(out, path) : STATUS_BAD_VALUE;
-    }
-    long best = -1;
-    for (size_t k = 0; k < sizeof built_in / sizeof *built_in; k++) {
-        CoverTable table;
-        long       known = 0;
-        snprintf(file, sizeof file, "cover_%s.csv", built_in[k]);
-        if (!etc_path(path, sizeof path, file)) return STATUS_BAD_VALUE;
-        const Status status = cover_table_read(&table, path);
-        if (status != STATUS_OK) return status;
-        for (int c = 1; c < most_codes; c++) known += table.known[c] ? histogram[c] : 0;
-        if (known <= best) continue;
-        best  = known;
-        *out  = table;
-        *name = built_in[k];
-    }
-    return STATUS_OK;
 }
 
 static Status cover_codes(uint8_t *code, const Window *window, const Raster *raster, int band,
@@ -121,7 +50,7 @@ static Status cover_codes(uint8_t *code, const Window *window, const Raster *ras
                 const double x = floor(at[0]) - box[0], y = floor(at[1]) - box[1];
                 if (!(x >= 0 && y >= 0 && x < (double)w && y < (double)h)) continue;
                 const float value = px[(size_t)y * w + (size_t)x];
-                if (value >= 1 && value < most_codes && code[(size_t)j * (size_t)window->nx + (size_t)i] == 0)
+                if (value >= 1 && value < cover_codes_most && code[(size_t)j * (size_t)window->nx + (size_t)i] == 0)
                     code[(size_t)j * (size_t)window->nx + (size_t)i] = (uint8_t)value;
             }
         free(px);
@@ -174,10 +103,10 @@ Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const 
             status = cover_codes(g->surface, &window, &set.raster[k], r.band, elevation, frame);
         if (status != STATUS_OK) goto done;
     }
-    long histogram[most_codes] = {0}, classed = 0, of_class[SURFACE_COUNT] = {0};
+    long histogram[cover_codes_most] = {0}, classed = 0, of_class[SURFACE_COUNT] = {0};
     for (int w = 0; w < cover_windows; w++)
         for (size_t n = 0; n < (size_t)grid[w].nx * (size_t)grid[w].ny; n++) histogram[grid[w].surface[n]]++;
-    status = choose_table(&chosen, &r.table, table, histogram);
+    status = cover_table_choose(&chosen, &r.table, table, histogram);
     if (status != STATUS_OK) goto done;
     for (int w = 0; w < cover_windows; w++)
         for (size_t n = 0; n < (size_t)grid[w].nx * (size_t)grid[w].ny; n++) {
