@@ -1,5 +1,5 @@
-/* tests/fuzz/fuzz_store.c: any octets as a terrain store: opened, and its ground looked at where it is accepted. Without
- * a fuzzer run_corpus.c drives it. */
+/* tests/fuzz/fuzz_store.c: any octets as a terrain store: opened, and its ground looked at where it is accepted.
+ * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "terrain/store/store_format.h"

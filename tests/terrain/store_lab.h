@@ -17,7 +17,8 @@ static inline float lab_height_m(double x_m, double y_m)
 
 static inline uint8_t lab_surface(double x_m, double y_m)
 {
-    return x_m < -200 ? SURFACE_NONE : (uint8_t)(1 + ((int)floor(x_m / 37) + (int)floor(y_m / 53) + 100) % (SURFACE_COUNT - 1));
+    const int field = (int)floor(x_m / 37) + (int)floor(y_m / 53) + 100;
+    return x_m < -200 ? SURFACE_NONE : (uint8_t)(1 + field % (SURFACE_COUNT - 1));
 }
 
 static inline StorePlan lab_plan(void)
@@ -40,7 +41,8 @@ static inline void lab_posts(StoreWriter *w, const StorePlan *plan, int index, i
     CHECK(z_m);
     for (int j = 0; j < l->ny; j++)
         for (int i = 0; i < l->nx; i++)
-            z_m[(size_t)j * (size_t)l->nx + (size_t)i] = lab_height_m(l->x0_m + i * l->spacing_m, l->y0_m + j * l->spacing_m);
+            z_m[(size_t)j * (size_t)l->nx + (size_t)i] =
+                lab_height_m(l->x0_m + i * l->spacing_m, l->y0_m + j * l->spacing_m);
     for (int j = 0; j < l->ny; j += at_a_time)
         assert_int_equal(store_write_posts(w, index, l->ny - j < at_a_time ? l->ny - j : at_a_time,
                                            z_m + (size_t)j * (size_t)l->nx), STATUS_OK);
@@ -52,7 +54,8 @@ static inline void lab_surfaces(StoreWriter *w, const StorePlan *plan, int windo
     const StoreGrid *g = &plan->surface[window];
     uint8_t          row[1024];
     for (int j = 0; j < g->ny; j++) {
-        for (int i = 0; i < g->nx; i++) row[i] = lab_surface(g->x0_m + (i + 0.5) * g->cell_m, g->y0_m + (j + 0.5) * g->cell_m);
+        for (int i = 0; i < g->nx; i++)
+            row[i] = lab_surface(g->x0_m + (i + 0.5) * g->cell_m, g->y0_m + (j + 0.5) * g->cell_m);
         assert_int_equal(store_write_surface(w, window, 1, row), STATUS_OK);
     }
 }
