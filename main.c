@@ -14,7 +14,6 @@
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
 #include "sensor/regress/regress.h"
-#include "terrain/import/terrain_import.h"
 #include "terrain/probe.h"
 
 #include <errno.h>
@@ -227,7 +226,6 @@ int main(int argc, char **argv)
 {
     fill_closed();
     thread_flush_denormals(); /* so that a probe computes as a frame does */
-    store_rebuilder = terrain_store_rebuild;
     if (!take_verbosity(&argc, argv)) return 2;
     if (argc < 2) {
         usage(stderr);

@@ -1,6 +1,7 @@
 /* sensor/commands/terrain.c: `pitviper terrain import`, and the table of the command's actions. */
 #include "sensor/commands/terrain.h"
 
+#include "sensor/commands/terrain_info.h"
 #include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 #include "sensor/settings/next_option.h"
@@ -11,6 +12,7 @@
 static const char help[] =
     "usage: pitviper terrain import SOURCE... -o STORE [options]\n"
     "       pitviper terrain import --surface FILES -o STORE [options]\n"
+    "       pitviper terrain info STORE [--out DIR] [--verify]\n"
     "\n"
     "import: a terrain store, one file that is mapped (terrain.store), from any files that GDAL reads. SOURCE: terrain\n"
     "models, that is bare ground; files, or folders of them. Sheets may overlap, have different postings and coordinate\n"
@@ -187,8 +189,9 @@ static int import_command(int argc, char **argv)
 
 int terrain_command(int argc, char **argv)
 {
-    static char called[] = "pitviper terrain import";
-    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+    static char called[] = "pitviper terrain import", called_info[] = "pitviper terrain info";
+    const bool  info = argc > 1 && strcmp(argv[1], "info") == 0; /* has a help of its own */
+    for (int i = 1; !info && i < argc && strcmp(argv[i], "--") != 0; i++)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             fputs(help, stdout);
             return 0;
@@ -201,6 +204,10 @@ int terrain_command(int argc, char **argv)
         argv[1] = called; /* program name in getopt's messages */
         return import_command(argc - 1, argv + 1);
     }
-    text_print(stderr, "pitviper terrain: no such action: %s; there is `terrain import`\n", argv[1]);
+    if (strcmp(argv[1], "info") == 0) {
+        argv[1] = called_info;
+        return terrain_info_command(argc - 1, argv + 1);
+    }
+    text_print(stderr, "pitviper terrain: no such action: %s; there are import and info\n", argv[1]);
     return 2;
 }

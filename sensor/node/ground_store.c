@@ -2,6 +2,7 @@
  * it has. */
 #include "sensor/node/ground_store.h"
 
+#include "terrain/import/terrain_import.h"
 #include "terrain/store/store.h"
 
 #include <unistd.h>
@@ -22,10 +23,7 @@ static Status open_fresh(TerrainStore *store, Choices *choices, const char *path
     case STORE_CHANGED: break;
     }
     log_print("ground: %s has changed since %s was made of it (%s); it is made again\n", which, path, store->made);
-    if (!store_rebuilder) {
-        log_error("terrain.store: %s is older than %s; make it again: `pitviper terrain import`", path, which);
-        status = STATUS_BAD_VALUE;
-    } else status = store_rebuilder(path, store);
+    status = terrain_store_rebuild(path, store);
     store_close(store);
     return status == STATUS_OK ? store_open(store, path) : status;
 }

@@ -130,9 +130,4 @@ int    store_parts(StorePart out[store_sections_most], const TerrainStore *store
 /* Whether the data still have the hash they were written with: reads all of it. */
 bool   store_verify(const TerrainStore *store, Pool *pool);
 
-/* Makes a store again from its sources, with the options recorded in it. Set once, before there are threads; NULL:
- * nothing here can. */
-typedef Status StoreRebuild(const char *path, const TerrainStore *old);
-extern StoreRebuild *store_rebuilder;
-
 #endif

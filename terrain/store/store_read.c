@@ -8,8 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-StoreRebuild *store_rebuilder;
-
 /* The whole header with its texts, malloc'd; *why stays NULL for a failure of the system, in errno. */
 static StoreHeader *read_header(const char **why, Status *status, int file, uint64_t file_octets)
 {
