@@ -6,11 +6,14 @@
 #include <cpl_conv.h>
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <gdal.h>
 #include <ogr_srs_api.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* most_side: of a sheet, px; sheets lie within 1e8 px of the first, so that sums stay in an int */
 enum { most_sheets = 4096, path_size = 4096, most_side = 100000000 };
@@ -367,6 +370,8 @@ static void keep_open(RasterSet *set)
         }
 }
 
+static void kept_free(struct RasterKept *kept);
+
 static void close_handles(RasterOpen *open)
 {
     for (int h = 0; open && h < handles; h++) {
@@ -421,6 +426,7 @@ void raster_set_close(RasterSet *set)
             free(raster->sheet[n].path);
         }
         free(raster->sheet);
+        kept_free(raster->kept);
         if (raster->crs_from_earth) OCTDestroyCoordinateTransformation(raster->crs_from_earth);
         if (raster->earth_from_crs) OCTDestroyCoordinateTransformation(raster->earth_from_crs);
         if (raster->crs) OSRDestroySpatialReference(raster->crs);
@@ -508,6 +514,83 @@ static bool common_part(int part[4], const RasterSheet *s, int x0, int y0, int w
     return part[0] < part[2] && part[1] < part[3];
 }
 
+/* ---- decoded rows ---------------------------------------------------------------------------- */
+
+/* A file without a name: the raster's rows in float, those that have been read. */
+typedef struct RasterKept {
+    int           file;
+    int           band;
+    atomic_uchar *has; /* [height] */
+} RasterKept;
+
+void raster_keep(Raster *raster, int band, const char *folder)
+{
+    RasterKept *kept = calloc(1, sizeof *kept);
+    if (!kept || raster->kept) {
+        free(kept);
+        return;
+    }
+    kept->band = band;
+    kept->has  = calloc((size_t)raster->height, sizeof *kept->has);
+    kept->file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (!kept->has || kept->file < 0) { /* no such file system: read twice */
+        if (kept->file >= 0) close(kept->file);
+        free(kept->has);
+        free(kept);
+        return;
+    }
+    raster->kept = kept;
+}
+
+static void kept_free(RasterKept *kept)
+{
+    if (!kept) return;
+    close(kept->file);
+    free(kept->has);
+    free(kept);
+}
+
+static bool whole_io(bool write, int file, float *at, size_t count, size_t offset)
+{
+    char  *octets = (char *)at;
+    size_t left = count * sizeof *at;
+    off_t  where = (off_t)(offset * sizeof *at);
+    while (left > 0) {
+        const ssize_t n = write ? pwrite(file, octets, left, where) : pread(file, octets, left, where);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        octets += n;
+        where += n;
+        left -= (size_t)n;
+    }
+    return true;
+}
+
+/* Full rows of the raster into the file; a full disk only costs another reading. */
+static void keep_rows(const Raster *raster, float *rows, int y0, int height)
+{
+    RasterKept *kept = raster->kept;
+    for (int y = y0; y < y0 + height; y++)
+        if (!atomic_load(&kept->has[y]) && whole_io(true, kept->file, rows + (size_t)(y - y0) * (size_t)raster->width,
+                                                   (size_t)raster->width, (size_t)y * (size_t)raster->width))
+            atomic_store(&kept->has[y], 1);
+}
+
+static bool read_kept(float *out, const Raster *raster, int x0, int y0, int width, int height)
+{
+    const RasterKept *kept = raster->kept;
+    if (x0 < 0 || y0 < 0 || x0 + width > raster->width || y0 + height > raster->height) return false;
+    for (int y = y0; y < y0 + height; y++)
+        if (!atomic_load(&kept->has[y])) return false;
+    if (x0 == 0 && width == raster->width)
+        return whole_io(false, kept->file, out, (size_t)width * (size_t)height, (size_t)y0 * (size_t)width);
+    for (int y = y0; y < y0 + height; y++)
+        if (!whole_io(false, kept->file, out + (size_t)(y - y0) * (size_t)width, (size_t)width,
+                      (size_t)y * (size_t)raster->width + (size_t)x0))
+            return false;
+    return true;
+}
+
 static Status damaged(const RasterSheet *s, const char *key)
 {
     log_error("%s: %s is damaged: %s; fetch it anew, or leave it out", key, s->path, reason("rows are missing"));
@@ -515,22 +598,19 @@ static Status damaged(const RasterSheet *s, const char *key)
 }
 
 /* One sheet's part of the window, over what is there already: the first sheet that has a value wins. */
-static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s, int number, int x0, int y0, int width,
-                         int height, const char *key)
+static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s, bool first, int number, int x0, int y0,
+                         int width, int height, const char *key)
 {
     int part[4];
     if (!common_part(part, s, x0, y0, width, height)) return STATUS_OK;
     const int w = part[2] - part[0], h = part[3] - part[1];
     const int strip = h < 256 ? h : 256;
 
-    Status         status = STATUS_NO_MEMORY;
-    GDALDatasetH   file = NULL;
-    float         *value = malloc((size_t)w * (size_t)strip * sizeof *value);
-    unsigned char *mask = malloc((size_t)w * (size_t)strip);
-    if (!value || !mask) goto done;
-    status = STATUS_IO;
-    file   = sheet_open(s, raster->row_block, part[1], key);
-    if (!file) goto done;
+    Status         status = STATUS_IO;
+    float         *value = NULL;
+    unsigned char *mask = NULL;
+    GDALDatasetH   file = sheet_open(s, raster->row_block, part[1], key);
+    if (!file) return status;
     GDALRasterBandH band = GDALGetRasterBand(file, s->band ? s->band : number);
     if (!band) {
         log_error("%s: %s: %s", key, s->path, reason("it has no such band"));
@@ -541,6 +621,16 @@ static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s,
     double     scale = GDALGetRasterScale(band, &has_scale), offset = GDALGetRasterOffset(band, &has_offset);
     if (!has_scale || !(scale != 0) || !isfinite(scale)) scale = 1;
     if (!has_offset || !isfinite(offset)) offset = 0;
+    if (first && !masked && scale == 1 && offset == 0) { /* nothing else is there: without a copy */
+        float *to = out + (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
+        status = GDALRasterIO(band, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, to, w, h, GDT_Float32, 0,
+                              width * (int)sizeof *to) == CE_None ? STATUS_OK : damaged(s, key);
+        goto done;
+    }
+    status = STATUS_NO_MEMORY;
+    value  = malloc((size_t)w * (size_t)strip * sizeof *value);
+    mask   = malloc((size_t)w * (size_t)strip);
+    if (!value || !mask) goto done;
     for (int y = part[1]; y < part[3]; y += strip) {
         const int rows = part[3] - y < strip ? part[3] - y : strip;
         if (GDALRasterIO(band, GF_Read, part[0] - s->x0, y - s->y0, w, rows, value, w, rows, GDT_Float32, 0, 0) !=
@@ -563,7 +653,7 @@ static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s,
     }
     status = STATUS_OK;
 done:
-    if (file) sheet_done(s, raster->row_block, part[1], file);
+    sheet_done(s, raster->row_block, part[1], file);
     free(value);
     free(mask);
     return status;
@@ -576,13 +666,10 @@ static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raste
     if (!common_part(part, s, x0, y0, width, height)) return STATUS_OK;
     const int      w = part[2] - part[0], h = part[3] - part[1];
     const size_t   count = (size_t)w * (size_t)h;
-    uint8_t       *value = malloc(count * (size_t)bands), *mask = malloc(count);
-    Status         status = STATUS_NO_MEMORY;
-    GDALDatasetH   file = NULL;
-    if (!value || !mask) goto done;
-    status = STATUS_IO;
-    file   = sheet_open(s, raster->row_block, part[1], key);
-    if (!file) goto done;
+    uint8_t       *value = NULL, *mask = NULL;
+    Status         status = STATUS_IO;
+    GDALDatasetH   file = sheet_open(s, raster->row_block, part[1], key);
+    if (!file) return status;
     int band[4] = {0};
     for (int b = 0; b < bands; b++) band[b] = s->band && bands == 1 ? s->band : first + b;
     const GDALRasterBandH of = GDALGetRasterBand(file, band[0]);
@@ -591,6 +678,18 @@ static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raste
         goto done;
     }
     const bool masked = !(GDALGetMaskFlags(of) & GMF_ALL_VALID);
+    if (raster->sheet_count == 1 && !masked) { /* nothing else is there: without a copy */
+        const size_t at = (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
+        status = GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, out + at * (size_t)bands, w, h,
+                                     GDT_Byte, bands, band, bands, bands * width, 1) == CE_None ? STATUS_OK : damaged(s, key);
+        for (int r = 0; r < h; r++) memset(valid + at + (size_t)r * (size_t)width, 255, (size_t)w);
+        goto done;
+    }
+    status = STATUS_NO_MEMORY;
+    value  = malloc(count * (size_t)bands);
+    mask   = malloc(count);
+    if (!value || !mask) goto done;
+    status = STATUS_IO;
     if (GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, value, w, h, GDT_Byte, bands, band,
                             bands, bands * w, 1) != CE_None ||
         (masked && GDALRasterIO(GDALGetMaskBand(of), GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, mask, w, h,
@@ -609,7 +708,7 @@ static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raste
     }
     status = STATUS_OK;
 done:
-    if (file) sheet_done(s, raster->row_block, part[1], file);
+    sheet_done(s, raster->row_block, part[1], file);
     free(value);
     free(mask);
     return status;
@@ -642,11 +741,16 @@ Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, i
 {
     Status       status = STATUS_OK;
     const size_t count = (size_t)width * (size_t)height;
+    const bool   keeps = raster->kept && ((RasterKept *)raster->kept)->band == band;
+    if (keeps && read_kept(out, raster, x0, y0, width, height)) return STATUS_OK;
+    const RasterSheet *only = raster->sheet_count == 1 ? &raster->sheet[0] : NULL;
     for (size_t k = 0; k < count; k++) out[k] = NAN;
     quiet();
     for (int k = 0; status == STATUS_OK && k < raster->sheet_count; k++)
-        status = read_sheet(out, raster, &raster->sheet[k], band, x0, y0, width, height, key);
+        status = read_sheet(out, raster, &raster->sheet[k], only != NULL, band, x0, y0, width, height, key);
     loud();
+    if (status == STATUS_OK && keeps && x0 == 0 && width == raster->width && y0 >= 0 && y0 + height <= raster->height)
+        keep_rows(raster, out, y0, height);
     return status;
 }
 

@@ -34,6 +34,7 @@ typedef struct Raster {
     double  crs_from_px[6], px_from_crs[6];
     double  whole_turn_px;       /* geographic: px of 360 degrees; else 0 */
     void   *crs, *crs_from_earth, *earth_from_crs;
+    struct RasterKept *kept;
 } Raster;
 
 typedef struct RasterSet {
@@ -60,6 +61,9 @@ void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, con
  * at once; windows whose first rows lie in different blocks of row_block rows do not wait for each other. STATUS_IO,
  * logged, when a file turns out to be damaged. */
 Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key);
+/* From now on whole rows of a band that are read are kept, decoded, in a nameless file of this folder, and read from it when
+ * they are asked for again: 4 octets a pixel. Nothing where the folder cannot have such a file. */
+void raster_keep(Raster *raster, int band, const char *folder);
 /* The same of a raster of octets: out [height][width][bands], and valid [height][width], 0 or 255. bands: how many, from
  * the first on. */
 Status raster_read_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, int first_band, int bands, int x0, int y0,

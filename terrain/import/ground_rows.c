@@ -1,6 +1,8 @@
 /* terrain/import/ground_rows.c: samples rasters at rows of cells of ENU, on all threads. */
 #include "terrain/import/ground_rows.h"
 
+#include "terrain/landscape/photo.h"
+
 #include <stdlib.h>
 
 enum { node_cells = 64, rows_a_task = 16 };
@@ -184,17 +186,6 @@ static void sample_numbers(void *user, int worker, int task)
         }
 }
 
-/* IEC 61966-2-1. */
-static double linear_of(double encoded)
-{
-    return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-static double encoded_of(double linear)
-{
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-}
-
 static struct Codes {
     float   linear[256];
     uint8_t of_linear[4096];
@@ -202,8 +193,8 @@ static struct Codes {
 
 static void codes_fill(void)
 {
-    for (int k = 0; k < 256; k++) codes.linear[k] = (float)linear_of(k / 255.0);
-    for (int k = 0; k < 4096; k++) codes.of_linear[k] = (uint8_t)lrint(255 * encoded_of(k / 4095.0));
+    for (int k = 0; k < 256; k++) codes.linear[k] = photo_linear((uint8_t)k);
+    for (int k = 0; k < 4096; k++) codes.of_linear[k] = photo_encoded((float)k / 4095);
 }
 
 /* Linear light of the pixels about a place; false: one of them is not valid. */

@@ -26,7 +26,7 @@ typedef struct Making {
     int              cover_band;
     StorePlan        plan;
     StoreSource     *source;
-    char            *options, notes[2048], datum[256];
+    char            *options, notes[2048], datum[256], folder[terrain_path_size];
     StoreWriter     *writer;
     StreamLevel      level;
     int              strip_rows;
@@ -72,7 +72,8 @@ static Status open_sources(Making *m)
     for (int k = 0; k < 2; k++)
         m->files[k] = (ElevationFiles){.paths = k ? o->surface : o->elevation, .geoid_path = o->geoid, .vertical = o->vertical,
                                        .spacing_m = o->spacing_m, .horizon_m = 1000 * o->horizon_km,
-                                       .size_m = {1000 * o->size_km[0], 1000 * o->size_km[1]}};
+                                       .size_m = {1000 * o->size_km[0], 1000 * o->size_km[1]},
+                                       .keep_folder = m->folder};
     if (*o->surface && status == STATUS_OK)
         status = elevation_stream_open(&m->surface, &m->files[1], &m->frame, NULL, m->pool);
     if (!go_on(m, "levels around", *o->surface ? 0.5 : 0, true)) return STATUS_IO;
@@ -534,6 +535,8 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     m->pool     = pool;
     m->progress = progress;
     m->user     = user;
+    const char *slash = strrchr(path, '/');
+    snprintf(m->folder, sizeof m->folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
     const double begun_s = wall_clock_s();
     const char  *fault = terrain_options_fault(options);
     Status       status = fault ? STATUS_BAD_VALUE : STATUS_OK;

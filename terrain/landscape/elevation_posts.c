@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 static const double lowest_view_m = -1000, highest_view_m = 9500, rise_m = 4000; /* rise: between the exact look-ups */
-enum { rows_a_task = 16, most_run = 128 };
+enum { rows_a_task = 16, most_run = 128, rows_at_once = 4 };
 
 static void run(Pool *pool, int count, PoolTask *task, void *user)
 {
@@ -229,54 +229,59 @@ static double run_of_grids(float *h_m, const Import *m, const View *view, size_t
     return guess_m;
 }
 
-/* The same where there is one grid alone: its bilinear surface without detours. */
-static double run_of_one(float *h_m, const Import *m, const View *view, int grid, size_t node, double b, int from,
-                         int count, double guess_m)
+/* The same where there is one grid alone, its bilinear surface without detours; of several rows at once, because each post
+ * waits for the one before it. */
+static void run_of_one(float *h_m, const Import *m, const View *view, int grid, size_t node, const double *b, int from,
+                       int count, int rows, double *guess_m)
 {
-    const int     nx = view->nodes_x;
+    const int     nx = view->nodes_x, level_nx = view->level.nx;
     const Sight  *s = &view->sight[grid];
     const Grid   *g = &m->grid[grid];
     const Patch  *p = &view->patch[grid];
     const float  *v = p->v[0];
     const double  w = g->raster->width - 0.5, h = g->raster->height - 0.5, unit = g->raster->metres_per_unit;
     const double  inv_factor = 1.0 / p->factor, most_x = p->nx[0] - 1, most_y = p->ny[0] - 1;
-    double        x0[most_run], y0[most_run], dx[most_run], dy[most_run], n_m[most_run];
-    for (int i = 0; i < count; i++) {
-        const double a = (double)(from + i) / view->stride;
-        x0[i]  = mix(s->x + node, nx, a, b);
-        y0[i]  = mix(s->y + node, nx, a, b);
-        dx[i]  = mix(s->dx + node, nx, a, b);
-        dy[i]  = mix(s->dy + node, nx, a, b);
-        n_m[i] = mix(view->n_m + node, nx, a, b);
-    }
-    for (int i = 0; i < count; i++) {
-        const double lean = fmax(fabs(dx[i]), fabs(dy[i])), add_m = g->ellipsoidal ? 0 : n_m[i];
-        for (int iteration = 0; iteration < 8; iteration++) {
-            const double x = x0[i] + guess_m * dx[i], y = y0[i] + guess_m * dy[i];
-            double       next_m;
-            if (x >= 0.5 && x <= w && y >= 0.5 && y <= h) {
-                const double px = clamp((x - p->x0) * inv_factor - 0.5, 0, most_x),
-                             py = clamp((y - p->y0) * inv_factor - 0.5, 0, most_y);
-                const int    c = (int)px < p->nx[0] - 1 ? (int)px : p->nx[0] - 2,
-                             r = (int)py < p->ny[0] - 1 ? (int)py : p->ny[0] - 2;
-                const double t = px - c, f = py - r;
-                const float *q = v + (size_t)r * (size_t)p->nx[0] + c, *o = q + p->nx[0];
-                const double south = (double)q[0] + t * (double)(q[1] - q[0]),
-                             north = (double)o[0] + t * (double)(o[1] - o[0]);
-                next_m = (south + f * (north - south)) * unit + add_m;
-            } else {
-                double at_x[import_most_grids] = {0}, at_y[import_most_grids] = {0};
-                at_x[grid] = x;
-                at_y[grid] = y;
-                next_m     = composed(m, view, at_x, at_y, n_m[i]);
-            }
-            const double moved_px = fabs(next_m - guess_m) * lean;
-            guess_m = next_m;
-            if (moved_px < 1e-4) break; /* of a pixel: a tenth of a millimetre on a slope of 1 at 1 m posts */
+    double        x0[rows_at_once][most_run], y0[rows_at_once][most_run], dx[rows_at_once][most_run],
+        dy[rows_at_once][most_run], n_m[rows_at_once][most_run];
+    for (int r = 0; r < rows; r++)
+        for (int i = 0; i < count; i++) {
+            const double a = (double)(from + i) / view->stride;
+            x0[r][i]  = mix(s->x + node, nx, a, b[r]);
+            y0[r][i]  = mix(s->y + node, nx, a, b[r]);
+            dx[r][i]  = mix(s->dx + node, nx, a, b[r]);
+            dy[r][i]  = mix(s->dy + node, nx, a, b[r]);
+            n_m[r][i] = mix(view->n_m + node, nx, a, b[r]);
         }
-        h_m[i] = (float)guess_m;
-    }
-    return guess_m;
+    for (int i = 0; i < count; i++)
+        for (int r = 0; r < rows; r++) {
+            const double lean = fmax(fabs(dx[r][i]), fabs(dy[r][i])), add_m = g->ellipsoidal ? 0 : n_m[r][i];
+            double       h_of = guess_m[r];
+            for (int iteration = 0; iteration < 8; iteration++) {
+                const double x = x0[r][i] + h_of * dx[r][i], y = y0[r][i] + h_of * dy[r][i];
+                double       next_m;
+                if (x >= 0.5 && x <= w && y >= 0.5 && y <= h) {
+                    const double px = clamp((x - p->x0) * inv_factor - 0.5, 0, most_x),
+                                 py = clamp((y - p->y0) * inv_factor - 0.5, 0, most_y);
+                    const int    c = (int)px < p->nx[0] - 1 ? (int)px : p->nx[0] - 2,
+                                 q = (int)py < p->ny[0] - 1 ? (int)py : p->ny[0] - 2;
+                    const double t = px - c, f = py - q;
+                    const float *lo = v + (size_t)q * (size_t)p->nx[0] + c, *hi = lo + p->nx[0];
+                    const double south = (double)lo[0] + t * (double)(lo[1] - lo[0]),
+                                 north = (double)hi[0] + t * (double)(hi[1] - hi[0]);
+                    next_m = (south + f * (north - south)) * unit + add_m;
+                } else {
+                    double at_x[import_most_grids] = {0}, at_y[import_most_grids] = {0};
+                    at_x[grid] = x;
+                    at_y[grid] = y;
+                    next_m     = composed(m, view, at_x, at_y, n_m[r][i]);
+                }
+                const double moved_px = fabs(next_m - h_of) * lean;
+                h_of = next_m;
+                if (moved_px < 1e-4) break; /* of a pixel: a tenth of a millimetre on a slope of 1 at 1 m posts */
+            }
+            guess_m[r] = h_of;
+            h_m[(size_t)r * (size_t)level_nx + (size_t)i] = (float)h_of;
+        }
 }
 
 typedef struct Finding {
@@ -292,18 +297,22 @@ static void find_rows(void *user, int worker, int task)
     const View    *view = f->view;
     const int      nx = view->level.nx, end = (task + 1) * rows_a_task < view->rows ? (task + 1) * rows_a_task : view->rows;
     (void)worker;
-    for (int r = task * rows_a_task; r < end; r++) {
-        const int    j = view->row0 + r - view->node_row0;
-        const double b = (double)(j % view->stride) / view->stride;
-        double       guess_m = f->m->base_h_m;
+    for (int r = task * rows_a_task, rows; r < end; r += rows) {
+        const int    j = view->row0 + r - view->node_row0, node_row = j / view->stride;
+        double       b[rows_at_once], guess_m[rows_at_once];
+        for (rows = 0; rows < (f->only >= 0 ? rows_at_once : 1) && r + rows < end; rows++) {
+            if ((j + rows) / view->stride != node_row) break;
+            b[rows]       = (double)((j + rows) % view->stride) / view->stride;
+            guess_m[rows] = f->m->base_h_m;
+        }
         for (int i = 0; i < nx;) {
-            const size_t node = (size_t)(j / view->stride) * (size_t)view->nodes_x + (size_t)(i / view->stride);
+            const size_t node = (size_t)node_row * (size_t)view->nodes_x + (size_t)(i / view->stride);
             int          from = i % view->stride, count = view->stride - from;
             count = count < nx - i ? count : nx - i;
             count = count < most_run ? count : most_run;
             float *to = f->h_m + (size_t)r * (size_t)nx + (size_t)i;
-            guess_m = f->only >= 0 ? run_of_one(to, f->m, view, f->only, node, b, from, count, guess_m)
-                                   : run_of_grids(to, f->m, view, node, b, from, count, guess_m);
+            if (f->only >= 0) run_of_one(to, f->m, view, f->only, node, b, from, count, rows, guess_m);
+            else guess_m[0] = run_of_grids(to, f->m, view, node, b[0], from, count, guess_m[0]);
             i += count;
         }
     }

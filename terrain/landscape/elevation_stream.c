@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-enum { most_side_streamed = 32768, margin_px = 64 };
+enum { most_side_streamed = 32768, margin_px = 64, keep_px = 8 << 20 };
 
 struct ElevationStream {
     Import          m;
@@ -28,6 +28,10 @@ Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files,
     Import *m = &s->m;
     curve_of_frame(&m->curve, frame);
     Status status = elevation_import_open(m);
+    for (int k = 0; status == STATUS_OK && files->keep_folder && k < m->set.count; k++) {
+        Raster *raster = &m->set.raster[k];
+        if ((double)raster->width * raster->height > keep_px) raster_keep(raster, 1, files->keep_folder);
+    }
     if (status == STATUS_OK) status = elevation_import_choose(m, &s->report);
     if (status == STATUS_OK && !like) elevation_import_plan(m, most_side_streamed);
     if (status == STATUS_OK && like) {

@@ -98,7 +98,7 @@ static const uint8_t first_sixths[2][4] = {{6, 0, 4, 2}, {6, 0, 3, 0}};
 
 typedef struct Pixels {
     int     count;         /* covered */
-    float   value[16][3];
+    float   value[3][16];  /* red, green and blue of each */
     uint8_t place[16];
 } Pixels;
 
@@ -120,20 +120,24 @@ static float choose(PhotoBlock *block, const Pixels *px, bool holes)
             const int w = first_sixths[three][k];
             colour[k][c] = (float)(w * end[0][c] + (sixths - w) * end[1][c]) * (1.0f / sixths);
         }
+    /* all sixteen at once; those that are not covered are not looked at below */
+    float    least[16];
+    uint32_t best[16];
+    for (int n = 0; n < 16; n++) {
+        least[n] = INFINITY;
+        best[n]  = 0;
+    }
+    for (uint32_t k = 0; k < (three ? 3u : 4u); k++)
+        for (int n = 0; n < 16; n++) {
+            const float r = px->value[0][n] - colour[k][0], g = px->value[1][n] - colour[k][1],
+                        b = px->value[2][n] - colour[k][2], d2 = r * r + g * g + b * b;
+            best[n]  = d2 < least[n] ? k : best[n];
+            least[n] = d2 < least[n] ? d2 : least[n];
+        }
     block->index = 0xffffffff; /* not covered, unless set below */
     for (int n = 0; n < px->count; n++) {
-        float    least = INFINITY;
-        uint32_t best = 0;
-        for (uint32_t k = 0; k < (three ? 3u : 4u); k++) {
-            float d2 = 0;
-            for (int c = 0; c < 3; c++) d2 += (px->value[n][c] - colour[k][c]) * (px->value[n][c] - colour[k][c]);
-            if (d2 < least) {
-                least = d2;
-                best  = k;
-            }
-        }
-        sum += least;
-        block->index &= ~((3u ^ best) << 2 * px->place[n]);
+        sum += least[n];
+        block->index &= ~((3u ^ best[n]) << 2 * px->place[n]);
     }
     return sum;
 }
@@ -143,10 +147,10 @@ static void ends_of(float end[2][3], const Pixels *px)
 {
     float mean[3] = {0}, cov[3][3] = {{0}}, axis[3];
     for (int n = 0; n < px->count; n++)
-        for (int c = 0; c < 3; c++) mean[c] += px->value[n][c] / (float)px->count;
+        for (int c = 0; c < 3; c++) mean[c] += px->value[c][n] / (float)px->count;
     for (int n = 0; n < px->count; n++)
         for (int a = 0; a < 3; a++)
-            for (int b = 0; b < 3; b++) cov[a][b] += (px->value[n][a] - mean[a]) * (px->value[n][b] - mean[b]);
+            for (int b = 0; b < 3; b++) cov[a][b] += (px->value[a][n] - mean[a]) * (px->value[b][n] - mean[b]);
     int widest = 1;
     for (int c = 0; c < 3; c++) widest = cov[c][c] > cov[widest][widest] ? c : widest;
     for (int c = 0; c < 3; c++) axis[c] = cov[widest][c];
@@ -163,7 +167,7 @@ static void ends_of(float end[2][3], const Pixels *px)
     float       low = 0, high = 0;
     for (int n = 0; n < px->count && length2 > 0; n++) {
         float t = 0;
-        for (int c = 0; c < 3; c++) t += (px->value[n][c] - mean[c]) * axis[c];
+        for (int c = 0; c < 3; c++) t += (px->value[c][n] - mean[c]) * axis[c];
         low  = fminf(low, t / length2);
         high = fmaxf(high, t / length2);
     }
@@ -184,8 +188,8 @@ static bool refine(float end[2][3], const PhotoBlock *block, const Pixels *px)
         ab += a * b;
         bb += b * b;
         for (int c = 0; c < 3; c++) {
-            ax[c] += a * px->value[n][c];
-            bx[c] += b * px->value[n][c];
+            ax[c] += a * px->value[c][n];
+            bx[c] += b * px->value[c][n];
         }
     }
     const float det = aa * bb - ab * ab;
@@ -223,15 +227,18 @@ PhotoBlock photo_block(const uint8_t rgba[16][4])
     bool   even = true;
     for (int n = 0; n < 16; n++) {
         if (rgba[n][3] < 128) continue;
-        for (int c = 0; c < 3; c++) px.value[px.count][c] = rgba[n][c];
-        even &= memcmp(px.value[px.count], px.value[0], sizeof px.value[0]) == 0;
+        for (int c = 0; c < 3; c++) {
+            px.value[c][px.count] = rgba[n][c];
+            even &= px.value[c][px.count] == px.value[c][0];
+        }
         px.place[px.count++] = (uint8_t)n;
     }
     const bool holes = px.count < 16;
     PhotoBlock best = {0, 0, 0xffffffff};
     if (px.count == 0) return best;
     float end[2][3];
-    if (even && !holes) even_ends(end, px.value[0]);
+    const float first[3] = {px.value[0][0], px.value[1][0], px.value[2][0]};
+    if (even && !holes) even_ends(end, first);
     else ends_of(end, &px);
     best = (PhotoBlock){packed(end[0]), packed(end[1]), 0};
     float least = choose(&best, &px, holes);
