@@ -1,6 +1,15 @@
 /* render/ground/ground.c: the elevation in the form that the ray tracers use, and the scalar tracer. */
 #include "render/ground/ground_private.h"
 
+/* Of the whole level's edges; of a small level without rises, as far as its posts can be apart. */
+static double steepest(const GroundLevel *g)
+{
+    if (!g->rise[g->top]) return elevation_highest_post - elevation_lowest_post;
+    const ElevationRise r = *g->rise[g->top];
+    const int           along = r.east > r.west ? r.east : r.west, across = r.north > r.south ? r.north : r.south;
+    return g->rise_unit * (along > across ? along : across);
+}
+
 void ground_prepare(Ground *out, const Elevation *elevation)
 {
     *out = (Ground){.elevation = elevation, .level_count = elevation ? elevation->level_count : 0};
@@ -17,7 +26,8 @@ void ground_prepare(Ground *out, const Elevation *elevation)
             g->rise[p]       = e->rise[p];
             g->pyramid_nx[p] = e->pyramid_nx[p];
         }
-        g->highest = ground_highest(g, g->top, 0, 0);
+        g->highest  = ground_highest(g, g->top, 0, 0);
+        g->steepest = steepest(g);
     }
 }
 

@@ -26,6 +26,7 @@ typedef struct GroundLevel {
     int             tiles_x, cells_x, cells_y, top; /* tiles a row; cells; index of the pyramid's single entry */
     double          x0_m, y0_m, z0_m, cells_per_m, posts_per_m;
     double          highest;                   /* post */
+    double          steepest;                  /* no edge of a cell rises by more posts */
 } GroundLevel;
 
 /* Borrows the elevation's arrays; no allocation. */

@@ -15,9 +15,10 @@ enum { quarters = 4, cells_tried = 4, wait = 3, run_up = 2, patience = 96 };
  * For others the test fails too often: measured with suns 15, 35 and 60 degrees high. */
 static const double steep_sine = 0.3;
 
-/* A ray this far above the ground is above it despite rounding: within 1e5 cells and 1e7 posts of the corner its
- * position is accurate to 1e-10 cells and 1e-8 posts, which the steepest ground makes 1e-5 posts. */
-static const double sure_posts = 1e-3, sure_cells = 1e5, sure_height_posts = 1e7;
+/* A ray this far above the ground is above it despite rounding: within 1e5 cells and 1e8 posts of the corner its
+ * position is accurate to 1e-10 cells and 1e-7 posts, which edges of 65536 posts make 1e-5 posts; steeper ones need
+ * more, in proportion. */
+static const double sure_posts = 1e-3, sure_steep_posts = 65536, sure_cells = 1e5, sure_height_posts = 1e8;
 
 /* Four rays over one level: LevelRay, and their positions. */
 typedef struct Rays4 {
@@ -321,11 +322,12 @@ static inline void begin(Rays4 *r, const Ground *ground, int level, const double
     const F64x4 size = f64x4_max(f64x4_abs(r->u0), f64x4_abs(r->v0));
     const F64x4 tame = f64x4_and(f64x4_at_most(size, f64x4_set(sure_cells)),
                                  f64x4_at_most(f64x4_abs(r->w0), f64x4_set(sure_height_posts)));
-    r->sure = f64x4_select(tame, f64x4_set(sure_posts), f64x4_set(INFINITY));
+    const double sure = sure_posts * fmax(g->steepest / sure_steep_posts, 1);
+    r->sure = f64x4_select(tame, f64x4_set(sure), f64x4_set(INFINITY));
     r->u_way = bits_16(f64x4_less(r->du, f64x4_set(0)));
     r->v_way = _mm256_add_epi64(_mm256_set1_epi64x(32), bits_16(f64x4_less(r->dv, f64x4_set(0))));
     /* rising, it is above everything from `above` on, if that is near enough to be exact; far_m limits the search */
-    const F64x4 rises = f64x4_and(f64x4_less(f64x4_set(1e-12), r->dw), f64x4_at_most(f64x4_abs(r->w0), f64x4_set(1e7)));
+    const F64x4 rises = f64x4_and(f64x4_less(f64x4_set(1e-12), r->dw), f64x4_at_most(f64x4_abs(r->w0), f64x4_set(sure_height_posts)));
     r->stop_m =
         f64x4_min(f64x4_select(rises, (f64x4_set(above) - r->w0) / r->dw, f64x4_set(INFINITY)), f64x4_loadu(far_m + n));
     const F64x4 from = f64x4_loadu(from_m + n);

@@ -12,9 +12,9 @@
 /* Rays per strip: with fewer, sweeping costs more than it saves. Buckets hold rays of similar slope. */
 enum { strip_rays = 128, most_strips = 8, buckets = 128, highest_row = 8 };
 
-/* Margins for rounding: the eye is within 1e6 cells and 1e7 posts of every level's corner, where c and w are
- * accurate to 1e-9; and distances to 1e-9 of themselves and 1e-9 m. These are a hundred times that and more. */
-static const double near_cells = 1e6, near_posts = 1e7, room_posts = 1e-3, room_cells = 1e-6, room_m = 1e-6,
+/* Margins for rounding: the eye is within 1e6 cells and 1e8 posts of every level's corner, where c is accurate to 1e-9
+ * and w to 1e-7; and distances to 1e-9 of themselves and 1e-9 m. These are a hundred times that and more. */
+static const double near_cells = 1e6, near_posts = 1e8, room_posts = 1e-3, room_cells = 1e-6, room_m = 1e-6,
                     room_relative = 1e-9;
 
 typedef struct Strip {

@@ -243,48 +243,72 @@ static void limit(Fields *f, const char *name, size_t *sum, int nx, int ny, size
     if (f->from && fields_good(f) && *sum > most) f->fault = name;
 }
 
-/* Posts row by row. */
-static void posts_to_rows(uint16_t *post, const ElevationLevel *l)
+/* Base and shift of each tile, which version 1 did not have; reading, they are allocated. */
+static void tile_fields(Fields *f, ElevationLevel *l)
 {
-    for (int j = 0; j < l->ny; j++)
-        for (int i = 0; i < l->nx; i++) *post++ = (uint16_t)elevation_post(l, i, j);
+    const int tiles = l->tiles_x * l->tiles_y;
+    if (f->from) {
+        l->tile = arena_alloc(f->arena, (size_t)tiles, sizeof *l->tile);
+        f->no_memory |= !l->tile;
+        if (!l->tile) return;
+        memset(l->tile, 0, (size_t)tiles * sizeof *l->tile);
+    }
+    if (f->version >= 2) field_bool(f, "tiles of a level", &l->plain);
+    for (int t = 0; t < tiles && !l->plain && fields_good(f); t++) {
+        field_int(f, "base of a tile", &l->tile[t].base, elevation_lowest_post, elevation_highest_post);
+        field_int(f, "shift of a tile", &l->tile[t].shift, 0, elevation_most_shift);
+        if (fields_good(f) && l->tile[t].base % elevation_base_unit != 0) f->fault = "base of a tile";
+    }
 }
 
-static bool posts_from_rows(ElevationLevel *l, const uint16_t *post, Arena *arena)
+/* Stored posts, those of an edge in the tile that begins with it, row by row. */
+static void stored_to_rows(uint16_t *post, const ElevationLevel *l)
 {
-    ElevationLevel described;
-    if (elevation_level_describe(&described, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m) !=
-        STATUS_OK)
-        return false;
-    *l        = described;
-    l->tile   = arena_alloc(arena, (size_t)l->tiles_x * (size_t)l->tiles_y, sizeof *l->tile);
-    l->stored = arena_alloc(arena, elevation_level_stored(l), sizeof *l->stored);
-    if (!l->tile || !l->stored) return false;
-    memset(l->tile, 0, (size_t)l->tiles_x * (size_t)l->tiles_y * sizeof *l->tile);
     for (int j = 0; j < l->ny; j++)
-        for (int i = 0; i < l->nx; i++) elevation_set_post(l, i, j, *post++);
+        for (int i = 0; i < l->nx; i++) *post++ = l->stored[elevation_stored_index(l, i, j)];
+}
+
+static void stored_from_rows(ElevationLevel *l, const uint16_t *post)
+{
+    for (int j = 0; j < l->ny; j++)
+        for (int i = 0; i < l->nx; i++) {
+            const ElevationTile tile = l->tile[elevation_tile_index(l, i, j)];
+            elevation_set_post(l, i, j, tile.base + ((int32_t)*post++ << tile.shift));
+        }
     elevation_fill_edges(l);
-    return true;
 }
 
 static void post_fields(Fields *f, ElevationLevel *l, const GroundCutout *kept)
 {
     uint16_t *post = NULL;
+    if (f->from && fields_good(f)) {
+        ElevationLevel described;
+        if (elevation_level_describe(&described, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m) !=
+            STATUS_OK)
+            f->fault = "size of a level";
+        else *l = described;
+    }
+    if (fields_good(f)) tile_fields(f, l);
     if (!fields_good(f)) return;
     if (f->to) {
         post = malloc((size_t)l->nx * (size_t)l->ny * sizeof *post);
         f->no_memory |= !post;
-        if (post) posts_to_rows(post, l);
+        if (post) stored_to_rows(post, l);
     }
     if (post || f->from) grid_values(f, kept, (void **)&post, l->nx, l->ny, 2, l->x0_m, l->y0_m, l->spacing_m);
-    if (f->to) free(post);
-    else if (post) f->no_memory |= !posts_from_rows(l, post, f->arena);
+    if (f->to) {
+        free(post);
+    } else if (post) {
+        l->stored = arena_alloc(f->arena, elevation_level_stored(l), sizeof *l->stored);
+        f->no_memory |= !l->stored;
+        if (l->stored) stored_from_rows(l, post);
+    }
 }
 
 static void level_fields(Fields *f, ElevationLevel *l, size_t *posts, const GroundCutout *kept)
 {
-    field_int(f, "posts of a level", &l->nx, 2, 32768);
-    field_int(f, "posts of a level", &l->ny, 2, 32768);
+    field_int(f, "posts of a level", &l->nx, 2, elevation_most_posts);
+    field_int(f, "posts of a level", &l->ny, 2, elevation_most_posts);
     field_real(f, "place of a level", &l->x0_m, -local_m, local_m);
     field_real(f, "place of a level", &l->y0_m, -local_m, local_m);
     field_real(f, "spacing of a level", &l->spacing_m, 0.1, 1e5);
@@ -313,6 +337,7 @@ static void photo_fields(Fields *f, Photo *p, const GroundCutout *kept)
 {
     size_t pixels = 0;
     field_int(f, "photograph", &p->mips, 0, ground_image_mips);
+    if (f->version < 2 && p->mips > 0) f->fault = "photograph of version 1";
     if (!fields_good(f) || p->mips == 0) return;
     field_real(f, "place of the photograph", &p->x0_m, -local_m, local_m);
     field_real(f, "place of the photograph", &p->y0_m, -local_m, local_m);
@@ -349,8 +374,10 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
         return;
     }
     if (!g->store) g->store = "";
-    field_text(f, "terrain store", &g->store, 4096);
-    field_u64(f, &g->store_content);
+    if (f->version >= 2) {
+        field_text(f, "terrain store", &g->store, 4096);
+        field_u64(f, &g->store_content);
+    }
     if (!fields_good(f) || (g->store && *g->store)) return;
     field_u64(f, &g->cover_seed);
     field_real(f, "geoid", &g->geoid_m, -1e4, 1e4);

@@ -116,6 +116,9 @@ void elevation_set_post(ElevationLevel *level, int i, int j, int32_t post);
 void elevation_choose_tiles(ElevationLevel *level, int tile_j, const int32_t *row);
 void elevation_fill_tiles(ElevationLevel *level, int tile_j, const int32_t *row);
 
+/* Lowest and highest of those rows' posts within a tile. */
+void elevation_tile_range(int32_t range[2], const ElevationLevel *level, int tile_i, int tile_j, const int32_t *row);
+
 /* Stored posts beyond nx, ny repeat the last: after elevation_set_post (elevation_build_pyramids begins with it). */
 void elevation_fill_edges(ElevationLevel *level);
 

@@ -117,20 +117,27 @@ void elevation_fill_tiles(ElevationLevel *level, int tile_j, const int32_t *row)
     for (int ti = 0; ti < level->tiles_x; ti++) fill_tile(level, ti, tile_j, row);
 }
 
+void elevation_tile_range(int32_t range[2], const ElevationLevel *level, int tile_i, int tile_j, const int32_t *row)
+{
+    const int columns = of_tile(level->nx, tile_i), rows = of_tile(level->ny, tile_j);
+    int32_t   low = INT32_MAX, high = INT32_MIN;
+    for (int j = 0; j < rows; j++) {
+        const int32_t *from = row + (size_t)j * (size_t)level->nx + (size_t)tile_i * elevation_tile_cells;
+        for (int i = 0; i < columns; i++) {
+            low  = from[i] < low ? from[i] : low;
+            high = from[i] > high ? from[i] : high;
+        }
+    }
+    range[0] = low;
+    range[1] = high;
+}
+
 void elevation_choose_tiles(ElevationLevel *level, int tile_j, const int32_t *row)
 {
-    const int rows = of_tile(level->ny, tile_j);
     for (int ti = 0; ti < level->tiles_x; ti++) {
-        const int columns = of_tile(level->nx, ti);
-        int32_t   low = INT32_MAX, high = INT32_MIN;
-        for (int j = 0; j < rows; j++) {
-            const int32_t *from = row + (size_t)j * (size_t)level->nx + (size_t)ti * elevation_tile_cells;
-            for (int i = 0; i < columns; i++) {
-                low  = from[i] < low ? from[i] : low;
-                high = from[i] > high ? from[i] : high;
-            }
-        }
-        level->tile[(size_t)tile_j * (size_t)level->tiles_x + (size_t)ti] = elevation_tile_of(low, high);
+        int32_t range[2];
+        elevation_tile_range(range, level, ti, tile_j, row);
+        level->tile[(size_t)tile_j * (size_t)level->tiles_x + (size_t)ti] = elevation_tile_of(range[0], range[1]);
     }
 }
 

@@ -25,7 +25,7 @@ Status elevation_import(Elevation *out, ElevationReport *report, const Elevation
         status   = view_bend(z->v, &m, z, 0, z->ny);
         if (status == STATUS_OK && !m.level[k].outermost) view_join(z->v, z, 0, z->ny, &m.level[k + 1].z);
     }
-    if (status == STATUS_OK) status = levels_store(&elevation, m.level, m.level_count);
+    if (status == STATUS_OK) status = levels_store_fine(&elevation, m.level, m.level_count);
     const Patch *patch = &view.patch[m.main];
     if (status == STATUS_OK && patch->mips > 0 && r.correction_m == 0 && patch->factor == 1 && patch->nx[0] > 1 &&
         patch->ny[0] > 1) {

@@ -75,7 +75,8 @@ static const char *levels_fault(const Elevation *e)
     if (e->level_count < 1 || e->level_count > elevation_max_levels) return "the number of levels";
     for (int n = 0; n < e->level_count; n++) {
         const ElevationLevel *l = &e->level[n];
-        if (l->nx < 2 || l->ny < 2 || l->nx > 32768 || l->ny > 32768 || !l->stored || !l->tile ||
+        const int most = elevation_most_posts;
+        if (l->nx < 2 || l->ny < 2 || l->nx > most || l->ny > most || !l->stored || !l->tile ||
             l->tiles_x != (l->nx - 2) / elevation_tile_cells + 1 ||
             l->tiles_y != (l->ny - 2) / elevation_tile_cells + 1)
             return "the size of a level";

@@ -22,7 +22,7 @@ typedef struct StoreGrid {
 typedef struct StoreLevel {
     int    nx, ny;                /* posts; post (i, j) at (x0 + i spacing, y0 + j spacing) */
     double x0_m, y0_m, spacing_m; /* spacings in the ratio of a power of two; the outline on cells of the next level */
-    double z0_m, step_m;          /* step: a power of two; z0: a multiple of 64. step 0: both chosen by the spacing */
+    double z0_m, step_m;          /* step: a power of two; z0: a multiple of 64, or one for all. step 0: chosen */
     int    seam_shift;            /* edge posts are multiples of step << seam_shift; -1: chosen by the spacing */
 } StoreLevel;
 

@@ -29,6 +29,9 @@ bool store_source_look(StoreSource *source)
     return true;
 }
 
+/* A tile's shift takes what its relief needs: a finer step costs nothing. */
+static const double store_step_m = 0x1p-11;
+
 /* ---- the plan ------------------------------------------------------------------------------------ */
 
 /* Relief over one tile that the default of seam_shift holds: a mean slope of 56 degrees. */
@@ -51,7 +54,8 @@ static const char *plan_fault(const StorePlan *plan, const StoreHeader *h)
 {
     for (int n = 0; n < plan->level_count; n++) {
         const double z0 = h->level[n].z0_m;
-        if (!is_power_of_two(h->level[n].step_m) || z0 != 64 * rint(z0 / 64)) return "steps or origins are not dyadic";
+        const bool   even = z0 == h->level[0].z0_m || z0 == 64 * rint(z0 / 64);
+        if (!is_power_of_two(h->level[n].step_m) || !even) return "steps or origins are not dyadic";
         if (n > 0 && !is_power_of_two(rint(h->level[n].spacing_m / h->level[n - 1].spacing_m)))
             return "the spacings of two levels are not in the ratio of a power of two";
     }
@@ -93,7 +97,7 @@ static Status make_header(StoreHeader **out, const StorePlan *plan)
         const StoreLevel *l = &plan->level[n];
         h.level[n] = (StoreHeaderLevel){.nx = l->nx, .ny = l->ny, .x0_m = l->x0_m, .y0_m = l->y0_m,
                                         .spacing_m = l->spacing_m, .z0_m = l->z0_m,
-                                        .step_m = l->step_m > 0 ? l->step_m : 0x1p-9};
+                                        .step_m = l->step_m > 0 ? l->step_m : store_step_m};
     }
     fwrite(&h, sizeof h, 1, to);
     put_sources(to, &h, plan);

@@ -92,7 +92,7 @@ static inline void lab_write(const char *path, const StorePlan *plan, Pool *pool
     assert_int_equal(store_write_crowns(w, 1, crown + 2), STATUS_OK);
     StoreReport report;
     assert_int_equal(store_writer_finish(w, 5, &report), STATUS_OK);
-    CHECK(report.crowns == 3 && report.buildings == 5 && report.worst_m[0] <= 0x1p-10);
+    CHECK(report.crowns == 3 && report.buildings == 5 && report.worst_m[0] <= 0x1p-9);
 }
 
 #endif

@@ -37,8 +37,8 @@ typedef struct Sheet {
 
 static const Sheet sheets[] = {
     {2, 2, -1, -1, 2, 0, 1},           {2, 3, -5e5, 3e5, 1e5, -12500, 0.34}, {3, 2, 0, 0, 0x1p-6, 0, 0x1p-8},
-    {65, 33, -960, 480, 30, 0, 0.34},  {257, 1025, -1e6, 1e6, 1, -1e4, 1},   {2, 32768, 0, -16384, 1, 0, 0.1},
-    {32768, 2, -16384, 0, 1, 0, 0.1},  {33, 65, 1e3, -1e5, 0.5, 1e3, 1e-300}, {1500, 1500, -750, -750, 1, 0, 0x1p-8},
+    {65, 33, -960, 480, 30, 0, 0.34},  {257, 1025, -1e6, 1e6, 1, -1e4, 1},   {2, 65536, 0, -32768, 1, 0, 0.1},
+    {65536, 2, -32768, 0, 1, 0, 0.1},  {33, 65, 1e3, -1e5, 0.5, 1e3, 1e-300}, {1500, 1500, -750, -750, 1, 0, 0x1p-8},
 };
 static const Sheet huge_sheet = {16385, 16385, -8192, -8192, 1, 0, 0x1p-4}; /* half a gigabyte of posts */
 
@@ -179,7 +179,7 @@ static Status grids(Bench *bench)
 static void refusals(Bench *bench)
 {
     static const double none[] = {0, -1, NAN, INFINITY, -INFINITY};
-    static const int    size[] = {-1, 0, 1, 32769, 2147483647, -2147483647 - 1};
+    static const int    size[] = {-1, 0, 1, elevation_most_posts + 1, 2147483647, -2147483647 - 1};
     double              taken = 0;
     for (int n = 0; n < 5 + 5 + 3 * 3 + 6 * 2; n++) {
         Elevation ground = {0};
