@@ -32,7 +32,7 @@ static const char help[] =
     "terrain\n"
     "  --origin LAT,LON       middle of the terrain, degrees (middle of the finest file)\n"
     "  --size KMxKM           east by north, of the finest posts, each 0.01 .. 1000 (all data)\n"
-    "  --spacing M            of the finest posts, 0.05 .. 1000 m (the finest file's)\n"
+    "  --spacing M            of the finest posts, 0.06 .. 1000 m (the finest file's)\n"
     "  --horizon KM           half width of the coarse posts around, 1 .. 400 (100)\n"
     "output\n"
     "  -o, --out STORE        the store; made again from the same sources when one of them changes\n"

@@ -87,16 +87,16 @@ static double bilinear(const float *v, int nx, int ny, double x, double y)
     return south + w * (north - south);
 }
 
-/* Values of one mip about each other: of a mip, or of the wider patch where the mips end. x, y: in posts of mip k. */
-static double mip_at(const Patch *p, int k, double x, double y)
+/* Between the posts of one mip, at a place in pixels of the raster: of the wider patch where the own mips end. */
+static double mip_at(const Patch *p, int k, double x_px, double y_px)
 {
-    if (k < p->mips) return bilinear(p->v[k], p->nx[k], p->ny[k], x, y);
-    const Patch *w = p->wider;
-    const int    beyond = k - p->mips < w->mips ? k - p->mips : w->mips - 1;
-    const double s = exp2(k - p->mips - beyond), px = p->factor * exp2(p->mips); /* pixels a post of the wider's mip 0 */
-    const double wide = exp2(-(k - p->mips));
-    return bilinear(w->v[beyond], w->nx[beyond], w->ny[beyond], s * x + (p->x0 - w->x0) / px * wide * s,
-                    s * y + (p->y0 - w->y0) / px * wide * s);
+    if (k >= p->mips) {
+        k -= p->mips;
+        p = p->wider;
+        if (k > p->mips - 1) k = p->mips - 1;
+    }
+    const double s = exp2(-k);
+    return bilinear(p->v[k], p->nx[k], p->ny[k], (x_px - p->x0) / p->factor * s, (y_px - p->y0) / p->factor * s);
 }
 
 /* Voids of one mip: first from the coarser one, then relaxed towards the mean of the neighbours, so that the
@@ -106,6 +106,7 @@ static Status fill(Patch *p, int k)
     enum { sweeps = 24 };
     float       *v = p->v[k];
     const int    nx = p->nx[k], ny = p->ny[k];
+    const double post_px = p->factor * exp2(k);
     const size_t posts = (size_t)nx * (size_t)ny;
     size_t       count = 0;
     for (size_t n = 0; n < posts; n++) count += isnan(v[n]);
@@ -117,8 +118,8 @@ static Status fill(Patch *p, int k)
     for (size_t n = 0; n < posts; n++)
         if (isnan(v[n])) at[count++] = n;
     for (size_t n = 0; n < count; n++) {
-        v[at[n]] = (float)mip_at(p, k + 1, 0.5 * ((double)(at[n] % (size_t)nx) + 0.5),
-                                 0.5 * ((double)(at[n] / (size_t)nx) + 0.5));
+        v[at[n]] = (float)mip_at(p, k + 1, p->x0 + post_px * ((double)(at[n] % (size_t)nx) + 0.5),
+                                 p->y0 + post_px * ((double)(at[n] / (size_t)nx) + 0.5));
         if (k == 0) p->hole[at[n]] = 1;
     }
     for (int sweep = 0; sweep < sweeps; sweep++)
@@ -250,13 +251,11 @@ Status patches_read(Patch *out, const PatchWindow *window, int count, const Patc
 
 double patch_at(const Patch *patch, double x_px, double y_px, double mip)
 {
-    const double x = (x_px - patch->x0) / patch->factor, y = (y_px - patch->y0) / patch->factor;
-    if (!(mip > 0)) return bilinear(patch->v[0], patch->nx[0], patch->ny[0], x, y);
+    if (!(mip > 0)) return mip_at(patch, 0, x_px, y_px);
     const int most = patch->mips - 1 + (patch->wider ? patch->wider->mips : 0);
     mip = fmin(mip, most);
     const int    k = (int)mip;
-    const double s = exp2(-k), fine = mip_at(patch, k, x * s, y * s);
+    const double fine = mip_at(patch, k, x_px, y_px);
     if (!(mip > k) || k + 1 > most) return fine;
-    const double coarse = mip_at(patch, k + 1, 0.5 * x * s, 0.5 * y * s);
-    return fine + (mip - k) * (coarse - fine);
+    return fine + (mip - k) * (mip_at(patch, k + 1, x_px, y_px) - fine);
 }

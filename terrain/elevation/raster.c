@@ -353,7 +353,9 @@ static Status add_folder(RasterSet *set, const char *path, const char *key)
 static int finer_first(const void *a, const void *b)
 {
     const Raster *p = a, *q = b;
-    const double  x = fmax(p->posting_m[0], p->posting_m[1]), y = fmax(q->posting_m[0], q->posting_m[1]);
+    /* within a hundredth they are the same: a posting in degrees changes along the meridian */
+    const double x = rint(100 * log(fmax(p->posting_m[0], p->posting_m[1]))),
+                 y = rint(100 * log(fmax(q->posting_m[0], q->posting_m[1])));
     if (x != y) return x < y ? -1 : 1;
     return p->order < q->order ? -1 : p->order > q->order;
 }

@@ -24,7 +24,7 @@ static const struct Row {
     {"cover-table", LIST, TEXT_AT(cover_table), 0, 0, 0, "worldcover, nlcd, fbfm40, or a CSV"},
     {"geoid", LIST, TEXT_AT(geoid), 0, 0, 0, "a file in PROJ's .gtx form"},
     {"vertical", CHOICE, TEXT_AT(vertical), 0, 0, ELEVATION_BY_FILE, "auto, geoid or ellipsoid"},
-    {"spacing", NUMBER, TEXT_AT(spacing_m), 0.05, 1000, 0, "metres in 0.05 .. 1000"},
+    {"spacing", NUMBER, TEXT_AT(spacing_m), 0.06, 1000, 0, "metres in 0.06 .. 1000"},
     {"origin", PAIR, TEXT_AT(origin_deg), -360, 360, NAN, "LAT,LON: degrees in -90 .. 90 and -360 .. 360"},
     {"size", SIZE, TEXT_AT(size_km), 0.01, 1000, 0, "KMxKM, east by north, each in 0.01 .. 1000"},
     {"horizon", NUMBER, TEXT_AT(horizon_km), 1, 400, 100, "kilometres in 1 .. 400"},

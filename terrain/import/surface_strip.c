@@ -109,7 +109,7 @@ static void take_window(void *user, int worker, int task)
         if (rgb) memcpy(rgb + 3 * to, w->rgb + 3 * from, 3 * (size_t)nx);
     }
     const SurfaceModel model = {.nx = nx, .ny = ny, .cell_m = w->level.spacing_m, .surface_m = surface_m,
-                                .bare_m = bare_in_m, .rgb = rgb};
+                                .bare_m = bare_in_m, .rgb = rgb, .column = i0, .row = w->r0};
     w->status[task] = surface_take_apart(&parts, &model);
     if (w->status[task] != STATUS_OK) goto done;
     w->crown[task] = malloc(((size_t)parts.crown_count + 1) * sizeof **w->crown);

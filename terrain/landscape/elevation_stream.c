@@ -78,7 +78,7 @@ void elevation_stream_level(StreamLevel *out, const ElevationStream *stream, int
 }
 
 /* What the strip needs of one grid. Where that is as coarse as the levels around have it, theirs is used. */
-static Status read_patch(View *view, bool *borrowed, const ElevationStream *s, int grid, bool whole)
+static Status read_patch(View *view, bool *borrowed, const ElevationStream *s, int grid)
 {
     const Patch *wide = &s->wide.patch[grid];
     PatchWindow  w;
@@ -89,13 +89,11 @@ static Status read_patch(View *view, bool *borrowed, const ElevationStream *s, i
         *borrowed         = true;
         return STATUS_OK;
     }
-    if (!whole) { /* voids are filled alike from strip to strip */
-        w.x0 -= margin_px * w.factor;
-        w.y0 -= margin_px * w.factor;
-        w.x1 += margin_px * w.factor;
-        w.y1 += margin_px * w.factor;
-        w.wider = wide;
-    }
+    w.x0 -= margin_px * w.factor; /* voids are filled alike from strip to strip */
+    w.y0 -= margin_px * w.factor;
+    w.x1 += margin_px * w.factor;
+    w.y1 += margin_px * w.factor;
+    w.wider = wide;
     const PatchSource source = elevation_import_source(&s->m, grid);
     return patches_read(&view->patch[grid], &w, 1, &source);
 }
@@ -151,7 +149,7 @@ Status elevation_stream_heights(ElevationStream *s, int row0, int rows, float *h
     const int  ny = m->level[0].z.ny;
     Status     status = view_create(&view, m, &m->level[0].z, row0, rows);
     for (int grid = 0; grid < m->grids && status == STATUS_OK; grid++)
-        status = read_patch(&view, &borrowed[grid], s, grid, rows == ny);
+        status = read_patch(&view, &borrowed[grid], s, grid);
     if (status == STATUS_OK) view_heights(h_m, &view, m);
     if (status == STATUS_OK && from_file) mark(from_file, &view, m);
     const Patch *patch = &view.patch[m->main];
