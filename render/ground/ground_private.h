@@ -116,8 +116,8 @@ static inline void ground_cell_posts(int32_t z[4], const GroundLevel *g, int i, 
         return;
     }
     const ElevationTile of = g->tile[tile];
-    z[0] = of.base + (sw << of.shift), z[1] = of.base + (se << of.shift);
-    z[2] = of.base + (nw << of.shift), z[3] = of.base + (ne << of.shift);
+    z[0] = elevation_of_tile(of, sw), z[1] = elevation_of_tile(of, se);
+    z[2] = elevation_of_tile(of, nw), z[3] = elevation_of_tile(of, ne);
 }
 
 /* Highest post of node (i, j) of pyramid level k, rounded up; k >= elevation_pyramid_first. */

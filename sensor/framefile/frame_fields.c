@@ -4,6 +4,7 @@
 
 #include "entities/effects/effects_history.h"
 #include "sensor/framefile/ground_cutout.h"
+#include "terrain/landscape/photo.h"
 
 #include <stdlib.h>
 
@@ -230,6 +231,8 @@ static void grid_values(Fields *f, const GroundCutout *kept, void **values, int 
     }
     *values = fields_good(f) ? arena_alloc(f->arena, (size_t)nx * (size_t)ny, (size_t)octets) : NULL;
     if (fields_good(f) && !*values) f->no_memory = true;
+    if (*values && octets == (int)sizeof(PhotoBlock)) /* omitted: not covered */
+        for (size_t n = 0; n < (size_t)nx * (size_t)ny; n++) ((PhotoBlock *)*values)[n].index = 0xffffffff;
     if (*values) cutout_get(f->from, &grid, *values);
 }
 
@@ -334,6 +337,7 @@ static void photo_fields(Fields *f, Photo *p, const GroundCutout *kept)
 {
     size_t pixels = 0;
     field_int(f, "photograph", &p->mips, 0, ground_image_mips);
+    if (f->version < 2 && p->mips > 0) f->fault = "photograph of version 1";
     if (!fields_good(f) || p->mips == 0) return;
     field_real(f, "place of the photograph", &p->x0_m, -local_m, local_m);
     field_real(f, "place of the photograph", &p->y0_m, -local_m, local_m);
@@ -343,7 +347,9 @@ static void photo_fields(Fields *f, Photo *p, const GroundCutout *kept)
         field_int(f, "pixels of the photograph", &p->nx[k], 1, 65536);
         field_int(f, "pixels of the photograph", &p->ny[k], 1, 65536);
         limit(f, "pixels of the photograph", &pixels, p->nx[k], p->ny[k], landscape_parts_pixels);
-        grid_values(f, kept, (void **)&p->rgba[k], p->nx[k], p->ny[k], 4, p->x0_m, p->y0_m, ldexp(p->cell_m, k));
+        const int across = (int)photo_blocks_across(p->nx[k]), up = (int)photo_blocks_across(p->ny[k]);
+        grid_values(f, kept, (void **)&p->block[k], across, up, sizeof **p->block, p->x0_m, p->y0_m,
+                    ldexp(p->cell_m, k + 2));
     }
 }
 
@@ -367,6 +373,12 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
         evidence_fields(f, &g->said);
         return;
     }
+    if (!g->store) g->store = "";
+    if (f->version >= 2) {
+        field_text(f, "terrain store", &g->store, 4096);
+        field_u64(f, &g->store_content);
+    }
+    if (!fields_good(f) || (g->store && *g->store)) return;
     field_u64(f, &g->cover_seed);
     field_real(f, "geoid", &g->geoid_m, -1e4, 1e4);
     field_real(f, "treeline", &g->treeline_m, -1e5, 1e5);

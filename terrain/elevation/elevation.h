@@ -145,11 +145,17 @@ static inline size_t elevation_stored_index(const ElevationLevel *level, int i, 
            (size_t)(i - tile_i * elevation_tile_cells);
 }
 
+/* base + (stored << shift), defined for any tile: one of a mapped file may be damaged. */
+static inline int32_t elevation_of_tile(ElevationTile tile, uint16_t stored)
+{
+    return (int32_t)((uint32_t)tile.base + ((uint32_t)stored << (tile.shift & 31)));
+}
+
 /* Post (i, j) in whole steps, and in metres. */
 static inline int32_t elevation_post(const ElevationLevel *level, int i, int j)
 {
-    const ElevationTile tile = level->tile[elevation_tile_index(level, i, j)];
-    return tile.base + ((int32_t)level->stored[elevation_stored_index(level, i, j)] << tile.shift);
+    return elevation_of_tile(level->tile[elevation_tile_index(level, i, j)],
+                             level->stored[elevation_stored_index(level, i, j)]);
 }
 
 static inline double elevation_post_m(const ElevationLevel *level, int i, int j)
@@ -166,7 +172,7 @@ static inline void elevation_cell(int32_t post[4], const ElevationLevel *level, 
     const uint16_t *south = level->stored + tile * elevation_tile_posts +
                             (size_t)(j % elevation_tile_cells * elevation_tile_side + i % elevation_tile_cells);
     for (int k = 0; k < 4; k++)
-        post[k] = of.base + ((int32_t)south[k % 2 + k / 2 * elevation_tile_side] << of.shift);
+        post[k] = elevation_of_tile(of, south[k % 2 + k / 2 * elevation_tile_side]);
 }
 
 /* Highest post of node (i, j) of pyramid level k, as rounded. */

@@ -4,6 +4,7 @@
 #include "terrain/landscape/landscape_eight_private.h"
 
 #include <stdlib.h>
+#include <sys/mman.h>
 
 /* ---- slope ---------------------------------------------------------------------------------- */
 
@@ -369,5 +370,7 @@ void cover_free(Cover *cover)
     cover_grid_free(cover->grid);
     photo_free(&cover->photo);
     coast_destroy(&cover->coast);
+    if (cover->store.map) munmap(cover->store.map, cover->store.octets);
+    free(cover->store.path);
     free(cover);
 }

@@ -220,7 +220,11 @@ typedef struct Cover {
     CoverGrid grid[cover_windows];
     Photo     photo;
     Coast     coast;
+    LandscapeMap store;           /* grid, photo and the elevation borrow from it */
 } Cover;
+
+/* Height above the sea up to which trees grow. */
+double landscape_treeline_m(double lat_rad);
 
 /* Means of the photograph over each class, once the classes are known. */
 void cover_measure_photo(Landscape *landscape);

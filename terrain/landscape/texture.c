@@ -67,9 +67,8 @@ static F32x8 photo_fineness(const Photo *photo, const double x_m[8], const doubl
 {
     float seen_m[8];
     for (int k = 0; k < 8; k++) {
-        double linear[photo_channels];
         seen_m[k] = INFINITY;
-        if (photo->mips > 0 && lanes >> k & 1 && photo_at(linear, photo, x_m[k], y_m[k], photo->cell_m) > 0.5)
+        if (photo->mips > 0 && lanes >> k & 1 && photo_cover_at(photo, x_m[k], y_m[k]) > 0.5)
             seen_m[k] = (float)(2 * photo->cell_m);
     }
     return f32x8_load(seen_m);

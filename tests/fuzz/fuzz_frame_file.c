@@ -19,7 +19,8 @@ static void small_file(ByteSink *out, bool invented)
 {
     static uint16_t stored[elevation_tile_posts];
     static ElevationTile tile[1] = {{-elevation_base_unit, 2}};
-    static uint8_t  cover[16 * 16], rgba[3][16];
+    static uint8_t  cover[16 * 16];
+    static PhotoBlock block[2];
     static NodePose node[2];
     static SnapshotEntity entity[2];
     static EffectPuff puff;
@@ -58,8 +59,9 @@ static void small_file(ByteSink *out, bool invented)
         if (elevation_level_describe(&level[1], 9, 9, -32, -32, 8, 0, 0.1) != STATUS_OK) abort();
         level[0].tile = level[1].tile = tile, level[0].stored = level[1].stored = stored;
         level[1].plain = false;
-        file.ground.cover[0] = (CoverGrid){16, 16, -8, -8, 1, cover};
-        file.ground.photo    = (Photo){.mips = 2, .nx = {2, 1}, .ny = {2, 1}, .cell_m = 8, .rgba = {rgba[0], rgba[1]}};
+        file.ground.cover[0] = (CoverGrid){.nx = 16, .ny = 16, .x0_m = -8, .y0_m = -8, .cell_m = 1, .surface = cover};
+        file.ground.photo    = (Photo){.mips = 2, .nx = {2, 1}, .ny = {2, 1}, .cell_m = 8,
+                                       .block = {&block[0], &block[1]}};
     }
     if (frame_file_pack(out, &file, NULL) != STATUS_OK) abort();
 }
