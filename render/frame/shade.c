@@ -102,8 +102,8 @@ static void resolve_detail(Shader *shader, const ShadeScene *scene, const Sample
     if (landscape && scene->world->detail) {
         const GroundDetail out = {.albedo = optical ? pattern : NULL, .warmth_k = thermal ? shader->warmth_k : NULL,
                                   .radar = s->radar ? shader->radar : NULL,
-                                  .slope_x = s->channels & ~(1u << AIR_LWIR) ? shader->slope_x : NULL,
-                                  .slope_y = s->channels & ~(1u << AIR_LWIR) ? shader->slope_y : NULL};
+                                  .slope_x = s->channels ? shader->slope_x : NULL,
+                                  .slope_y = s->channels ? shader->slope_y : NULL};
         landscape_details(&out, scene->world->detail, landscape, hits->count, hits->surface, hits->p_enu[0],
                           hits->p_enu[1], &(GroundFootprint){shader->across_m, shader->along_m});
         for (int i = 0; i < hits->count && out.slope_x; i++)
