@@ -132,10 +132,11 @@ static double passed(const Kernel *kernel, double across, double along)
 /* Width of an octave's covariance, as a Gaussian's deviation, in cells. */
 static const double octave_width = 0.57;
 
-/* The two octaves as smooth as octave n is after the mean over a square of `wide`: alike at half the square's side. */
+/* The two octaves as smooth as octave n is after the mean over a square of `wide`: alike at 0.8 of its side (nearer, the
+ * next pixel is too much alike; further, what an eye sees that moves by a part of a pixel changes too much). */
 static void smoother(Transfer *out, int n, double share, double wide_m)
 {
-    const double own_m = octave_width * detail_octave_m[n], d_m = 0.5 * wide_m;
+    const double own_m = octave_width * detail_octave_m[n], d_m = 0.8 * wide_m;
     const double width_m = sqrt(own_m * own_m + wide_m * wide_m / 6);
     int          m = n;
     while (m < detail_octaves - 1 && octave_width * detail_octave_m[m + 1] <= width_m) m++;
@@ -162,6 +163,7 @@ static void transfer_of(Transfer *out, const Kernel *kernel, int size, int elong
         }
         const double cells = across_m / detail_octave_m[n];
         const double share = size == detail_sizes - 1 ? 0 : passed(kernel, cells, cells * ratio);
+        /* octaves have no direction: a longer footprint makes them somewhat smoother also across it */
         smoother(out, n, share, across_m * pow(ratio, 0.33));
     }
 }
