@@ -63,7 +63,7 @@ static double bump(double t)
 
 static void plain_octave(double value[2], int n, double x, double y)
 {
-    const double   turn = n * pi_rad * (3 - sqrt(5)), cell_m = 0.08 * pow(2.5, n);
+    const double   turn = (n + 1) * pi_rad * (3 - sqrt(5)), cell_m = 0.08 * pow(2.5, n);
     const double   u = (x * cos(turn) + y * sin(turn)) / cell_m, v = (y * cos(turn) - x * sin(turn)) / cell_m;
     const double   i = floor(u), j = floor(v);
     const uint32_t key = (uint32_t)(mixed(20 + (uint64_t)n) >> 32);
