@@ -224,6 +224,8 @@ static const Setting keys[] = {
      "fit the terrain "
      "to them; auto: clamp on real terrain; fit synthetic terrain and clamp the entities whose positions are "
      "inconsistent with it"},
+    {"terrain.detail", SETTING_TEXT, AT(terrain.detail), 0, 0, "on|off", "",
+     "noise of the ground within each surface class (etc/ground_detail.csv); off: classes of one value"},
     {"observer.range_m", SETTING_DOUBLE, AT(observer.range_m), 10, 100000, NULL, "m",
      "ground distance of the stand-off observer from its aim point"},
     {"observer.height_m", SETTING_DOUBLE, AT(observer.height_m), 1, 20000, NULL, "m",
@@ -339,6 +341,7 @@ Config config_default(void)
     c.terrain.relief_m              = 15;
     strcpy(c.terrain.vertical, "auto");
     strcpy(c.terrain.ground, "auto");
+    strcpy(c.terrain.detail, "on");
     c.observer.range_m              = 600;
     c.observer.height_m             = 250;
     c.observer.rate_dps             = 2;

@@ -103,6 +103,7 @@ typedef struct Config {
         int    cover_band;
         char   orthophoto[config_paths_size];
         char   ground[8];
+        char   detail[8];          /* on or off: noise of the ground */
     } terrain;
     struct {
         double range_m, height_m, rate_dps; /* the stand-off observer */

@@ -1,5 +1,5 @@
 /* terrain/landscape/landscape.h: the terrain: from files (terrain/landscape/landscape_import.h), or without files a
- * synthetic terrain fitted to the exercise. Surface, texture and albedo of both are queried here.
+ * synthetic terrain fitted to the exercise. Surface and albedo of both are queried here.
  *
  * The synthetic terrain:
  *
@@ -102,14 +102,9 @@ double landscape_taper_m(const LandscapeConfig *config);
  * many positions at once a tenth of the time each, and the same results. */
 SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m);
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m);
-/* Relative brightness of the ground's own texture, mean 1, about 0.6 .. 1.4, band-limited to features of
- * footprint_m and larger so that it neither aliases nor shimmers. */
-double landscape_texture(const Landscape *landscape, SurfaceClass surface, double x_m, double y_m, double footprint_m);
-void landscape_textures(float *texture, const Landscape *landscape, int count, const uint8_t *surface,
-                        const double *x_m, const double *y_m, const float *footprint_m);
 /* Where there is a photograph: its brightness relative to its own mean over that class, a channel, averaged over the
- * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. Texture
- * then adds only what is finer than the photograph's pixels. factor: red, green, blue, and all three together. */
+ * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. The
+ * detail (terrain/landscape/detail.h) then adds only what is finer than the photograph's pixels. factor: red, green, blue, and all three together. */
 bool   landscape_has_photo(const Landscape *landscape);
 enum { albedo_red, albedo_green, albedo_blue, albedo_all, albedo_channels };
 void   landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,

@@ -10,7 +10,8 @@
  * nearest_fix.c      spatial index of points
  * plots.c            synthetic fields
  * cover.c            land cover: tracks, hedges, woods; land cover from files
- * texture.c          brightness of the ground; brightness from photographs */
+ * texture.c          rows of fields; brightness from photographs
+ * detail.c           noise of the ground; detail_table.c: its statistics */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 

@@ -1,6 +1,7 @@
-/* sensor/bench/terrain/precision_land.c: the ground as posts, and its texture under a pixel. */
+/* sensor/bench/terrain/precision_land.c: the ground as posts, and the weakest octave of its detail. */
 #include "sensor/bench/terrain/rows.h"
 
+#include "terrain/landscape/detail.h"
 #include "terrain/landscape/quick_landscape.h"
 #include "sensor/bench/turn.h"
 
@@ -282,70 +283,69 @@ static Status knob_store(Bench *bench)
     return status;
 }
 
-/* ---- texture under a pixel ------------------------------------------------------------------------- */
+/* ---- detail: weakest octave ------------------------------------------------------------------------ */
 
-enum { spots = 192, most_side = 48 };
+enum { spots = 1024 };
 
-typedef struct TextureSet {
-    const Landscape *land;
-    int              side; /* places a side of the footprint; 0: by its wavelengths */
-    double           x_m[spots], y_m[spots];
-    float            footprint_m[spots], out[spots];
-} TextureSet;
+typedef struct DetailSet {
+    const Landscape   *land;
+    const DetailTable *table;
+    uint8_t            class[spots];
+    double             x_m[spots], y_m[spots];
+    float              across_m[spots], along_m[spots], albedo[spots], warmth_k[spots], slope_x[spots], slope_y[spots];
+} DetailSet;
 
-static void ask_textures(void *user)
+static void ask_details(void *user)
 {
-    static double   x_m[most_side * most_side], y_m[most_side * most_side];
-    static float    none[most_side * most_side], fine[most_side * most_side];
-    static uint8_t  class[most_side * most_side];
-    TextureSet     *s = user;
-    memset(class, SURFACE_GRASS, sizeof class);
-    if (s->side < 2)
-        landscape_textures(s->out, s->land, spots, class, s->x_m, s->y_m, s->side == 0 ? s->footprint_m : none);
-    for (int i = 0; s->side > 1 && i < spots; i++) {
-        double sum = 0;
-        for (int k = 0; k < s->side * s->side; k++) {
-            x_m[k] = s->x_m[i] + (double)s->footprint_m[i] * ((k % s->side + 0.5) / s->side - 0.5);
-            y_m[k] = s->y_m[i] + (double)s->footprint_m[i] * ((k / s->side + 0.5) / s->side - 0.5);
-        }
-        landscape_textures(fine, s->land, s->side * s->side, class, x_m, y_m, none);
-        for (int k = 0; k < s->side * s->side; k++) sum += (double)fine[k];
-        s->out[i] = (float)(sum / (s->side * s->side));
-    }
-    bench_keep(s->out);
+    DetailSet         *s = user;
+    const GroundDetail out = {.albedo = s->albedo, .warmth_k = s->warmth_k, .slope_x = s->slope_x, .slope_y = s->slope_y};
+    landscape_details(&out, s->table, s->land, spots, s->class, s->x_m, s->y_m,
+                      &(GroundFootprint){s->across_m, s->along_m});
+    bench_keep(s->albedo);
 }
 
-static void knob_texture(Bench *bench, const Landscape *land)
+static double rms_percent(const float *a, const float *b)
 {
-    enum { settings = 5 };
-    static const char *const name[settings] =
-        {"unfiltered", "2 x 2 places", "4 x 4 places", "8 x 8 places", "wavelengths faded out"};
-    static const int  side[settings] = {1, 2, 4, 8, 0};
-    static TextureSet set[settings], fine;
-    BenchWork         work[settings];
-    BenchSetting        point[settings] = {0};
-    for (int k = -1; k < settings; k++) {
-        TextureSet *s = k < 0 ? &fine : &set[k];
-        s->land = land, s->side = k < 0 ? (bench_quick(bench) ? 24 : most_side) : side[k];
+    double square = 0;
+    for (int i = 0; i < spots; i++) square += ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]);
+    return 100 * sqrt(square / spots);
+}
+
+/* Rows of a picture: eight neighbours share their footprint. */
+static Status tunable_detail(Bench *bench, const Landscape *land)
+{
+    enum { settings = 6 };
+    static const char *const name[settings] = {"every octave", "0.001", "0.005", "0.02", "0.1", "none"};
+    static const double      cut_off[settings] = {0, 0.001, detail_cut_off, 0.02, 0.1, 2};
+    static DetailSet         set[settings];
+    DetailTable             *table[settings] = {NULL};
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    char                     path[512];
+    Status status = etc_path(path, sizeof path, "ground_detail.csv") ? STATUS_OK : STATUS_BAD_VALUE;
+    for (int k = 0; k < settings && status == STATUS_OK; k++) {
+        DetailSet *s = &set[k];
+        status = detail_table_open(&table[k], path, cut_off[k]);
+        s->land = land, s->table = table[k];
         for (int i = 0; i < spots; i++) {
-            s->x_m[i] = 800 * (random_uniform(43, 0, 0, (uint64_t)i) - 0.5);
-            s->y_m[i] = 800 * (random_uniform(43, 1, 0, (uint64_t)i) - 0.5);
-            s->footprint_m[i] = (float)(0.1 * pow(40, random_uniform(43, 2, 0, (uint64_t)i)));
+            const double wide_m = 0.03 * pow(200, random_uniform(43, 2, 0, (uint64_t)(i / 64)));
+            s->class[i]    = SURFACE_GRASS;
+            s->x_m[i]      = 800 * (random_uniform(43, 0, 0, (uint64_t)(i / 64)) - 0.5) + wide_m * (i % 64);
+            s->y_m[i]      = 800 * (random_uniform(43, 1, 0, (uint64_t)(i / 64)) - 0.5);
+            s->across_m[i] = (float)wide_m;
+            s->along_m[i]  = (float)(wide_m * (1 + 9 * random_uniform(43, 3, 0, (uint64_t)(i / 64))));
         }
-        ask_textures(s);
-        if (k < 0) continue;
-        double square = 0;
-        for (int i = 0; i < spots; i++) square += ((double)s->out[i] - (double)fine.out[i])
-            * ((double)s->out[i] - (double)fine.out[i]);
-        work[k]  = (BenchWork){ask_textures, s, spots};
-        point[k] = (BenchSetting){.setting = name[k], .error = 100 * sqrt(square / spots),
-                                .is_default = k == settings - 1};
+        if (status == STATUS_OK) ask_details(s);
+        work[k]  = (BenchWork){ask_details, s, spots};
+        point[k] = (BenchSetting){.setting = name[k], .error = rms_percent(s->albedo, set[0].albedo),
+                                  .is_default = cut_off[k] == detail_cut_off};
     }
-    bench_tunable(bench, &(BenchTunable){"texture under a pixel", "terrain/landscape/texture.c",
-                                   "a pixel of 0.1 .. 4 m on grass", "%",
-                                   bench_quick(bench) ? "rms of brightness, 24 x 24 places"
-                                       : "rms of brightness, 48 x 48 places", 4},
-               work, point, settings);
+    if (status == STATUS_OK)
+        bench_tunable(bench, &(BenchTunable){"detail: weakest octave", "terrain/landscape/detail_table.c",
+                                       "a pixel of 0.03 .. 6 m on grass", "%", "rms of brightness, every octave", 2},
+                   work, point, settings);
+    for (int k = 0; k < settings; k++) detail_table_close(table[k]);
+    return status;
 }
 
 Status bench_precision_land(Bench *bench)
@@ -362,8 +362,14 @@ Status bench_precision_land(Bench *bench)
     if (status == STATUS_OK) status = landscape_create(&land, &config, &frame, NULL, 0, NULL, 0);
     if (status == STATUS_OK) {
         knob_posts(bench);
+<<<<<<< HEAD
         status = knob_store(bench);
         knob_texture(bench, &land);
+=======
+        status = tunable_detail(bench, &land);
+    } else {
+        log_error("bench: precision: ground: %s", status_name(status));
+>>>>>>> w/detail
     }
     if (status != STATUS_OK) log_error("bench: precision: ground: %s", status_name(status));
     landscape_destroy(&land);
