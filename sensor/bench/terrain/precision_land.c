@@ -362,14 +362,8 @@ Status bench_precision_land(Bench *bench)
     if (status == STATUS_OK) status = landscape_create(&land, &config, &frame, NULL, 0, NULL, 0);
     if (status == STATUS_OK) {
         knob_posts(bench);
-<<<<<<< HEAD
         status = knob_store(bench);
-        knob_texture(bench, &land);
-=======
-        status = tunable_detail(bench, &land);
-    } else {
-        log_error("bench: precision: ground: %s", status_name(status));
->>>>>>> w/detail
+        if (status == STATUS_OK) status = tunable_detail(bench, &land);
     }
     if (status != STATUS_OK) log_error("bench: precision: ground: %s", status_name(status));
     landscape_destroy(&land);
