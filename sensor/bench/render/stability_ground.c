@@ -26,8 +26,8 @@ enum { shape_rough, shape_flat, shape_spikes, shape_cliffs, shape_plane, shapes,
 static int32_t tile_post(int shape, int i, int j, Dice *dice)
 {
     const int tile = i / elevation_tile_cells + 2 * (j / elevation_tile_cells);
-    if (shape >= shape_walls) return 8192 + 256000 * ((i / 16 + j / 32) % 2) + (tile == 3 ? 40000 * ((i + j) % 5) : i);
-    return (int32_t)dice_uniform(dice, 0, 1 << (8 + 4 * tile)) + 100000 * tile;
+    if (shape >= shape_walls) return 8192 + 256000 * ((i / 16 + j / 32) % 2) + (tile == 3 ? 4000 * ((i + j) % 5) : i);
+    return (int32_t)dice_uniform(dice, 0, 1 << (8 + 3 * tile)) + 100000 * tile;
 }
 
 /* Of one range, spacings and steps are powers of two: posts are exact, and so are rays along them. */
