@@ -64,9 +64,9 @@ for option in --surface --cover --cover-table --photo --canopy-height --canopy-c
 done
 
 # Ctrl-C: what was there stays, and no half file
-"$pitviper" terrain import "$tmp/west.asc" -o "$tmp/a.store" --overwrite --spacing 0.06 --size 0.5x0.5 --horizon 2 --threads 1 >"$tmp/stdout" 2>"$tmp/stderr" &
+"$pitviper" terrain import "$tmp/west.asc" -o "$tmp/a.store" --overwrite --spacing 0.06 --size 0.25x0.25 --horizon 2 --threads 1 >"$tmp/stdout" 2>"$tmp/stderr" &
 pid=$!
-sleep 1
+while kill -0 $pid 2>/dev/null && [ -z "$(ls "$tmp" | grep '\.tmp$')" ]; do sleep 0.02; done
 kill -INT $pid 2>/dev/null
 wait $pid
 code=$?

@@ -343,5 +343,6 @@ Status terrain_bench_stability_ground(Bench *bench)
     refusals(bench);
     Status status = grids(bench);
     if (status == STATUS_OK) status = imports(bench);
+    if (status == STATUS_OK) status = terrain_bench_stability_import(bench);
     return status;
 }
