@@ -156,17 +156,12 @@ static int draw_tables(Budget *b, const double mean[picture_plane_count])
 
 /* ---- the ground at every second post ----------------------------------------------------------- */
 
-static double post_m(const ElevationLevel *l, int i, int j)
-{
-    return l->z0_m + l->step_m * l->post[(size_t)j * (size_t)l->nx + (size_t)i];
-}
-
 /* A cell of `stride` posts: height at (x, y), and normal. */
 static double cell_height(double n_enu[3], const ElevationLevel *l, double fx, double fy, int i, int j, int stride)
 {
     const double u = (fx - i) / stride, v = (fy - j) / stride;
-    const double sw = post_m(l, i, j), se = post_m(l, i + stride, j), nw = post_m(l, i, j + stride),
-                 ne = post_m(l, i + stride, j + stride);
+    const double sw = elevation_post_m(l, i, j), se = elevation_post_m(l, i + stride, j);
+    const double nw = elevation_post_m(l, i, j + stride), ne = elevation_post_m(l, i + stride, j + stride);
     const double du = u >= v ? se - sw : ne - nw, dv = u >= v ? ne - se : nw - sw, s = l->spacing_m * stride;
     const double length = sqrt(du * du + dv * dv + s * s);
     n_enu[0] = -du / length, n_enu[1] = -dv / length, n_enu[2] = s / length;

@@ -97,6 +97,7 @@ typedef struct Config {
     } weather;
     struct {
         double relief_m, spacing_m;
+        char   store[1024];        /* a terrain store; empty: none */
         char   elevation[config_paths_size], vertical[16], geoid[1024];
         char   cover[config_paths_size], cover_table[1024];
         int    cover_band;

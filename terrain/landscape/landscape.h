@@ -63,6 +63,14 @@ typedef struct Landscape {
     void           *cover;        /* private; surface and texture need it */
 } Landscape;
 
+/* The mapped file of a landscape from a terrain store (terrain/store/store.h). */
+typedef struct LandscapeMap {
+    char    *path;    /* absolute; NULL: of no store */
+    void    *map;
+    size_t   octets;
+    uint64_t content; /* hash of the store */
+} LandscapeMap;
+
 LandscapeConfig landscape_default_config(void);
 /* 0.2 s with nothing to fit, 0.7 s with 40 000 fixes and 23 000 lines (one core). Level 0 grows beyond half_width_m
  * to hold the fixes as long as it stays below 16 M posts; fixes further out are fitted on coarser levels. Of two fixes

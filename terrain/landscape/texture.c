@@ -43,9 +43,8 @@ void texture_photo_cells(float cell_m[8], const Landscape *landscape, const doub
 {
     const Photo *photo = &((const Cover *)landscape->cover)->photo;
     for (int k = 0; k < 8; k++) {
-        double linear[photo_channels];
         cell_m[k] = 0;
-        if (photo->mips > 0 && lanes >> k & 1 && photo_at(linear, photo, x_m[k], y_m[k], photo->cell_m) > 0.5)
+        if (photo->mips > 0 && lanes >> k & 1 && photo_cover_at(photo, x_m[k], y_m[k]) > 0.5)
             cell_m[k] = (float)photo->cell_m;
     }
 }

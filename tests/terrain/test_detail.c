@@ -233,8 +233,8 @@ static void filtered_is_the_mean_over_the_footprint(void **state)
                     of[1][p - 1] += ((double)quick[f][0][n] - b.mean) * ((double)quick[f][p][n] - b.mean) / (places *
                                                                                                              b.variance);
                 }
-            print_message("class %d %.2f m x %g field %d: variance %.3f, skew %.2f for %.2f, across %.2f for %.2f,
-                          along "
+            print_message("class %d %.2f m x %g field %d: variance %.3f, skew %.2f for %.2f, across %.2f for %.2f, "
+                          "along "
                           "%.2f for %.2f\n", tried[t].class, tried[t].across_m, tried[t].elongation, f,
                           b.variance / a.variance, b.skew, a.skew, of[1][0], of[0][0], of[1][1], of[0][1]);
             CHECK_NEAR(b.variance / a.variance, 1, 0.10);

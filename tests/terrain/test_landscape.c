@@ -75,7 +75,7 @@ static void same_input_same_bits(void **state)
     for (int k = 0; k < 4; k++) {
         const ElevationLevel *p = &a.elevation.level[k], *q = &b.elevation.level[k];
         CHECK(p->nx == q->nx && p->ny == q->ny && p->z0_m == q->z0_m && p->step_m == q->step_m);
-        CHECK(memcmp(p->post, q->post, (size_t)p->nx * p->ny * sizeof *p->post) == 0);
+        CHECK(memcmp(p->stored, q->stored, elevation_level_stored(p) * sizeof *p->stored) == 0);
     }
     for (int n = 0; n < 2000; n++) {
         const double x = 3000 * random_uniform(1, 5, 0, n), y = 3000 * random_uniform(1, 6, 0, n);
@@ -119,7 +119,7 @@ static void posts_follow_the_curved_earth(void **state)
                 const int i = (int)(random_uniform(n, 1, (uint32_t)k, m) * level->nx);
                 const int j = (int)(random_uniform(n, 2, (uint32_t)k, m) * level->ny);
                 const double p_enu[3] = {level->x0_m + i * level->spacing_m, level->y0_m + j * level->spacing_m,
-                                         level->z0_m + level->step_m * level->post[(size_t)j * level->nx + i]};
+                                         elevation_post_m(level, i, j)};
                 double       p_ecef[3];
                 Geodetic     g;
                 ecef_from_enu(p_ecef, &frame, p_enu);

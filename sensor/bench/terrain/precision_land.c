@@ -55,8 +55,7 @@ static Status thinned(Elevation *out, const ElevationLevel *from, int step)
     if (status != STATUS_OK) return status;
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++)
-            out->level[0].post[(size_t)j * (size_t)nx + (size_t)i] =
-                from->post[(size_t)j * step * (size_t)from->nx + (size_t)i * step];
+            elevation_set_post(&out->level[0], i, j, elevation_post(from, i * step, j * step));
     elevation_build_pyramids(out);
     return STATUS_OK;
 }
@@ -199,6 +198,91 @@ static void knob_posts(Bench *bench)
                                    "largest, double, hills of 80 m", 0.002}, work, point, settings);
 }
 
+/* ---- posts of terrain from files -------------------------------------------------------------------- */
+
+enum { mountain_posts = 513, mountain_asks = 4096 };
+
+typedef struct StoreSet {
+    Elevation    ground;
+    const float *narrow; /* or these */
+    double       at[mountain_asks][2], z_m[mountain_asks];
+} StoreSet;
+
+/* 1.4 km of relief over 2 km of posts 4 m apart; up to some 150 m in a tile of 256 m. */
+static double mountain_height(double i, double j)
+{
+    return 1500 + 600 * sin(i / 170 - 1.4) * cos(j / 240) + 60 * sin(i / 23.3 + 1) * sin(j / 31.9)
+        + 2 * cos(i / 3.3 - j / 4.1);
+}
+
+static void ask_store(void *user)
+{
+    StoreSet *s = user;
+    for (int n = 0; n < mountain_asks; n++) {
+        if (!s->narrow) {
+            s->z_m[n] = elevation_height(&s->ground, s->at[n][0], s->at[n][1], NULL);
+            continue;
+        }
+        const double x = 0.25 * s->at[n][0], y = 0.25 * s->at[n][1];
+        const int    i = (int)x, j = (int)y;
+        const float *z = s->narrow + j * mountain_posts + i;
+        const double u = x - i, v = y - j, sw = (double)z[0], se = (double)z[1], nw = (double)z[mountain_posts],
+                     ne = (double)z[mountain_posts + 1];
+        s->z_m[n] = u >= v ? sw + u * (se - sw) + v * (ne - se) : sw + u * (ne - nw) + v * (nw - sw);
+    }
+    bench_keep(s->z_m);
+}
+
+/* One range for all posts as before tiles, or a step that tiles shift as far as their own heights need. */
+static Status knob_store(Bench *bench)
+{
+    enum { settings = 6 };
+    static const char *const name[settings] = {"one range: 1 / 32 m", "tiles: 1 / 32 m", "tiles: 1 / 128 m",
+                                               "tiles: 1 / 512 m", "tiles: 1 / 2048 m", "floats"};
+    static const double step_m[settings] = {1 / 32.0, 1 / 32.0, 1 / 128.0, 1 / 512.0, 1 / 2048.0, 0};
+    static StoreSet     set[settings];
+    static float        narrow[mountain_posts * mountain_posts];
+    static int32_t      post[mountain_posts * mountain_posts];
+    BenchWork           work[settings];
+    BenchSetting        point[settings] = {0};
+    Status              status = STATUS_OK;
+    for (int k = 0; k < settings && status == STATUS_OK; k++) {
+        StoreSet *s = &set[k];
+        /* with one range, posts are from 0 on; else that of the origin is far below, so that tiles have bases */
+        const double z0_m = k == 0 ? 512 : -1024;
+        for (int n = 0; n < mountain_posts * mountain_posts; n++) {
+            const double z_m = mountain_height(n % mountain_posts, n / mountain_posts);
+            narrow[n] = (float)z_m;
+            if (step_m[k] > 0) post[n] = (int32_t)floor((z_m - z0_m) / step_m[k] + 0.5);
+        }
+        if (step_m[k] > 0) {
+            status = elevation_level_create(&s->ground, 0, mountain_posts, mountain_posts, 0, 0, 4, z0_m, step_m[k]);
+            if (status == STATUS_OK) status = elevation_fill(&s->ground.level[0], post);
+        } else {
+            s->narrow = narrow;
+        }
+        for (int n = 0; n < mountain_posts * mountain_posts && status == STATUS_OK; n++) {
+            const int    i = n % mountain_posts, j = n / mountain_posts;
+            const double held_m = s->narrow ? (double)narrow[n] : elevation_post_m(&s->ground.level[0], i, j);
+            bench_worst(&point[k].error, fabs(held_m - mountain_height(i, j)));
+        }
+        for (int n = 0; n < mountain_asks; n++)
+            for (int c = 0; c < 2; c++)
+                s->at[n][c] = 4 * (mountain_posts - 1.01) * random_uniform(44, (uint32_t)c, 0, (uint64_t)n);
+        work[k] = (BenchWork){ask_store, s, mountain_asks};
+        point[k].setting    = name[k];
+        point[k].is_default = k == 4;
+        point[k].bytes =
+            s->narrow ? (double)sizeof narrow : 2.0 * (double)elevation_level_stored(&s->ground.level[0]);
+    }
+    if (status == STATUS_OK)
+        bench_tunable(bench, &(BenchTunable){"posts of terrain from files", "terrain/landscape/levels_fine.c",
+                                       "a height between posts", "m", "largest, double, mountains of 1.4 km", 0.005},
+                   work, point, settings);
+    for (int k = 0; k < settings; k++) elevation_destroy(&set[k].ground);
+    return status;
+}
+
 /* ---- detail: weakest octave ------------------------------------------------------------------------ */
 
 enum { spots = 1024 };
@@ -279,10 +363,10 @@ Status bench_precision_land(Bench *bench)
     if (status == STATUS_OK) status = landscape_create(&land, &config, &frame, NULL, 0, NULL, 0);
     if (status == STATUS_OK) {
         knob_posts(bench);
-        status = tunable_detail(bench, &land);
-    } else {
-        log_error("bench: precision: ground: %s", status_name(status));
+        status = knob_store(bench);
+        if (status == STATUS_OK) status = tunable_detail(bench, &land);
     }
+    if (status != STATUS_OK) log_error("bench: precision: ground: %s", status_name(status));
     landscape_destroy(&land);
     return status;
 }
