@@ -60,12 +60,12 @@ static F32x8 air_k8(const Air *air, const Hits *hits, int first)
 }
 
 /* Ground by class, with the sun on its own slope, and the class's noise in kelvins (etc/ground_detail.csv; by day the
- * sun makes it stronger: twice that of the night at 800 W/m2, an estimate). The noise stands for all that differs within a
- * class: moisture, cover, conduction, reflectance; once heat is computed from such properties they replace it, and never
- * are both added. Darkness is therefore taken from the photograph alone, which shows what the noise does not contain: half
- * of its relative brightness becomes relative warmth (a guess), within 0.6 .. 1.4, since a white roof is six times as
- * bright as its class's mean, and by that relation would be colder than the air at noon. Eight hits at once, within 3e-5 K;
- * what is not ground becomes air. */
+ * sun makes it stronger: twice that of the night at 800 W/m2, an estimate). The noise stands for all that differs
+ * within a class: moisture, cover, conduction, reflectance; once heat is computed from such properties they replace
+ * it, and never are both added. Darkness is therefore taken from the photograph alone, which shows what the noise does
+ * not contain: half of its relative brightness becomes relative warmth (a guess), within 0.6 .. 1.4, since a white
+ * roof is six times as bright as its class's mean, and by that relation would be colder than the air at noon. Eight
+ * hits at once, within 3e-5 K; what is not ground becomes air. */
 static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, F32x8 air_k, const uint8_t surface[8],
                       const float *const n_enu[3], const float photo[8], const float warmth_k[8])
 {
@@ -79,7 +79,8 @@ static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, F32
         f32x8_fma(f32x8_max(along, f32x8_set(0)), f32x8_set(air->light.solar_direct_w_m2), level) * f32x8_set(1e-3);
     const F32x8 dark = f32x8_set(1.5) - f32x8_set(0.5) * f32x8_clamp(f32x8_load(photo), 0.6, 1.4);
     const F32x8 noise_k = f32x8_load(warmth_k) * f32x8_fma(slope_kw_m2, f32x8_set(1.25), f32x8_set(1));
-    const F32x8 above = noise_k + f32x8_fma(rise * slope_kw_m2, dark, fall * f32x8_set(-1e-2 * air->light.longwave_loss_w_m2));
+    const F32x8 above = noise_k + f32x8_fma(rise * slope_kw_m2, dark, fall * f32x8_set(-1e-2 *
+                                                                                       air->light.longwave_loss_w_m2));
     const F32x8 least = f32x8_gather(day->least_k, class), most = f32x8_gather(day->most_k, class);
     f32x8_store(temp_k, f32x8_min(f32x8_max(above + air_k, least), most));
 }

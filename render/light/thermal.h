@@ -8,8 +8,9 @@
 #include "render/scene/view.h"
 
 /* Temperature of each hit, K: parts from the snapshot's heat by role over a passive temperature, ground by
- * class, slope, photograph (its brightness over the class's; 1: none), noise (warmth_k) and wind, all over the air of their own height; snow no warmer than 273.15 K, water no colder
- * than 271.35 K. No present sun ray enters: no instant thermal shadows. Sky: NaN. */
+ * class, slope, photograph (its brightness over the class's; 1: none), noise (warmth_k) and wind, all over the air of
+ * their own height; snow no warmer than 273.15 K, water no colder than 271.35 K. No present sun ray enters: no instant
+ * thermal shadows. Sky: NaN. */
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
                          const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *photo,
                          const float *warmth_k);

@@ -82,7 +82,8 @@ static inline Octave octave_eight(uint64_t seed, int n, const double x_m[8], con
                                b.second * f32x8_fma(a.first, second[2], a.second * second[3]));
     if (slopes) { /* second' = rise first, first' = -rise second */
         const F32x8 per_m = f32x8_set(1 / detail_octave_m[n]);
-        const F32x8 south_u = a.first * first[1] - a.second * first[0], top_u = a.first * first[3] - a.second * first[2];
+        const F32x8 south_u = a.first * first[1] - a.second * first[0], top_u = a.first * first[3] - a.second *
+            first[2];
         const F32x8 along_u = a.rise * f32x8_fma(b.first, south_u, b.second * top_u) * per_m;
         const F32x8 along_v = b.rise * (b.first * top - b.second * south) * per_m;
         out.slope_x = along_u * f32x8_set(c) - along_v * f32x8_set(s);
@@ -140,7 +141,8 @@ static unsigned used_octaves(const DetailTable *t, const Nodes *nodes, DetailFie
     return used;
 }
 
-static inline F32x8 between(F32x8 low_low, F32x8 low_high, F32x8 high_low, F32x8 high_high, F32x8 size, F32x8 elongation)
+static inline F32x8 between(F32x8 low_low, F32x8 low_high, F32x8 high_low, F32x8 high_high, F32x8 size,
+                            F32x8 elongation)
 {
     return f32x8_lerp(f32x8_lerp(low_low, low_high, elongation), f32x8_lerp(high_low, high_high, elongation), size);
 }
@@ -156,7 +158,8 @@ static void find_weights(F32x8 out[detail_octaves], const DetailTable *t, const 
         for (unsigned left = used; left; left &= left - 1) {
             const int n = __builtin_ctz(left);
             out[n] = between(_mm256_set1_ps(at[0][j].of[f][n]), _mm256_set1_ps(at[0][j + 1].of[f][n]),
-                             _mm256_set1_ps(at[1][j].of[f][n]), _mm256_set1_ps(at[1][j + 1].of[f][n]), size, elongation);
+                             _mm256_set1_ps(at[1][j].of[f][n]), _mm256_set1_ps(at[1][j + 1].of[f][n]), size,
+                                 elongation);
         }
         return;
     }
@@ -201,22 +204,33 @@ typedef struct Eight {
     float albedo[8], warmth_k[8], radar[8], slope_x[8], slope_y[8];
 } Eight;
 
-/* wanted: bits of DetailField. */
+/* What a photograph of these pixels does not contain of an octave's deviation; 1 without a photograph (cell 0). The
+ * mean over a square of side a leaves s^2 / (s^2 + a^2 / 6) of the variance of a covariance as wide as a Gaussian of
+ * deviation s; the rest is finer than the pixels. */
+static inline F32x8 beyond_photo(int n, F32x8 cell_m)
+{
+    const double width_m = detail_octave_width * detail_octave_m[n];
+    const F32x8  lost = cell_m * cell_m * f32x8_set(1.0 / 6), rest = lost / (lost + f32x8_set(width_m * width_m));
+    return f32x8_select(f32x8_greater(cell_m, f32x8_set(0)), f32x8_sqrt(rest), f32x8_set(1));
+}
+
+/* wanted: bits of DetailField; photo_m: side of the photograph's pixels at each place, 0: none there; NULL: nowhere. */
 static void details(Eight *out, const DetailTable *t, uint64_t seed, const Nodes *nodes, unsigned wanted,
                     const double x_m[8], const double y_m[8], const float photo_m[8])
 {
     FieldSum    sum[detail_fields];
     F32x8       slope_x = f32x8_set(0), slope_y = f32x8_set(0);
     unsigned    used = 0;
-    const F32x8 seen_m = photo_m ? f32x8_load(photo_m) : f32x8_set(INFINITY);
     for (int f = 0; f < detail_fields; f++) {
         sum[f].value = sum[f].variance = f32x8_set(0);
         sum[f].used = wanted >> f & 1 ? used_octaves(t, nodes, (DetailField)f) : 0;
         if (sum[f].used) find_weights(sum[f].weight, t, nodes, (DetailField)f, sum[f].used);
         used |= sum[f].used;
     }
-    const F32x8 warmth_first = of_class(t->follows, nodes, DETAIL_WARMTH), warmth_second = of_class(t->apart, nodes, DETAIL_WARMTH);
-    const F32x8 radar_first = of_class(t->follows, nodes, DETAIL_RADAR), radar_second = of_class(t->apart, nodes, DETAIL_RADAR);
+    const F32x8 warmth_first = of_class(t->follows, nodes, DETAIL_WARMTH), warmth_second = of_class(t->apart, nodes,
+                                                                                                    DETAIL_WARMTH);
+    const F32x8 radar_first = of_class(t->follows, nodes, DETAIL_RADAR), radar_second = of_class(t->apart, nodes,
+                                                                                                 DETAIL_RADAR);
     for (unsigned left = used; left; left &= left - 1) {
         const int    n = __builtin_ctz(left);
         const bool   warmth = sum[DETAIL_WARMTH].used >> n & 1, radar = sum[DETAIL_RADAR].used >> n & 1;
@@ -224,7 +238,7 @@ static void details(Eight *out, const DetailTable *t, uint64_t seed, const Nodes
         const Octave octave = octave_eight(seed, n, x_m, y_m, warmth || radar, height);
         if (sum[DETAIL_ALBEDO].used >> n & 1) {
             F32x8 weight = sum[DETAIL_ALBEDO].weight[n];
-            if (photo_m) weight = f32x8_and(weight, f32x8_less(f32x8_set(detail_octave_m[n]), seen_m));
+            if (photo_m) weight = weight * beyond_photo(n, f32x8_load(photo_m));
             add_octave(&sum[DETAIL_ALBEDO], octave.first, weight);
         }
         if (warmth)
@@ -286,7 +300,7 @@ void landscape_details(const GroundDetail *out, const DetailTable *table, const 
                             (unsigned)(out->slope_x != NULL) << DETAIL_HEIGHT;
     for (int first = 0; first < count; first += 8) {
         double    x[8] = {0}, y[8] = {0};
-        float     seen_m[8];
+        float     photo_m[8];
         uint8_t   class[8] = {0};
         Nodes     nodes;
         Eight     eight;
@@ -304,8 +318,8 @@ void landscape_details(const GroundDetail *out, const DetailTable *table, const 
             continue;
         }
         find_nodes(&nodes, some, class, footprint->across_m + first, footprint->along_m + first);
-        if (photo) texture_photo_fineness(seen_m, landscape, x, y, known);
-        details(&eight, table, seed, &nodes, wanted, x, y, photo ? seen_m : NULL);
+        if (photo) texture_photo_cells(photo_m, landscape, x, y, known);
+        details(&eight, table, seed, &nodes, wanted, x, y, photo ? photo_m : NULL);
         store_eight(out, first, some, &eight);
     }
     if (table && out->albedo) texture_rows(out->albedo, landscape, count, surface, x_m, y_m, footprint->along_m);

@@ -11,7 +11,8 @@
 /* Of count places, one array each, [count], the caller's. NULL: not wanted, and not computed. */
 typedef struct GroundDetail {
     float *albedo;           /* factor of the reflectance, mean 1, > 0 */
-    float *warmth_k;         /* added to the class's temperature at night, mean 0 (more by day: render/light/thermal.c) */
+    float *warmth_k;         /* added to the class's temperature at night,
+        mean 0 (more by day: render/light/thermal.c) */
     float *radar;            /* factor of the backscatter, mean 1, > 0 */
     float *slope_x, *slope_y;/* rise of the detail's height eastwards and northwards, metres a metre; both or neither */
 } GroundDetail;
@@ -24,8 +25,8 @@ typedef struct GroundFootprint {
 /* Statistics of every class (etc/ground_detail.csv), and the weights of the octaves at every footprint. */
 typedef struct DetailTable DetailTable;
 
-/* Logs what is wrong with the file. cut_off: octaves below this share of a field's variance are left out, their variance
- * given to the others. */
+/* Logs what is wrong with the file. cut_off: octaves below this share of a field's variance are left out, their
+ * variance given to the others. */
 static const double detail_cut_off = 0.005; /* `bench precision`: detail: weakest octave */
 Status detail_table_open(DetailTable **out, const char *path, double cut_off);
 void   detail_table_close(DetailTable *table); /* accepts NULL */

@@ -20,6 +20,9 @@ enum {
 /* Cells of the lattices, m: exponential covariances from 0.3 m to 10 m are sums of these within 0.02. */
 static const double detail_octave_m[detail_octaves] = {0.08, 0.2, 0.5, 1.25, 3.125, 7.8125, 19.53125, 48.828125};
 
+/* Width of an octave's covariance, as a Gaussian's deviation, in cells. */
+static const double detail_octave_width = 0.57;
+
 /* Of a class and a footprint: standard deviation of each octave in each field, in the field's unit. */
 typedef struct DetailWeights {
     float of[detail_fields][detail_octaves];
@@ -43,11 +46,11 @@ struct DetailTable {
 Status detail_table_create(DetailTable **out, const DetailStatistics statistics[SURFACE_COUNT][detail_fields],
                            double cut_off);
 
-/* Factor for the rows of fields (terrain/landscape/texture.c) into albedo, and the wavelength from which on a photograph
- * has the detail itself (INFINITY: no photograph). */
+/* Factor for the rows of fields (terrain/landscape/texture.c) into albedo; and the side of the photograph's pixels at
+ * each place, 0: no photograph there. */
 void texture_rows(float *albedo, const Landscape *landscape, int count, const uint8_t *surface, const double *x_m,
                   const double *y_m, const float *footprint_m);
-void texture_photo_fineness(float seen_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
-                            unsigned lanes);
+void texture_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
+                         unsigned lanes);
 
 #endif

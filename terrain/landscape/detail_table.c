@@ -129,23 +129,21 @@ static double passed(const Kernel *kernel, double across, double along)
     return 4 * sum * (reach_x / across) * (reach_y / along) / (steps * steps);
 }
 
-/* Width of an octave's covariance, as a Gaussian's deviation, in cells. */
-static const double octave_width = 0.57;
-
-/* The two octaves as smooth as octave n is after the mean over a square of `wide`: alike at 0.8 of its side (nearer, the
- * next pixel is too much alike; further, what an eye sees that moves by a part of a pixel changes too much). */
+/* The two octaves as smooth as octave n is after the mean over a square of `wide`: alike at 0.8 of its side (nearer,
+ * the next pixel is too much alike; further, what an eye sees that moves by a part of a pixel changes too much). */
 static void smoother(Transfer *out, int n, double share, double wide_m)
 {
-    const double own_m = octave_width * detail_octave_m[n], d_m = 0.8 * wide_m;
+    const double own_m = detail_octave_width * detail_octave_m[n], d_m = 0.8 * wide_m;
     const double width_m = sqrt(own_m * own_m + wide_m * wide_m / 6);
     int          m = n;
-    while (m < detail_octaves - 1 && octave_width * detail_octave_m[m + 1] <= width_m) m++;
+    while (m < detail_octaves - 1 && detail_octave_width * detail_octave_m[m + 1] <= width_m) m++;
     memset(out->to[n], 0, sizeof out->to[n]);
     if (m == detail_octaves - 1) {
         out->to[n][m] = (float)share;
         return;
     }
-    const double low_m = octave_width * detail_octave_m[m], high_m = octave_width * detail_octave_m[m + 1];
+    const double low_m = detail_octave_width * detail_octave_m[m], high_m = detail_octave_width * detail_octave_m[m +
+                                                                                                                  1];
     const double low = -expm1(-d_m * d_m / (2 * low_m * low_m)), high = -expm1(-d_m * d_m / (2 * high_m * high_m));
     const double want = -expm1(-d_m * d_m / (2 * width_m * width_m)), part = clamp((want - high) / (low - high), 0, 1);
     out->to[n][m]     = (float)(share * part);
@@ -281,7 +279,8 @@ static Status read_row(DetailStatistics statistics[SURFACE_COUNT][detail_fields]
         if (status != STATUS_OK) return status;
     }
     if ((f == DETAIL_ALBEDO || f == DETAIL_HEIGHT) && s->follows != 1) {
-        log_error("ground detail: follows_albedo of albedo and height is 1: file=%s line=%d", t->path, t->line[row + 1]);
+        log_error("ground detail: follows_albedo of albedo and height is 1: file=%s line=%d", t->path, t->line[row +
+                                                                                                               1]);
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;
@@ -305,7 +304,8 @@ Status detail_table_open(DetailTable **out, const char *path, double cut_off)
     for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT && status == STATUS_OK; s++)
         for (int f = 0; f < detail_fields && status == STATUS_OK; f++)
             if (!seen[s][f]) {
-                log_error("ground detail: row missing: file=%s surface=%s field=%s", path, surface_name((SurfaceClass)s),
+                log_error("ground detail: row missing: file=%s surface=%s field=%s", path,
+                          surface_name((SurfaceClass)s),
                           field_of[f].name);
                 status = STATUS_BAD_VALUE;
             }

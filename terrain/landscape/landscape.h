@@ -104,7 +104,8 @@ SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m);
 /* Where there is a photograph: its brightness relative to its own mean over that class, a channel, averaged over the
  * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. The
- * detail (terrain/landscape/detail.h) then adds only what is finer than the photograph's pixels. factor: red, green, blue, and all three together. */
+ * detail (terrain/landscape/detail.h) then adds only what is finer than the photograph's pixels. factor: red, green,
+ * blue, and all three together. */
 bool   landscape_has_photo(const Landscape *landscape);
 enum { albedo_red, albedo_green, albedo_blue, albedo_all, albedo_channels };
 void   landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,

@@ -38,14 +38,14 @@ static F32x8 rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const
     return f32x8_load(wave);
 }
 
-void texture_photo_fineness(float seen_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
-                            unsigned lanes)
+void texture_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
+                         unsigned lanes)
 {
     const Photo *photo = &((const Cover *)landscape->cover)->photo;
     for (int k = 0; k < 8; k++) {
-        seen_m[k] = INFINITY;
+        cell_m[k] = 0;
         if (photo->mips > 0 && lanes >> k & 1 && photo_cover_at(photo, x_m[k], y_m[k]) > 0.5)
-            seen_m[k] = (float)(2 * photo->cell_m);
+            cell_m[k] = (float)photo->cell_m;
     }
 }
 
@@ -62,7 +62,7 @@ void texture_rows(float *albedo, const Landscape *landscape, int count, const ui
     for (int k = 0; k < plot_cells_kept; k++) cells.cell[k].known = false;
     for (int first = 0; first < count; first += 8) {
         double    x[8] = {0}, y[8] = {0};
-        float     footprint[8] = {0}, factor[8] = {0}, seen_m[8];
+        float     footprint[8] = {0}, factor[8] = {0}, cell_m[8];
         const int some = count - first < 8 ? count - first : 8;
         for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
             unsigned lanes = 0;
@@ -75,8 +75,10 @@ void texture_rows(float *albedo, const Landscape *landscape, int count, const ui
             }
             if (!lanes) continue;
             F32x8 share = f32x8_and(fade(rows[r].apart_m, f32x8_load(footprint)), f32x8_mask(lanes));
-            texture_photo_fineness(seen_m, landscape, x, y, lanes);
-            share = f32x8_and(share, f32x8_less(f32x8_set(rows[r].apart_m), f32x8_load(seen_m)));
+            texture_photo_cells(cell_m, landscape, x, y, lanes);
+            const F32x8 photo_m = f32x8_load(cell_m); /* which has the rows itself from two of its pixels on */
+            share = f32x8_and_not(share, f32x8_and(f32x8_greater(photo_m, f32x8_set(0)),
+                                                   f32x8_less(photo_m, f32x8_set(rows[r].apart_m / 2))));
             const F32x8 wave = rows_of(&cells, cover->seed, x, y, rows[r].apart_m, lanes);
             f32x8_store(factor, f32x8_load(factor) * f32x8_fma(f32x8_set(0.08) * share, wave, f32x8_set(1)));
             for (int k = 0; k < some; k++)

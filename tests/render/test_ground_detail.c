@@ -26,7 +26,8 @@ static int open_world(void **state)
     }
     detail_table_close(hand.world.detail);
     hand.world.detail = NULL;
-    if (detail_table_create(&table, (const DetailStatistics(*)[detail_fields])statistics, detail_cut_off) != STATUS_OK) return -1;
+    if (detail_table_create(&table, (const DetailStatistics(*)[detail_fields])statistics,
+                            detail_cut_off) != STATUS_OK) return -1;
     hand_air_off(sun_enu);
     hand_clear();
     return 0;
@@ -60,7 +61,8 @@ static void fields_of(float *albedo, float *warmth_k, const View *view, int samp
     static float lwir[pixels], pan[pixels];
     const size_t n = (size_t)view->width * (size_t)view->height;
     const double air_k = hand.air.light.weather.air_temp_k, d_k = 0.5;
-    const double per_k = (planck_band(8e-6, 12e-6, air_k + d_k, NULL) - planck_band(8e-6, 12e-6, air_k - d_k, NULL)) / (2 * d_k) *
+    const double per_k = (planck_band(8e-6, 12e-6, air_k + d_k, NULL) - planck_band(8e-6, 12e-6, air_k - d_k,
+                                                                                    NULL)) / (2 * d_k) *
                          (1 - (double)hand.world.materials.material[hand.world.materials.surface[SURFACE_GRASS]].rho_lwir);
     const RenderRequest request = request_from(view, samples);
     RenderRequest       even = request;
@@ -145,8 +147,10 @@ static void statistics_are_those_of_the_filtered_class(void **state)
                           (variance[k] * sqrt(variance[k]));
                 for (int d = 0; d < 2; d++) beside[k][d] = (s->beside[d] / s->count - mean * mean) / variance[k];
             }
-            print_message("%s at %.0f m: deviation %.4f for %.4f, skew %.2f for %.2f, beside %.2f for %.2f, behind %.2f for "
-                          "%.2f\n", f ? "LWIR" : "optical", from[r].range_m, sqrt(variance[0]), sqrt(variance[1]), skew[0],
+            print_message("%s at %.0f m: deviation %.4f for %.4f, skew %.2f for %.2f, beside %.2f for %.2f,
+                          behind %.2f for "
+                          "%.2f\n", f ? "LWIR" : "optical", from[r].range_m, sqrt(variance[0]), sqrt(variance[1]),
+                              skew[0],
                           skew[1], beside[0][0], beside[1][0], beside[0][1], beside[1][1]);
             CHECK_NEAR(variance[0] / variance[1], 1, 0.10);
             CHECK_NEAR(skew[0], skew[1], fmax(0.25 * fabs(skew[1]), 0.1));

@@ -37,6 +37,7 @@ static void what_is_wrong_is_said_and_nothing_applied(void **state)
         {"sensor:\n  width_px: 320\n  wdith_px: 3\n", ":3: no such key: sensor.wdith_px"},
         {"sensor:\n  width_px: 1,5\n", ":2: sensor.width_px: '1,5' is not a whole number in 8 .. 8192 px"},
         {"sensor:\n  width_px: 7\n", "in 8 .. 8192"},
+        {"terrain:\n  detail: maybe\n", ":2: terrain.detail: 'maybe' is not"},
         {"sensor:\n  hfov_deg: nan\n", "sensor.hfov_deg: 'nan' is not a number in 0.01 .. 120 deg"},
         {"sensor:\n  width_px: 320\n  width_px: 321\n", ":3: sensor.width_px is given twice"},
         {"sensor:\n  optical: sepia\n", "'sepia' is not one of rgb|pan|nir"},

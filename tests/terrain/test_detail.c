@@ -125,11 +125,13 @@ static void company_changes_nothing(void **state)
         float              alone[5];
         const GroundDetail one = {.albedo = alone, .warmth_k = alone + 1, .radar = alone + 2, .slope_x = alone + 3,
                                   .slope_y = alone + 4};
-        landscape_details(&one, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n, along_m + n});
+        landscape_details(&one, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n,
+                                                                                                 along_m + n});
         for (int f = 0; f < detail_fields; f++) CHECK(alone[f] == mixed_list[f][n]);
         CHECK(alone[4] == slope_y[n] && alone[0] > 0 && alone[2] > 0);
         const GroundDetail only = {.radar = alone};
-        landscape_details(&only, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n, along_m + n});
+        landscape_details(&only, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n,
+                                                                                                  along_m + n});
         CHECK(alone[0] == mixed_list[2][n]);
     }
 }
@@ -166,7 +168,9 @@ static void statistics_are_the_tables(void **state)
             memset(class, c, sizeof class);
             for (int n = 0; n < places; n++)
                 for (int k = 0; k <= lags; k++) {
-                    const double d_m = k ? s->length_m * ldexp(1, k - 2) : 0, angle = 2 * pi_rad * random_uniform(9, 8, 0, (uint64_t)n);
+                    const double d_m = k ? s->length_m * ldexp(1, k - 2) : 0, angle = 2 * pi_rad * random_uniform(9,
+                                                                                                                  8,
+                                                                                                                      0, (uint64_t)n);
                     x_m[n + k * places] = far_place(6, n + places * c) + d_m * cos(angle);
                     y_m[n + k * places] = far_place(7, n + places * c) + d_m * sin(angle);
                 }
@@ -176,7 +180,8 @@ static void statistics_are_the_tables(void **state)
             worst_skew = fmax(worst_skew, fabs(m.skew - s->skew));
             for (int k = 1; k <= lags; k++) {
                 const double d_m = s->length_m * ldexp(1, k - 2);
-                const double want = (1 - s->far_share) * exp(-d_m / s->length_m) + s->far_share * exp(-d_m / s->far_length_m);
+                const double want = (1 - s->far_share) * exp(-d_m / s->length_m) + s->far_share *
+                    exp(-d_m / s->far_length_m);
                 double       sum = 0;
                 for (int n = 0; n < places; n++)
                     sum += ((double)found[f][n] - m.mean) * ((double)found[f][n + k * places] - m.mean) / places;
@@ -223,10 +228,13 @@ static void filtered_is_the_mean_over_the_footprint(void **state)
             double        of[2][2] = {{0}};
             for (int p = 1; p < pixels; p++)
                 for (int n = 0; n < places; n++) {
-                    of[0][p - 1] += ((double)mean[f][0][n] - a.mean) * ((double)mean[f][p][n] - a.mean) / (places * a.variance);
-                    of[1][p - 1] += ((double)quick[f][0][n] - b.mean) * ((double)quick[f][p][n] - b.mean) / (places * b.variance);
+                    of[0][p - 1] += ((double)mean[f][0][n] - a.mean) * ((double)mean[f][p][n] - a.mean) / (places *
+                                                                                                           a.variance);
+                    of[1][p - 1] += ((double)quick[f][0][n] - b.mean) * ((double)quick[f][p][n] - b.mean) / (places *
+                                                                                                             b.variance);
                 }
-            print_message("class %d %.2f m x %g field %d: variance %.3f, skew %.2f for %.2f, across %.2f for %.2f, along "
+            print_message("class %d %.2f m x %g field %d: variance %.3f, skew %.2f for %.2f, across %.2f for %.2f, "
+                          "along "
                           "%.2f for %.2f\n", tried[t].class, tried[t].across_m, tried[t].elongation, f,
                           b.variance / a.variance, b.skew, a.skew, of[1][0], of[0][0], of[1][1], of[0][1]);
             CHECK_NEAR(b.variance / a.variance, 1, 0.10);

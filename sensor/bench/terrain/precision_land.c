@@ -298,7 +298,8 @@ typedef struct DetailSet {
 static void ask_details(void *user)
 {
     DetailSet         *s = user;
-    const GroundDetail out = {.albedo = s->albedo, .warmth_k = s->warmth_k, .slope_x = s->slope_x, .slope_y = s->slope_y};
+    const GroundDetail out = {.albedo = s->albedo, .warmth_k = s->warmth_k, .slope_x = s->slope_x, .slope_y =
+                              s->slope_y};
     landscape_details(&out, s->table, s->land, spots, s->class, s->x_m, s->y_m,
                       &(GroundFootprint){s->across_m, s->along_m});
     bench_keep(s->albedo);
