@@ -9,6 +9,7 @@
  * clear_lines.c      height limits by clear lines
  * nearest_fix.c      spatial index of points
  * plots.c            synthetic fields
+ * ways.c             roads, streams, villages: terrain/landscape/ways.h
  * cover.c            land cover: tracks, hedges, woods; land cover from files
  * texture.c          brightness of the ground; brightness from photographs */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
@@ -217,6 +218,7 @@ typedef struct Cover {
     CoverGrid grid[cover_windows];
     Photo     photo;
     Coast     coast;
+    struct Ways *ways;           /* synthetic: roads, streams, villages; NULL: none */
 } Cover;
 
 /* Means of the photograph over each class, once the classes are known. */

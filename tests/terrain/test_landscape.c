@@ -541,6 +541,7 @@ static void texture_has_mean_one_and_fades(void **state)
         for (int f = 0; f < 7; f++) {
             enum { samples = 40000 };
             double sum = 0, square = 0;
+            int    edges = 0;
             for (int n = 0; n < samples; n++) {
                 const double x = 9000 * (random_uniform(4, 0, 0, n) - 0.5),
                              y = 9000 * (random_uniform(4, 1, 0, n) - 0.5);
@@ -550,8 +551,10 @@ static void texture_has_mean_one_and_fades(void **state)
                 square += (t - 1) * (t - 1);
                 /* no edge: a thousandth of the shortest wave that is left changes it by its steepest slope at most */
                 const double d = 1e-3 * fmax(0.11, 2 * footprint_m[f]);
-                CHECK_NEAR(landscape_texture(&land, (SurfaceClass)s, x + d, y, footprint_m[f]), t, 0.02);
+                edges += !(fabs(landscape_texture(&land, (SurfaceClass)s, x + d, y, footprint_m[f]) - t) < 0.02);
             }
+            /* rows of two fields differ: a step of 0.3 mm crosses a border once in some 150 000 */
+            CHECK(edges <= (s == SURFACE_CROP || s == SURFACE_PLOUGHED ? 3 : 0));
             CHECK_NEAR(sum / samples, 1, 0.005);
             CHECK(square <= before);
             before = square;
