@@ -12,6 +12,7 @@ typedef struct SurfaceModel {
     const float   *surface_m; /* [ny][nx] NAN: void */
     const float   *bare_m;    /* a terrain model of the same cells, NAN where it has none; NULL: none */
     const uint8_t *rgb;       /* [ny][nx][3] sRGB of an orthophoto; NULL: none */
+    int64_t        column, row; /* of the window's south-west cell in the whole model: windows that overlap agree */
 } SurfaceModel;
 
 typedef enum CellKind { CELL_BARE, CELL_BUILDING, CELL_TREE } CellKind;
@@ -27,13 +28,15 @@ typedef struct SurfaceParts {
     float   *roof_m;          /* height of the roof, its planes smoothed and its outline straightened; NAN: no building */
     uint8_t *kind;            /* CellKind */
     int      crown_count;
-    Crown   *crown;           /* by place, south-west first */
+    Crown   *crown;           /* by place, south-west first; free() */
 } SurfaceParts;
 
-/* A cell's answer depends on cells nearer than this only: windows that overlap by it are taken apart alike. */
-static const double take_apart_reach_m = 128;
+/* A cell's answer depends on cells nearer than this only: windows that overlap by twice as much agree bit for bit where
+ * both are farther than this from their own edges. */
+static const double take_apart_reach_m = 320;
 
-/* One thread, deterministic; cell_m 0.1 .. 4, at coarser cells nothing can be told apart: STATUS_UNSUPPORTED. */
+/* One thread, deterministic; cell_m 0.1 .. 4, at coarser cells nothing can be told apart: STATUS_UNSUPPORTED.
+ * Temporary memory: about 20 bytes a cell. */
 Status surface_take_apart(SurfaceParts *out, const SurfaceModel *model);
 
 #endif

@@ -1,0 +1,298 @@
+/* terrain/landscape/take_apart_ground.c: bare ground below a surface model.
+ *
+ * Blocks of about 2 m hold their lowest return. Openings by growing squares (progressive morphological filter: Zhang
+ * et al., IEEE TGRS 41, 2003) mark blocks that stand out by more than the ground's own slope explains; blocks are taken
+ * back where the surface runs on from the ground without a wall. Then cells near the filled ground are ground (SMRF:
+ * Pingel et al., ISPRS J. 77, 2013), and the ground is fitted again to them. */
+#include "terrain/landscape/take_apart_private.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+enum { regrow_steps = 20, scales = 7 };
+
+static const double radius_m[scales] = {2, 4, 8, 14, 22, 34, 52};
+
+typedef struct Ground {
+    Blocks   blocks;
+    size_t   count;
+    float   *low;      /* lowest return, NAN: void              [ny][nx] */
+    float   *high;     /* highest                                        */
+    float   *opened;
+    float   *slope;    /* of the wide ground, greatest nearby            */
+    float   *height;   /* of the ground, filled                          */
+    float   *work;
+    uint8_t *object;   /* not ground                                     */
+} Ground;
+
+static void ground_destroy(Ground *g)
+{
+    free(g->low), free(g->high), free(g->opened), free(g->slope), free(g->height), free(g->work), free(g->object);
+    *g = (Ground){0};
+}
+
+static int64_t floor_mod(int64_t a, int64_t b) { return ((a % b) + b) % b; }
+
+static Status ground_create(Ground *out, const SurfaceModel *model)
+{
+    Ground g = {0};
+    Blocks *b = &g.blocks;
+    b->size = (int)floor(2 / model->cell_m + 0.01);
+    if (b->size < 1) b->size = 1;
+    b->block_m = b->size * model->cell_m;
+    int lattice = b->size;                     /* cells of the coarsest level of the filling */
+    for (double side_m = b->block_m; side_m < 12; side_m *= 2) lattice *= 2;
+    b->left = (int)floor_mod(model->column, lattice), b->below = (int)floor_mod(model->row, lattice);
+    const int many = lattice / b->size;
+    b->nx = ((model->nx + b->left + lattice - 1) / lattice) * many;
+    b->ny = ((model->ny + b->below + lattice - 1) / lattice) * many;
+    const size_t n = g.count = (size_t)b->nx * (size_t)b->ny;
+    g.low = malloc(n * sizeof *g.low), g.high = malloc(n * sizeof *g.high), g.opened = malloc(n * sizeof *g.opened);
+    g.slope = malloc(n * sizeof *g.slope), g.height = malloc(n * sizeof *g.height);
+    g.work = malloc(n * sizeof *g.work), g.object = calloc(n, 1);
+    if (!g.low || !g.high || !g.opened || !g.slope || !g.height || !g.work || !g.object) {
+        ground_destroy(&g);
+        return STATUS_NO_MEMORY;
+    }
+    *out = g;
+    return STATUS_OK;
+}
+
+static size_t block_of(const Blocks *b, int x, int y)
+{
+    return (size_t)((y + b->below) / b->size) * (size_t)b->nx + (size_t)((x + b->left) / b->size);
+}
+
+static void lows(Ground *g, const SurfaceModel *model, const float *surface_m)
+{
+    for (size_t c = 0; c < g->count; c++) g->low[c] = FLT_MAX, g->high[c] = -FLT_MAX;
+    for (int y = 0; y < model->ny; y++)
+        for (int x = 0; x < model->nx; x++) {
+            const float  z = surface_m[(size_t)y * (size_t)model->nx + (size_t)x];
+            const size_t c = block_of(&g->blocks, x, y);
+            if (z < g->low[c]) g->low[c] = z;
+            if (z > g->high[c]) g->high[c] = z;
+        }
+}
+
+/* Opening of `from` into `to`; FLT_MAX: void. Erosion: least; then greatest of the non-void. */
+static Status opening(float *to, const float *from, const Ground *g, int radius)
+{
+    const Blocks *b = &g->blocks;
+    if (to != from) memcpy(to, from, g->count * sizeof *to);
+    Status status = take_apart_extreme(to, b->nx, b->ny, radius, false);
+    for (size_t c = 0; c < g->count; c++)
+        if (to[c] == FLT_MAX) to[c] = -FLT_MAX;
+    if (status == STATUS_OK) status = take_apart_extreme(to, b->nx, b->ny, radius, true);
+    for (size_t c = 0; c < g->count; c++)
+        if (to[c] == -FLT_MAX) to[c] = FLT_MAX;
+    return status;
+}
+
+static int blocks_in(const Blocks *b, double m)
+{
+    const int n = (int)floor(m / b->block_m + 0.5);
+    return n < 1 ? 1 : n;
+}
+
+/* Slope of the ground over 16 m, greatest within 12 m. */
+static Status find_slope(Ground *g)
+{
+    const Blocks *b = &g->blocks;
+    const int     step = blocks_in(b, 8);
+    Status status = opening(g->opened, g->low, g, blocks_in(b, radius_m[scales - 1]));
+    if (status != STATUS_OK) return status;
+    for (int y = 0; y < b->ny; y++)
+        for (int x = 0; x < b->nx; x++) {
+            const int x0 = x > step ? x - step : 0, x1 = x + step < b->nx ? x + step : b->nx - 1;
+            const int y0 = y > step ? y - step : 0, y1 = y + step < b->ny ? y + step : b->ny - 1;
+            const float *row = g->opened + (size_t)y * (size_t)b->nx;
+            const float w = row[x0], e = row[x1], s = g->opened[(size_t)y0 * (size_t)b->nx + (size_t)x],
+                n = g->opened[(size_t)y1 * (size_t)b->nx + (size_t)x];
+            double gx = 0, gy = 0;
+            if (w != FLT_MAX && e != FLT_MAX && x1 > x0) gx = fabs((double)e - w) / ((x1 - x0) * b->block_m);
+            if (s != FLT_MAX && n != FLT_MAX && y1 > y0) gy = fabs((double)n - s) / ((y1 - y0) * b->block_m);
+            const double steep = sqrt(gx * gx + gy * gy);
+            g->slope[(size_t)y * (size_t)b->nx + (size_t)x] = (float)(steep < 1 ? steep : 1);
+        }
+    return take_apart_extreme(g->slope, b->nx, b->ny, blocks_in(b, 12), true);
+}
+
+/* Returns below everything within 14 m but their own neighbours: multipath, wells. */
+static Status drop_low_points(Ground *g)
+{
+    const Blocks *b = &g->blocks;
+    const int     far = blocks_in(b, 14);
+    memcpy(g->work, g->low, g->count * sizeof *g->work);
+    /* closing by a hole: the least of the far square without the 3 x 3 in its middle, as the least of four oblongs
+     * would need; the least of the squares at its four sides and corners is enough */
+    Status status = take_apart_extreme(g->work, b->nx, b->ny, far / 2 > 0 ? far / 2 : 1, false);
+    if (status != STATUS_OK) return status;
+    const int away = far / 2 + 2;
+    for (int y = 0; y < b->ny; y++)
+        for (int x = 0; x < b->nx; x++) {
+            const size_t c = (size_t)y * (size_t)b->nx + (size_t)x;
+            float least = FLT_MAX;
+            for (int k = 0; k < 9; k++) {
+                const int i = x + (k % 3 - 1) * away, j = y + (k / 3 - 1) * away;
+                if (k == 4 || i < 0 || j < 0 || i >= b->nx || j >= b->ny) continue;
+                const float v = g->work[(size_t)j * (size_t)b->nx + (size_t)i];
+                if (v < least) least = v;
+            }
+            g->height[c] = least != FLT_MAX && g->low[c] < least - 5 ? FLT_MAX : g->low[c];
+        }
+    memcpy(g->low, g->height, g->count * sizeof *g->low);
+    return STATUS_OK;
+}
+
+/* Marks the blocks that openings take away. */
+static Status mark_objects(Ground *g, double first_radius_m)
+{
+    Status status = STATUS_OK;
+    memcpy(g->height, g->low, g->count * sizeof *g->height);
+    double before_m = 0;
+    for (int k = 0; k < scales && status == STATUS_OK; k++) {
+        if (radius_m[k] < first_radius_m) continue;
+        status = opening(g->opened, g->height, g, blocks_in(&g->blocks, radius_m[k]));
+        const float wider_m = (float)(radius_m[k] - before_m);
+        before_m = radius_m[k];
+        for (size_t c = 0; c < g->count; c++) {
+            const float steep = g->slope[c] > 0.05F ? g->slope[c] - 0.05F : 0;
+            if (g->height[c] - g->opened[c] > 0.6F + steep * wider_m) g->object[c] = 1;
+            if (g->low[c] == FLT_MAX) g->object[c] = 1;
+            g->height[c] = g->opened[c];
+        }
+    }
+    return status;
+}
+
+/* Takes blocks back, a step of one block at a time, where the lowest returns run on in a straight line from two blocks
+ * of ground, no steeper than 50 degrees, and the block is as smooth as its slope: hills and ridges that a square
+ * flattened, but no roof behind its wall. */
+static void regrow(Ground *g)
+{
+    const Blocks *b = &g->blocks;
+    const int     nx = b->nx, ny = b->ny;
+    static const int di[4] = {1, -1, 0, 0}, dj[4] = {0, 0, 1, -1};
+    const float most = (float)(1.2 * b->block_m), size_m = (float)b->block_m;
+    /* object: 0 ground, 1 not, k + 2: taken back in step k */
+    for (int step = 0; step < regrow_steps; step++) {
+        bool any = false;
+        for (int y = 2; y < ny - 2; y++)
+            for (int x = 2; x < nx - 2; x++) {
+                const size_t c = (size_t)y * (size_t)nx + (size_t)x;
+                if (g->object[c] != 1 || g->low[c] == FLT_MAX) continue;
+                for (int k = 0; k < 4; k++) {
+                    const ptrdiff_t d = di[k] + (ptrdiff_t)dj[k] * nx;
+                    const size_t p = (size_t)((ptrdiff_t)c + d), q = (size_t)((ptrdiff_t)c + 2 * d);
+                    if (g->object[p] == 1 || g->object[q] == 1 || g->object[p] == step + 2
+                        || g->object[q] == step + 2) continue;
+                    const float rise = g->low[c] - g->low[p], before = g->low[p] - g->low[q];
+                    if (fabsf(rise) > most || fabsf(rise - before) > 0.25F + 0.15F * fabsf(before)) continue;
+                    if (g->high[c] - g->low[c] > 0.5F + 2 * fabsf(rise) + 0.3F * size_m * g->slope[c]) continue;
+                    g->object[c] = (uint8_t)(step + 2), any = true;
+                    break;
+                }
+            }
+        if (!any) break;
+    }
+    for (size_t c = 0; c < g->count; c++) g->object[c] = g->object[c] == 1;
+}
+
+/* Height of the filled ground at a cell's centre, linear between blocks' centres, and its slope. */
+static float ground_at(float *slope, const Ground *g, int x, int y)
+{
+    const Blocks *b = &g->blocks;
+    const float   u = ((float)(x + b->left) + 0.5F) / (float)b->size - 0.5F,
+                  v = ((float)(y + b->below) + 0.5F) / (float)b->size - 0.5F;
+    int i = (int)floorf(u), j = (int)floorf(v);
+    i = i < 0 ? 0 : i > b->nx - 2 ? b->nx - 2 : i;
+    j = j < 0 ? 0 : j > b->ny - 2 ? b->ny - 2 : j;
+    float s = u - (float)i, t = v - (float)j;
+    s = s < 0 ? 0 : s > 1 ? 1 : s, t = t < 0 ? 0 : t > 1 ? 1 : t;
+    const float *h = g->height + (size_t)j * (size_t)b->nx + (size_t)i;
+    const float  south = h[0] + s * (h[1] - h[0]), north = h[b->nx] + s * (h[b->nx + 1] - h[b->nx]);
+    if (slope) {
+        const float gx = (h[1] - h[0] + h[b->nx + 1] - h[b->nx]) / 2, gy = north - south;
+        *slope = sqrtf(gx * gx + gy * gy) / (float)b->block_m;
+    }
+    return south + t * (north - south);
+}
+
+/* Cells near the ground of the blocks' lows. */
+static void near_cells(uint8_t *is_ground, const Ground *g, const SurfaceModel *model, const float *surface_m,
+                       float below_m, float above_m, float above_slope_m)
+{
+    for (int y = 0; y < model->ny; y++)
+        for (int x = 0; x < model->nx; x++) {
+            const size_t c = (size_t)y * (size_t)model->nx + (size_t)x;
+            float slope;
+            const float over = surface_m[c] - ground_at(&slope, g, x, y);
+            if (slope > 1.2F) slope = 1.2F;
+            is_ground[c] = over > -below_m - above_slope_m * slope && over < above_m + above_slope_m * slope;
+        }
+}
+
+/* Corrects the ground by the mean difference of its cells, block by block, spread over 5 x 5 blocks. */
+static Status correct(Ground *g, const SurfaceModel *model, const float *surface_m, const uint8_t *is_ground)
+{
+    const Blocks *b = &g->blocks;
+    memset(g->work, 0, g->count * sizeof *g->work);
+    memset(g->opened, 0, g->count * sizeof *g->opened);
+    for (int y = 0; y < model->ny; y++)
+        for (int x = 0; x < model->nx; x++) {
+            const size_t c = (size_t)y * (size_t)model->nx + (size_t)x;
+            if (!is_ground[c]) continue;
+            const size_t at = block_of(b, x, y);
+            g->work[at] += surface_m[c] - ground_at(NULL, g, x, y);
+            g->opened[at] += 1;
+        }
+    for (int y = 0; y < b->ny; y++)
+        for (int x = 0; x < b->nx; x++) {
+            const size_t at = (size_t)y * (size_t)b->nx + (size_t)x;
+            float sum = 0, count = 0;
+            /* its own cells alone where it has enough */
+            const int r = 4 * g->opened[at] >= (float)(b->size * b->size) && g->opened[at] > 0 ? 0 : 2;
+            for (int j = y - r; j <= y + r; j++)
+                for (int i = x - r; i <= x + r; i++) {
+                    if (i < 0 || j < 0 || i >= b->nx || j >= b->ny) continue;
+                    sum += g->work[(size_t)j * (size_t)b->nx + (size_t)i];
+                    count += g->opened[(size_t)j * (size_t)b->nx + (size_t)i];
+                }
+            g->high[at] = g->height[at] + (count > 0 ? sum / count : 0);
+        }
+    memcpy(g->height, g->high, g->count * sizeof *g->height);
+    return STATUS_OK;
+}
+
+Status take_apart_ground(float *bare_m, uint8_t *is_ground, const SurfaceModel *model, const float *surface_m,
+                         double first_radius_m)
+{
+    Ground g;
+    Status status = ground_create(&g, model);
+    if (status != STATUS_OK) return status;
+    lows(&g, model, surface_m);
+    status = drop_low_points(&g);
+    if (status == STATUS_OK) status = find_slope(&g);
+    if (status == STATUS_OK) status = mark_objects(&g, first_radius_m);
+    if (status == STATUS_OK) {
+        regrow(&g);
+        for (size_t c = 0; c < g.count; c++) g.height[c] = g.object[c] ? NAN : g.low[c];
+        status = take_apart_fill(g.height, &g.blocks);
+    }
+    if (status == STATUS_OK) {
+        const float size = (float)g.blocks.block_m;
+        near_cells(is_ground, &g, model, surface_m, 1.0F, 0.4F, size);
+        correct(&g, model, surface_m, is_ground);
+        near_cells(is_ground, &g, model, surface_m, 0.4F, 0.4F, 0.5F * size);
+        correct(&g, model, surface_m, is_ground);
+        near_cells(is_ground, &g, model, surface_m, 0.4F, 0.4F, 0.5F * size);
+        for (int y = 0; y < model->ny; y++)
+            for (int x = 0; x < model->nx; x++) {
+                const size_t c = (size_t)y * (size_t)model->nx + (size_t)x;
+                bare_m[c] = is_ground[c] ? surface_m[c] : ground_at(NULL, &g, x, y);
+            }
+    }
+    ground_destroy(&g);
+    return status;
+}
