@@ -252,7 +252,8 @@ bool ways_nearest(WayPlace *out, const Ways *ways, int32_t cell, double x_m, dou
 static bool is_open(SurfaceClass surface)
 {
     return surface == SURFACE_GRASS || surface == SURFACE_DRY_GRASS || surface == SURFACE_BARE_SOIL ||
-           surface == SURFACE_TRACK || surface == SURFACE_CROP || surface == SURFACE_PLOUGHED || surface == SURFACE_SAND;
+           surface == SURFACE_TRACK || surface == SURFACE_CROP || surface == SURFACE_PLOUGHED ||
+           surface == SURFACE_SAND;
 }
 
 /* What a way makes of a place `beyond_m` outside of its edge; SURFACE_NONE: nothing. */

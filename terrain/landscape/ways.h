@@ -23,7 +23,7 @@ typedef struct WayPlace {
 /* false: none within some metres of its edge. */
 bool landscape_way(WayPlace *out, const Landscape *landscape, double x_m, double y_m);
 
-/* Vertices of a way in order, `most` of them at most; returns their number. 0: no such way. Ways are numbered from 0. */
+/* Vertices of a way in order, `most` of them at most; returns their number. 0: no such way. Numbered from 0. */
 int landscape_way_vertices(double (*out)[2], WayKind *kind, const Landscape *landscape, int way, int most);
 
 /* A village's plot: a rectangle beside its lane, with a place for a house. */

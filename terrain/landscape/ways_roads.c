@@ -1,5 +1,5 @@
-/* terrain/landscape/ways_roads.c: villages, roads between them along gentle slopes, lanes with plots, and tracks along the
- * routes of vehicles. Roads are found on the coarse grid and drawn as splines. */
+/* terrain/landscape/ways_roads.c: villages, roads between them along gentle slopes, lanes with plots, and tracks along
+ * the routes of vehicles. Roads are found on the coarse grid and drawn as splines. */
 #include "terrain/landscape/ways_private.h"
 
 #include <stdlib.h>
@@ -116,7 +116,7 @@ static Status find_route(int **path, int *count, Search *s, const Ways *ways, in
         const Open o = heap_pop(s);
         const int  at = o.at, i = at % ways->cx, j = at / ways->cx;
         if (at == goal) break;
-        if ((double)o.cost > (double)s->cost[at] + 0.3 * hypot(gi - i, gj - j) + 1e-3) continue; /* found cheaper since */
+        if ((double)o.cost > (double)s->cost[at] + 0.3 * hypot(gi - i, gj - j) + 1e-3) continue; /* stale */
         for (int n = 0; n < 16 && status == STATUS_OK; n++) {
             const int ni = i + neighbour[n][0], nj = j + neighbour[n][1];
             if (ni < 0 || nj < 0 || ni >= ways->cx || nj >= ways->cy) continue;
@@ -291,7 +291,8 @@ static Status lay_plots(Ways *ways, const WaysGround *ground, const double centr
         if (hypot((double)s->x_m - centre[0], (double)s->y_m - centre[1]) > radius_m) continue;
         for (int side = 0; side < 2 && status == STATUS_OK; side++) {
             if ((double)s->along_m < next[side]) continue;
-            const uint64_t h = landscape_hash(ground->seed + 61, (int64_t)(s->x_m * 16), (int64_t)(s->y_m * 16) * 2 + side);
+            const uint64_t h =
+                landscape_hash(ground->seed + 61, (int64_t)(s->x_m * 16), (int64_t)(s->y_m * 16) * 2 + side);
             const double   u = unit_from_hash(h), v = unit_from_hash(landscape_hash(h, 1, 0));
             const double   z = unit_from_hash(landscape_hash(h, 2, 0));
             HousePlot      p = {.half_along_m = 9 + 6 * u, .half_across_m = 15 + 9 * v};
@@ -339,7 +340,8 @@ static Status lay_lanes(Ways *ways, const WaysGround *ground, const double centr
         const uint64_t h = landscape_hash(ground->seed + 62, (int64_t)(s.x_m * 16), (int64_t)(s.y_m * 16));
         if ((double)s.along_m - last_m < 75 + 40 * unit_from_hash(h)) continue;
         last_m = (double)s.along_m;
-        const double sign = lanes % 2 ? -1 : 1, length_m = (0.45 + 0.5 * unit_from_hash(landscape_hash(h, 1, 0))) * radius_m;
+        const double sign = lanes % 2 ? -1 : 1;
+        const double length_m = (0.45 + 0.5 * unit_from_hash(landscape_hash(h, 1, 0))) * radius_m;
         const double bend = 0.5 * (unit_from_hash(landscape_hash(h, 2, 0)) - 0.5);
         double       x = (double)s.x_m, y = (double)s.y_m, dx = -sign * (double)s.dy, dy = sign * (double)s.dx;
         control.count = 0;
@@ -404,7 +406,8 @@ static Status lay_columns(Ways *ways, const WaysGround *ground)
             for (int k = 0; k < control.count && status == STATUS_OK; k++) /* through the reports themselves */
                 status = line_add(&line, control.p[k][0], control.p[k][1]);
             if (status == STATUS_OK)
-                status = ways_append(ways, WAY_TRACK, (const double (*)[2])line.p, line.count, track_half_m, track_half_m);
+                status = ways_append(ways, WAY_TRACK, (const double (*)[2])line.p, line.count, track_half_m,
+                                     track_half_m);
             for (int k = 1; k < control.count && used < mask / 2; k++) {
                 const double *a = control.p[k - 1], *b = control.p[k];
                 const int     parts = (int)ceil(hypot(b[0] - a[0], b[1] - a[1]) / (0.5 * beside_route_m));
