@@ -12,7 +12,7 @@ typedef struct SurfaceModel {
     const float   *surface_m; /* [ny][nx] NAN: void */
     const float   *bare_m;    /* a terrain model of the same cells, NAN where it has none; NULL: none */
     const uint8_t *rgb;       /* [ny][nx][3] sRGB of an orthophoto; NULL: none */
-    int64_t        column, row; /* of the window's south-west cell in the whole model: windows that overlap agree */
+    int64_t        column, row; /* of the window's south-west cell in the whole model: overlapping windows agree */
 } SurfaceModel;
 
 typedef enum CellKind { CELL_BARE, CELL_BUILDING, CELL_TREE } CellKind;

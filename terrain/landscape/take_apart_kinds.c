@@ -94,6 +94,12 @@ static Status drop_small(const Kinds *k, const SurfaceModel *model)
     Status status = take_apart_components(&label, &area, k->nx, k->ny, same_kind, k);
     if (status != STATUS_OK) return status;
     const double cell_m2 = model->cell_m * model->cell_m;
+    /* what touches the window's edge is no gap */
+    for (int y = 0; y < k->ny; y++)
+        for (int x = 0; x < k->nx; x += y > 0 && y < k->ny - 1 && k->nx > 1 ? k->nx - 1 : 1) {
+            const size_t c = (size_t)y * (size_t)k->nx + (size_t)x;
+            if (k->kind[c] != CELL_BUILDING) area[label[c]] = INT32_MAX;
+        }
     for (size_t c = 0; c < (size_t)k->nx * (size_t)k->ny; c++) {
         const double m2 = area[label[c]] * cell_m2;
         if (k->kind[c] == CELL_BUILDING && m2 < least_roof_m2) k->kind[c] = k->object[c] ? CELL_TREE : CELL_BARE;
