@@ -97,7 +97,7 @@ static void rates(double *recall, double *precision, const Site *s, int kind)
 
 static float level(double x_m, double y_m) { return 50 + 0 * (float)(x_m + y_m); }
 static float gentle(double x_m, double y_m) { return (float)(100 + 0.05 * x_m + 4 * sin(y_m / 60)); }
-static float hills(double x_m, double y_m) { return (float)(200 + 30 * sin(x_m / 45) * cos(y_m / 60)); } /* 34 degrees */
+static float hills(double x_m, double y_m) { return (float)(200 + 30 * sin(x_m / 45) * cos(y_m / 60)); } /* 34 deg */
 static float slope(double x_m, double y_m) { return (float)(300 + 0.6 * x_m + 0 * y_m); }
 static float terraces(double x_m, double y_m)
 {
@@ -136,12 +136,13 @@ static void houses_and_trees_are_told_apart(void **state)
         site_run(&s);
         double recall[3], precision[3];
         for (int kind = CELL_BUILDING; kind <= CELL_TREE; kind++) rates(&recall[kind], &precision[kind], &s, kind);
-        print_message("%.1f m cells: ground %.3f m rms, roofs %.3f found %.3f right, trees %.3f %.3f, crowns %d of 30\n",
+        print_message("%.1f m: ground %.3f m rms, roofs %.3f found %.3f right, trees %.3f %.3f, crowns %d of 30\n",
                       cell_m, ground_rms(&s, 0), recall[1], precision[1], recall[2], precision[2],
                       s.parts.crown_count);
         CHECK(ground_rms(&s, 0) < 0.3);
         CHECK(recall[1] > 0.9 && precision[1] > 0.9);
         CHECK(recall[2] > 0.85 && precision[2] > 0.9);
+        CHECK(s.parts.crown_count >= 28 && s.parts.crown_count <= 36);
         /* heights of roofs that were found */
         double most = 0, sum = 0, count = 0;
         for (size_t c = 0; c < (size_t)n * (size_t)n; c++) {
@@ -163,7 +164,7 @@ static void a_wide_roof_is_no_ground(void **state)
     site_run(&s);
     double recall, precision;
     rates(&recall, &precision, &s, CELL_BUILDING);
-    print_message("roof 100 m wide: %.3f found, %.3f right, ground %.3f m rms\n", recall, precision, ground_rms(&s, 0));
+    print_message("roof 100 m wide: %.3f found, %.3f right, ground %.3f m\n", recall, precision, ground_rms(&s, 0));
     CHECK(recall > 0.95 && precision > 0.95);
     CHECK(ground_rms(&s, 0) < 0.6);
     site_free(&s);
@@ -193,7 +194,8 @@ static void overlapping_windows_agree(void **state)
     const int    reach = (int)ceil(take_apart_reach_m / cell_m);
     Site a = site_make(side, side, cell_m, gentle);
     for (int i = 0; i < 300; i++)
-        add_tree(&a, 1680 * random_uniform(11, 1, 0, (uint64_t)i), 1680 * random_uniform(11, 2, 0, (uint64_t)i), 20, 12);
+        add_tree(&a, 1680 * random_uniform(11, 1, 0, (uint64_t)i), 1680 * random_uniform(11, 2, 0, (uint64_t)i), 20,
+                 12);
     for (int i = 0; i < 8; i++) add_house(&a, 100 + 190 * i, 800 + 40 * (i % 3), 60, 40, 10, 0.2);
     Site b = site_make(side - shift_x, side - shift_y, cell_m, gentle);
     for (int j = 0; j < b.ny; j++)
