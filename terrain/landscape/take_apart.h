@@ -11,7 +11,7 @@ typedef struct SurfaceModel {
     double         cell_m;
     const float   *surface_m; /* [ny][nx] NAN: void */
     const float   *bare_m;    /* a terrain model of the same cells, NAN where it has none; NULL: none */
-    const uint8_t *rgb;       /* [ny][nx][3] sRGB of an orthophoto; NULL: none */
+    const uint8_t *rgb;       /* [ny][nx][3] sRGB of an orthophoto, NULL: none; not used yet */
     int64_t        column, row; /* of the south-west cell in the whole model: overlapping windows agree */
 } SurfaceModel;
 
