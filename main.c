@@ -10,6 +10,7 @@
 #include "sensor/commands/model.h"
 #include "sensor/commands/record.h"
 #include "sensor/commands/replay.h"
+#include "sensor/commands/terrain.h"
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
 #include "sensor/regress/regress.h"
@@ -108,6 +109,7 @@ static const struct Command {
     {"exercise", exercise_command, "generate an exercise from a scenario: record it or send it", true},
     {"record", record_command, "record an exercise from the network", false},
     {"model", model_command, "list models; describe or draw one, built in or from a file", true},
+    {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true},
     {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false},
     {"bench", run_bench, "benchmark this build on this machine: times with their errors", true},
 };

@@ -45,7 +45,7 @@ bool etc_path(char *out, size_t out_size, const char *name)
 
 bool etc_is_complete(void)
 {
-    static const char *const needed[] = {"catalog.csv", "materials.csv", "surfaces.csv", "ground_heat.csv",
+    static const char *const needed[] = {"catalog.csv", "materials.csv", "surfaces.csv", "ground_heat.csv", "ground_detail.csv",
                                          "heat.csv", "effects.csv", "sensors.csv", "channels.csv", "atmosphere/bands.csv"};
     char   path[4096], beside[4096], missing[256] = "";
     size_t n = 0;

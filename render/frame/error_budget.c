@@ -114,17 +114,22 @@ static int draw(ProbeOf *out, int most, const Budget *b)
     return count;
 }
 
-/* Weight: root of the difference from its neighbours over each plane's mean, and no less than a uniform share. */
-static int draw_probes(Budget *b, const double mean[picture_plane_count])
+/* Weight: root of the difference from its neighbours over each plane's own mean difference (so that the ground's noise
+ * in one band does not hide the borders of another), and no less than a uniform share. */
+static int draw_probes(Budget *b)
 {
-    double sum = 0, area = 0;
+    double sum = 0, area = 0, typical[picture_plane_count] = {0};
+    for (int i = 0; i < b->candidates; i++)
+        for (int k = 0; k < picture_plane_count; k++)
+            if (b->candidate[i].planes >> k & 1)
+                typical[k] += b->candidate[i].area * (double)b->candidate[i].contrast[k];
     for (int i = 0; i < b->candidates; i++) {
         Candidate *c = &b->candidate[i];
         double     relative = 0;
         c->weight = 0;
         if (!c->planes) continue;
         for (int k = 0; k < picture_plane_count; k++)
-            if (c->planes >> k & 1 && mean[k] != 0) relative += (double)c->contrast[k] / (mean[k] * mean[k]);
+            if (c->planes >> k & 1 && typical[k] > 0) relative += (double)c->contrast[k] / typical[k];
         c->weight = sqrt(relative);
         sum += c->weight * c->area;
         area += c->area;
@@ -151,17 +156,12 @@ static int draw_tables(Budget *b, const double mean[picture_plane_count])
 
 /* ---- the ground at every second post ----------------------------------------------------------- */
 
-static double post_m(const ElevationLevel *l, int i, int j)
-{
-    return l->z0_m + l->step_m * l->post[(size_t)j * (size_t)l->nx + (size_t)i];
-}
-
 /* A cell of `stride` posts: height at (x, y), and normal. */
 static double cell_height(double n_enu[3], const ElevationLevel *l, double fx, double fy, int i, int j, int stride)
 {
     const double u = (fx - i) / stride, v = (fy - j) / stride;
-    const double sw = post_m(l, i, j), se = post_m(l, i + stride, j), nw = post_m(l, i, j + stride),
-                 ne = post_m(l, i + stride, j + stride);
+    const double sw = elevation_post_m(l, i, j), se = elevation_post_m(l, i + stride, j);
+    const double nw = elevation_post_m(l, i, j + stride), ne = elevation_post_m(l, i + stride, j + stride);
     const double du = u >= v ? se - sw : ne - nw, dv = u >= v ? ne - se : nw - sw, s = l->spacing_m * stride;
     const double length = sqrt(du * du + dv * dv + s * s);
     n_enu[0] = -du / length, n_enu[1] = -dv / length, n_enu[2] = s / length;
@@ -360,7 +360,7 @@ Status error_estimate(const Job *job, Pool *pool, Arena *arena)
         for (int k = 0; k < picture_plane_count; k++)
             out->mean[k] += (double)b.candidate[i].value[k] * b.candidate[i].area;
     for (int k = 0; k < picture_plane_count; k++) out->mean[k] /= pixels;
-    out->probes = draw_probes(&b, out->mean);
+    out->probes = draw_probes(&b);
     const int tasks = deal(&b, out->probes, draw_tables(&b, out->mean));
     pool_run(pool, tasks, probe_task, &b);
 

@@ -71,36 +71,86 @@ static int albedo_of_channel(int channel)
          : channel == optical_channel_b ? albedo_blue : albedo_all;
 }
 
-/* Relative brightness of the ground's pattern at each hit, in the requested optical channels and in the one that
- * governs solar heating (pan). */
-static void resolve_textures(Shader *shader, const ShadeScene *scene, const Samples *s)
+/* A sample's footprint on the ground, that its detail is filtered to: longer along a grazing view. */
+static void find_footprints(Shader *shader, const Samples *s)
 {
-    const Landscape *landscape = scene->world->landscape;
-    const Hits      *hits = &s->hits;
-    const Rays      *rays = &s->rays;
-    const unsigned   channels = s->channels | 1u << optical_channel_pan;
-    float           *pattern = shader->texture[optical_channel_pan], *footprint_m = shader->footprint_m;
-    /* texture filter footprint of a sample along the ground, which limits aliasing: longer at grazing view */
+    static const float least_graze = 0.01f;
+    const Hits *hits = &s->hits;
+    const Rays *rays = &s->rays;
     for (int i = 0; i < hits->count; i++) {
         float graze = 0;
         for (int k = 0; k < 3; k++) graze -= hits->n_geo[k][i] * (float)rays->d_enu[k][i];
-        footprint_m[i] = (float)(hits->range_m[i] / s->per_rad) / (graze > 0.01f ? graze : 0.01f);
-        pattern[i] = 1;
+        shader->across_m[i] = (float)(hits->range_m[i] / s->per_rad);
+        shader->along_m[i]  = shader->across_m[i] / (graze > least_graze ? graze : least_graze);
     }
-    if (landscape)
-        landscape_textures(pattern, landscape, hits->count, hits->surface, hits->p_enu[0], hits->p_enu[1], footprint_m);
+}
+
+/* The ground's detail at each hit, as far as the channels show it: its reflectance relative to that of its class, in
+ * the optical channels and (of the photograph) in the one that governs solar heating (pan); temperature, backscatter,
+ * slopes. */
+static void resolve_detail(Shader *shader, const ShadeScene *scene, const Samples *s)
+{
+    const Landscape *landscape = scene->world->landscape;
+    const Hits      *hits = &s->hits;
+    const unsigned   channels = s->channels | 1u << optical_channel_pan;
+    const bool       thermal = s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature;
+    const bool       optical = s->channels & ((1u << optical_channel_count) - 1);
+    float           *pattern = shader->texture[optical_channel_pan];
+    shader->sloped = false;
+    find_footprints(shader, s);
+    for (int i = 0; i < hits->count; i++) pattern[i] = shader->radar[i] = 1, shader->warmth_k[i] = 0;
+    if (landscape && scene->world->detail) {
+        const GroundDetail out = {.albedo = optical ? pattern : NULL, .warmth_k = thermal ? shader->warmth_k : NULL,
+                                  .radar = s->radar ? shader->radar : NULL,
+                                  .slope_x = s->channels ? shader->slope_x : NULL,
+                                  .slope_y = s->channels ? shader->slope_y : NULL};
+        landscape_details(&out, scene->world->detail, landscape, hits->count, hits->surface, hits->p_enu[0],
+                          hits->p_enu[1], &(GroundFootprint){shader->across_m, shader->along_m});
+        for (int i = 0; i < hits->count && out.slope_x; i++)
+            shader->sloped |= shader->slope_x[i] != 0 || shader->slope_y[i] != 0;
+    }
     for (int c = 0; c < optical_channel_count; c++)
         if (channels >> c & 1 && c != optical_channel_pan)
             memcpy(shader->texture[c], pattern, (size_t)hits->count * sizeof *pattern);
+    for (int i = 0; i < hits->count; i++) shader->photo[i] = 1;
     if (!landscape || !landscape_has_photo(landscape)) return;
     for (int i = 0; i < hits->count; i++) {
         float albedo[albedo_channels];
         if (!hits->surface[i]) continue;
         landscape_albedo(albedo, landscape, (SurfaceClass)hits->surface[i], hits->p_enu[0][i], hits->p_enu[1][i],
-                         (double)footprint_m[i]);
+                         (double)shader->along_m[i]);
         for (int c = 0; c < optical_channel_count; c++)
             if (channels >> c & 1) shader->texture[c][i] *= albedo[albedo_of_channel(c)];
+        shader->photo[i] = albedo[albedo_all];
     }
+}
+
+/* Normals of the ground with the slopes of its detail, for the light alone: footprints, truth and the heat of the slope
+ * are of the ground as it is stored. */
+static void bend_normals(Hits *hits, const Shader *shader)
+{
+    for (int i = 0; i < hits->count; i++) {
+        const float slope_x = shader->slope_x[i], slope_y = shader->slope_y[i], up = hits->n_enu[2][i];
+        if (slope_x == 0 && slope_y == 0) continue;
+        const double n_enu[3] = {hits->n_enu[0][i] - slope_x * up, hits->n_enu[1][i] - slope_y * up, up};
+        double       bent[3];
+        if (!v3_normalize(bent, n_enu)) continue;
+        for (int k = 0; k < 3; k++) hits->n_enu[k][i] = (float)bent[k];
+    }
+}
+
+/* Bends the normals of the ground for the light, and gives them back. */
+static void keep_normals(Shader *shader, Hits *hits)
+{
+    if (!shader->sloped) return;
+    for (int k = 0; k < 3; k++) memcpy(shader->n_enu[k], hits->n_enu[k], (size_t)hits->count * sizeof(float));
+    bend_normals(hits, shader);
+}
+
+static void restore_normals(const Shader *shader, Hits *hits)
+{
+    if (!shader->sloped) return;
+    for (int k = 0; k < 3; k++) memcpy(hits->n_enu[k], shader->n_enu[k], (size_t)hits->count * sizeof(float));
 }
 
 /* ---- light ------------------------------------------------------------------------------------ */
@@ -127,7 +177,7 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
     const World *world = scene->world;
     if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature)
         thermal_temperature(s->temp_k, scene->air, &world->materials, world->catalog, scene->snapshot, &s->hits,
-                            s->hits.material, shader->texture[optical_channel_pan]);
+                            s->hits.material, shader->photo, shader->warmth_k);
     if (!s->channels) return;
     air_paths_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
 
@@ -141,7 +191,9 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
         if (scene->sky_samples > 0) block.around_w_m2[b] = shader->gathered.w_m2[b];
         else if (shader->any_open) block.open[b] = shader->open.factor[b];
     }
+    keep_normals(shader, &s->hits);
     surface_light_shade(out, &scene->surface_light, &block);
+    restore_normals(shader, &s->hits);
     shade_beyond(shader, scene, s, out);
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (out[b]) smoke_apply(out[b], &s->smoke, b, s->hits.count);
@@ -151,6 +203,7 @@ static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     radar_shade(&s->returns, &scene->world->radar, scene->visibility, &scene->world->materials, &s->hits, &s->rays,
                 scene->hidden_entity, &shader->counters);
+    for (int i = 0; i < s->hits.count; i++) s->returns.power[0][i] *= shader->radar[i];
     for (int i = 0; i < s->hits.count; i++) {
         double sum = 0;
         for (int b = 0; b < radar_bounces; b++) sum += s->returns.power[b][i];
@@ -163,7 +216,7 @@ void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
     const double      t0 = wall_clock_s();
     const HemisphereScene around = {scene->visibility, scene->air, &scene->world->materials, scene->world->catalog,
                                 scene->snapshot};
-    resolve_textures(shader, scene, s);
+    resolve_detail(shader, scene, s);
     samples_smoke(scene, s);
     if (scene->sky_samples > 0)
         hemisphere_light(&shader->gathered, &around, &s->hits, s->channels, scene->sky_samples, s->key, &shader->counters);
@@ -205,6 +258,7 @@ static const float *light_around(float room[hits_capacity], const Shader *shader
 void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, AirPaths direct[AIR_BAND_COUNT])
 {
     const Materials *materials = &scene->world->materials;
+    keep_normals(shader, &s->hits);
     air_paths_directly(direct, scene->air, s->channels, &s->hits, &s->rays, s->temp_k, shader->air);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         float        room[hits_capacity], *out = s->radiance[b];
@@ -218,4 +272,5 @@ void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s,
                           around, &direct[b], NULL);
         smoke_apply(out, &s->smoke, b, s->hits.count);
     }
+    restore_normals(shader, &s->hits);
 }

@@ -62,7 +62,12 @@ typedef struct Shader {
     SkyWorker         *sky;           /* with ShadeScene.sky */
     AirPaths              air[AIR_BAND_COUNT];
     float              texture[optical_channel_count][hits_capacity]; /* relative brightness of the ground */
-    float              footprint_m[hits_capacity];                    /* of a sample along the ground */
+    float              across_m[hits_capacity], along_m[hits_capacity]; /* a sample's footprint on the ground */
+    float              warmth_k[hits_capacity], radar[hits_capacity]; /* the ground's detail: GroundDetail */
+    float              slope_x[hits_capacity], slope_y[hits_capacity];
+    bool               sloped;        /* some slope is not 0 */
+    float              n_enu[3][hits_capacity]; /* normals as stored, while those of the hits are bent */
+    float              photo[hits_capacity];    /* brightness of the photograph over that of its class; 1: none */
     HemisphereLight           gathered;      /* with sky_samples only */
     SkyOpen            open;
     bool               any_open;      /* `open` has factors of these hits */

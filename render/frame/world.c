@@ -5,15 +5,17 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
                   const char *isa)
 {
     World  world = {.catalog = catalog, .landscape = landscape, .frame = *frame, .radar = {.lobe_rad = 0.05}};
-    char   materials[512], surfaces[512];
+    char   materials[512], surfaces[512], detail[512];
     Status status = STATUS_BAD_VALUE;
 
-    if (!etc_path(materials, sizeof materials, "materials.csv") || !etc_path(surfaces, sizeof surfaces, "surfaces.csv")) {
+    if (!etc_path(materials, sizeof materials, "materials.csv") || !etc_path(surfaces, sizeof surfaces, "surfaces.csv") ||
+        !etc_path(detail, sizeof detail, "ground_detail.csv")) {
         log_error("render: path of the tables is too long; set PITVIPER_ETC to a shorter one");
         return STATUS_BAD_VALUE;
     }
     status = tracer_create(&world.tracer, catalog, isa);
     if (status == STATUS_OK) status = materials_open(&world.materials, materials, surfaces, catalog);
+    if (status == STATUS_OK) status = detail_table_open(&world.detail, detail, detail_cut_off);
     PlanckTable **const planck[2] = {&world.planck_mwir, &world.planck_lwir};
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         double low_m, high_m;
@@ -33,6 +35,7 @@ void world_close(World *world)
     atmosphere_close(world->atmosphere);
     planck_table_destroy(world->planck_lwir);
     planck_table_destroy(world->planck_mwir);
+    detail_table_close(world->detail);
     materials_close(&world->materials);
     tracer_destroy(world->tracer);
     memset(world, 0, sizeof *world);

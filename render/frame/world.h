@@ -5,6 +5,7 @@
 #include "render/air/air.h"
 #include "render/radar/radar_image.h"
 #include "render/visibility/visibility.h"
+#include "terrain/landscape/detail.h"
 
 typedef struct World {
     const Catalog   *catalog;
@@ -12,6 +13,7 @@ typedef struct World {
     LocalFrame       frame;          /* the ENU frame of the views */
     Tracer          *tracer;
     Materials        materials;
+    DetailTable     *detail;         /* of the ground; the caller may close it and set NULL: classes of one value */
     PlanckTable     *planck_mwir, *planck_lwir;
     Atmosphere      *atmosphere;     /* NULL after world_open; the caller may open one here; world_close closes it */
     RadarConfig      radar;

@@ -1,21 +1,33 @@
 /* render/ground/ground.c: the elevation in the form that the ray tracers use, and the scalar tracer. */
 #include "render/ground/ground_private.h"
 
+/* Of the whole level's edges; of a small level without rises, as far as its posts can be apart. */
+static double steepest(const GroundLevel *g)
+{
+    if (!g->rise[g->top]) return elevation_highest_post - elevation_lowest_post;
+    const ElevationRise r = *g->rise[g->top];
+    const int           along = r.east > r.west ? r.east : r.west, across = r.north > r.south ? r.north : r.south;
+    return g->rise_unit * (along > across ? along : across);
+}
+
 void ground_prepare(Ground *out, const Elevation *elevation)
 {
     *out = (Ground){.elevation = elevation, .level_count = elevation ? elevation->level_count : 0};
     for (int k = 0; k < out->level_count; k++) {
         const ElevationLevel *e = &elevation->level[k];
         GroundLevel          *g = &out->level[k];
-        *g = (GroundLevel){.post = e->post, .nx = e->nx, .cells_x = e->nx - 1, .cells_y = e->ny - 1,
-                           .top = e->pyramid_count - 1, .x0_m = e->x0_m, .y0_m = e->y0_m, .z0_m = e->z0_m,
+        *g = (GroundLevel){.stored = e->stored, .tile = e->tile, .plain = e->plain, .tiles_x = e->tiles_x,
+                           .cells_x = e->nx - 1, .cells_y = e->ny - 1, .top = e->pyramid_count - 1,
+                           .pyramid_base = e->pyramid_base, .pyramid_shift = e->pyramid_shift,
+                           .rise_unit = 1 << e->rise_shift, .x0_m = e->x0_m, .y0_m = e->y0_m, .z0_m = e->z0_m,
                            .cells_per_m = 1 / e->spacing_m, .posts_per_m = 1 / e->step_m};
         for (int p = 0; p < e->pyramid_count; p++) {
             g->pyramid[p]    = e->pyramid[p];
             g->rise[p]       = e->rise[p];
             g->pyramid_nx[p] = e->pyramid_nx[p];
         }
-        g->highest = e->pyramid[g->top][0];
+        g->highest  = ground_highest(g, g->top, 0, 0);
+        g->steepest = steepest(g);
     }
 }
 
@@ -81,10 +93,10 @@ static double level_first_hit(GroundHit *hit, const GroundLevel *g, const LevelR
         double       next = at_u < at_v ? at_u : at_v;
         next = next < r->last_m ? next : r->last_m;
         const double lowest  = r->w0 + (r->dw < 0 ? next : t) * r->dw;
-        const double highest = g->pyramid[k][(size_t)node_j * (size_t)g->pyramid_nx[k] + (size_t)node_i];
+        const int32_t highest = k > 0 ? ground_highest(g, k, node_i, node_j) : ground_cell_highest(g, i, j);
         if (!(lowest > highest + ground_clear_posts)) {
             if (k > 0) {
-                k--;
+                k = ground_level_below(k);
                 continue;
             }
             bool         north_west;
@@ -102,7 +114,8 @@ static double level_first_hit(GroundHit *hit, const GroundLevel *g, const LevelR
         else if (k > 0) i = ground_cell_at(r->u0, r->du, r->per_du, t, g->cells_x);
         if (crosses_v) j = north ? line_v : line_v - 1;
         else if (k > 0) j = ground_cell_at(r->v0, r->dv, r->per_dv, t, g->cells_y);
-        if (k < g->top && ((crosses_u && !((line_u >> k) & 1)) || (crosses_v && !((line_v >> k) & 1)))) k++;
+        const int up = ground_level_above(k), inside = (1 << up) - 1; /* lines of the parent */
+        if (k < g->top && ((crosses_u && !(line_u & inside)) || (crosses_v && !(line_v & inside)))) k = up;
     }
 }
 
@@ -126,14 +139,12 @@ double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu
 }
 
 /* Upward normal at a post from central differences, one-sided at the edges; not normalised. */
-static void post_slope(double slope[2], const GroundLevel *g, double cells_per_post, int i, int j)
+static void post_slope(double slope[2], const ElevationLevel *e, double cells_per_post, int i, int j)
 {
-    const int       west = i > 0 ? i - 1 : i, east = i < g->cells_x ? i + 1 : i;
-    const int       south = j > 0 ? j - 1 : j, north = j < g->cells_y ? j + 1 : j;
-    const size_t    nx = (size_t)g->nx;
-    const uint16_t *row = g->post + (size_t)j * nx, *column = g->post + i;
-    slope[0] = (row[east] - row[west]) * cells_per_post / (east - west);
-    slope[1] = (column[(size_t)north * nx] - column[(size_t)south * nx]) * cells_per_post / (north - south);
+    const int west = i > 0 ? i - 1 : i, east = i < e->nx - 1 ? i + 1 : i;
+    const int south = j > 0 ? j - 1 : j, north = j < e->ny - 1 ? j + 1 : j;
+    slope[0] = (elevation_post(e, east, j) - elevation_post(e, west, j)) * cells_per_post / (east - west);
+    slope[1] = (elevation_post(e, i, north) - elevation_post(e, i, south)) * cells_per_post / (north - south);
 }
 
 static void upward(double n[3], double slope_x, double slope_y)
@@ -147,19 +158,21 @@ static void upward(double n[3], double slope_x, double slope_y)
 void ground_normals(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m,
                     double y_m)
 {
-    const GroundLevel *g = &ground->level[hit->level];
-    const uint16_t    *post = g->post + (size_t)hit->j * (size_t)g->nx + (size_t)hit->i;
-    const double       sw = post[0], se = post[1], nw = post[g->nx], ne = post[g->nx + 1];
-    const double       scale = g->cells_per_m / g->posts_per_m; /* from posts per cell to metres per metre */
+    const GroundLevel    *g = &ground->level[hit->level];
+    const ElevationLevel *e = &ground->elevation->level[hit->level];
+    int32_t               z[4];
+    ground_cell_posts(z, g, hit->i, hit->j);
+    const double sw = z[0], se = z[1], nw = z[2], ne = z[3];
+    const double scale = g->cells_per_m / g->posts_per_m; /* from posts per cell to metres per metre */
     if (hit->north_west) upward(n_geo, (ne - nw) * scale, (nw - sw) * scale);
     else upward(n_geo, (se - sw) * scale, (ne - se) * scale);
 
     const double a = clamp((x_m - g->x0_m) * g->cells_per_m - hit->i, 0, 1);
     const double b = clamp((y_m - g->y0_m) * g->cells_per_m - hit->j, 0, 1);
     double       at_sw[2], at_ne[2], at_corner[2];
-    post_slope(at_sw, g, scale, hit->i, hit->j);
-    post_slope(at_ne, g, scale, hit->i + 1, hit->j + 1);
-    post_slope(at_corner, g, scale, hit->i + !hit->north_west, hit->j + hit->north_west);
+    post_slope(at_sw, e, scale, hit->i, hit->j);
+    post_slope(at_ne, e, scale, hit->i + 1, hit->j + 1);
+    post_slope(at_corner, e, scale, hit->i + !hit->north_west, hit->j + hit->north_west);
     /* weights of SW, NE and the third post: 1 - max, min, the difference */
     const double low = fmin(a, b), high = fmax(a, b);
     double       slope[2];

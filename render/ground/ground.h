@@ -15,13 +15,18 @@
 
 /* One level in tracer units: lengths in cells, heights in posts. */
 typedef struct GroundLevel {
-    const uint16_t *post;
-    const uint16_t *pyramid[elevation_pyramid_levels];
+    const uint16_t *stored;                    /* posts, in tiles */
+    const ElevationTile *tile;
+    bool            plain;                     /* every tile has base 0 and shift 0 */
+    const uint16_t *pyramid[elevation_pyramid_levels]; /* NULL below elevation_pyramid_first */
     int             pyramid_nx[elevation_pyramid_levels];
+    int32_t         pyramid_base, pyramid_shift; /* posts: base + (entry << shift) */
+    double          rise_unit;                 /* posts */
     const ElevationRise *rise[elevation_pyramid_levels]; /* NULL on the finest */
-    int             nx, cells_x, cells_y, top; /* posts a row; cells; index of the pyramid's single entry */
+    int             tiles_x, cells_x, cells_y, top; /* tiles a row; cells; index of the pyramid's single entry */
     double          x0_m, y0_m, z0_m, cells_per_m, posts_per_m;
     double          highest;                   /* post */
+    double          steepest;                  /* no edge of a cell rises by more posts */
 } GroundLevel;
 
 /* Borrows the elevation's arrays; no allocation. */

@@ -2,7 +2,7 @@
  * takes the next ray of the list. A step is the same for every lane, in two vectors of four; looking up posts, the
  * triangles of a cell and changes of ray are done a lane at a time.
  *
- * Cell numbers are doubles here: integers below 2^16 are exact, and halving or doubling them too. */
+ * Cell numbers are doubles here: integers up to 2^16 are exact, and halving or doubling them too. */
 #include "render/ground/ground_lanes.h"
 
 enum { lanes = 8 };
@@ -32,7 +32,7 @@ static inline F64x4 look_up(F64x4 node_i, F64x4 node_j, F64x4 k, const GroundLev
     _mm_storeu_si128((__m128i *)j, _mm256_cvttpd_epi32(node_j));
     _mm_storeu_si128((__m128i *)at, _mm256_cvttpd_epi32(k));
     for (int l = 0; l < 4; l++)
-        z[l] = level[l]->pyramid[at[l]][(size_t)j[l] * (size_t)level[l]->pyramid_nx[at[l]] + (size_t)i[l]];
+        z[l] = at[l] > 0 ? ground_highest(level[l], at[l], i[l], j[l]) : ground_cell_highest(level[l], i[l], j[l]);
     return f64x4_of_ints(_mm_set_epi32(z[3], z[2], z[1], z[0]));
 }
 
@@ -58,7 +58,14 @@ static inline unsigned move(Walk *w, int l, const Seen *s, F64x4 on)
 {
     const F64x4 t = s->next_m, one = f64x4_set(1), half = f64x4_set(0.5);
     const F64x4 k = f64x4_load(w->k + l);
-    const F64x4 n_u = (s->node_i + f64x4_load(w->east + l)) * half, n_v = (s->node_j + f64x4_load(w->north + l)) * half;
+    /* between the cells and the first level of the pyramid it is several levels at once */
+    const F64x4 first = f64x4_set(elevation_pyramid_first);
+    const F64x4 per_square = f64x4_set(1.0 / (1 << elevation_pyramid_first));
+    const F64x4 cell = f64x4_at_most(k, f64x4_set(0)), above_cells = f64x4_at_most(k, first);
+    const F64x4 share_up = f64x4_select(cell, per_square, half);
+    const F64x4 share_down = f64x4_select(above_cells, per_square, half);
+    const F64x4 n_u = (s->node_i + f64x4_load(w->east + l)) * share_up;
+    const F64x4 n_v = (s->node_j + f64x4_load(w->north + l)) * share_up;
     const F64x4 even_u = f64x4_at_most(n_u, f64x4_floor(n_u)), even_v = f64x4_at_most(n_v, f64x4_floor(n_v));
     const F64x4 leaves =
         f64x4_or(f64x4_and(f64x4_at_most(s->at_u, t), even_u), f64x4_and(f64x4_at_most(s->at_v, t), even_v));
@@ -71,10 +78,15 @@ static inline unsigned move(Walk *w, int l, const Seen *s, F64x4 on)
     f64x4_store(w->t_m + l, f64x4_select(on, t, f64x4_load(w->t_m + l)));
     f64x4_store(w->i + l, f64x4_select(on, i, f64x4_load(w->i + l)));
     f64x4_store(w->j + l, f64x4_select(on, j, f64x4_load(w->j + l)));
-    f64x4_store(w->k + l, k + f64x4_select(on, f64x4_and(up, one), f64x4_set(-1)));
-    f64x4_store(w->size + l, f64x4_load(w->size + l) * f64x4_select(on, f64x4_select(up, f64x4_set(2), one), half));
+    const F64x4 k_up = f64x4_and(up, f64x4_select(cell, first, one));
+    const F64x4 k_down = f64x4_select(above_cells, f64x4_set(-elevation_pyramid_first), f64x4_set(-1));
+    const F64x4 square = f64x4_set(1 << elevation_pyramid_first), two = f64x4_set(2);
+    const F64x4 times_up = f64x4_select(up, f64x4_select(cell, square, two), one);
+    const F64x4 times_down = f64x4_select(above_cells, square, two);
+    f64x4_store(w->k + l, k + f64x4_select(on, k_up, k_down));
+    f64x4_store(w->size + l, f64x4_load(w->size + l) * f64x4_select(on, times_up, share_down));
     f64x4_store(w->per_size + l,
-                f64x4_load(w->per_size + l) * f64x4_select(on, f64x4_select(up, half, one), f64x4_set(2)));
+                f64x4_load(w->per_size + l) * f64x4_select(on, f64x4_select(up, share_up, one), times_down));
     return f64x4_bits(f64x4_and_not(on, f64x4_less(t, f64x4_load(w->stop_m + l))));
 }
 
@@ -123,7 +135,7 @@ static bool refill(Stream *stream, Walk *w, int l)
             int k = ground_start_level(g, r);
             if (stream->from_m && stream->from_m[stream->ray_of[l]] > start_m) {
                 start_m = stream->from_m[stream->ray_of[l]];
-                k = k < 2 ? k : 2;
+                k = elevation_pyramid_first;
             }
             if (!(start_m < stop_m)) continue;
             stream->level[l] = g;

@@ -1,6 +1,6 @@
 /* render/ground/ground_clear.c: proves that a bundle of rays is clear of the ground: in pieces along it, each twice
  * as long as the last, the lowest point of the piece is compared with the highest posts under it. */
-#include "render/ground/ground.h"
+#include "render/ground/ground_private.h"
 
 /* Margin above the posts: rounding of coordinates of 1e6 m is 1e-9 of it, on the steepest ground. */
 static const double clear_m = 1e-3;
@@ -21,11 +21,11 @@ static bool level_is_below(const GroundLevel *g, double low_m, const double low[
         to[c]   = clamp(to[c], 0, most[c]);
     }
     const double span = fmax(to[0] - from[0], to[1] - from[1]), post = (low_m - clear_m - g->z0_m) * g->posts_per_m;
-    int          k = 0;
-    while (k < g->top && (2 << k) < span) k++;
+    int          k = span > 2 ? elevation_pyramid_first : 0;
+    while (k > 0 && k < g->top && (2 << k) < span) k++;
     for (int j = (int)from[1] >> k; j <= (int)to[1] >> k; j++)
         for (int i = (int)from[0] >> k; i <= (int)to[0] >> k; i++)
-            if (!(g->pyramid[k][(size_t)j * (size_t)g->pyramid_nx[k] + (size_t)i] < post)) return false;
+            if (!((k > 0 ? ground_highest(g, k, i, j) : ground_cell_highest(g, i, j)) < post)) return false;
     return true;
 }
 

@@ -15,9 +15,10 @@ enum { quarters = 4, cells_tried = 4, wait = 3, run_up = 2, patience = 96 };
  * For others the test fails too often: measured with suns 15, 35 and 60 degrees high. */
 static const double steep_sine = 0.3;
 
-/* A ray this far above the ground is above it despite rounding: within 1e5 cells and 1e7 posts of the corner its
- * position is accurate to 1e-10 cells and 1e-8 posts, which the steepest ground makes 1e-5 posts. */
-static const double sure_posts = 1e-3, sure_cells = 1e5, sure_height_posts = 1e7;
+/* A ray this far above the ground is above it despite rounding: within 1e5 cells and 1e8 posts of the corner its
+ * position is accurate to 1e-10 cells and 1e-7 posts, which edges of 65536 posts make 1e-5 posts; steeper ones need
+ * more, in proportion. */
+static const double sure_posts = 1e-3, sure_steep_posts = 65536, sure_cells = 1e5, sure_height_posts = 1e8;
 
 /* Four rays over one level: LevelRay, and their positions. */
 typedef struct Rays4 {
@@ -82,10 +83,38 @@ static inline F64x4 usable(const double *const o[3], const double *const d[3], c
     return f64x4_and(good, f64x4_less(f64x4_set(0.25), square[0] + square[1] + square[2]));
 }
 
+/* Stored posts to posts, each of its lane's tile. */
+static inline __m128i posts_of(const GroundLevel *g, __m128i tile, __m128i stored)
+{
+    if (g->plain) return stored;
+    int32_t     index[4];
+    ElevationTile of[4];
+    _mm_storeu_si128((__m128i *)index, tile);
+    for (int l = 0; l < 4; l++) of[l] = g->tile[index[l]];
+    const __m128i base = _mm_set_epi32(of[3].base, of[2].base, of[1].base, of[0].base);
+    const __m128i shift = _mm_set_epi32(of[3].shift, of[2].shift, of[1].shift, of[0].shift);
+    return _mm_add_epi32(base, _mm_sllv_epi32(stored, shift));
+}
+
 /* Index of (i, j) in rows of nx. */
 static inline __m128i element(F64x4 i, F64x4 j, int nx)
 {
     return _mm_add_epi32(_mm_mullo_epi32(_mm256_cvttpd_epi32(j), _mm_set1_epi32(nx)), _mm256_cvttpd_epi32(i));
+}
+
+/* Tiles of four cells, and the indices of their south-west posts in g->stored. */
+static inline __m128i stored_at(__m128i *tile, const GroundLevel *g, F64x4 i, F64x4 j)
+{
+    enum { bits = 6 };
+    _Static_assert(elevation_tile_cells == 1 << bits && elevation_tile_side == (1 << bits) + 1 &&
+                  elevation_tile_posts == (1 << 2 * bits) + (2 << bits) + 1, "products below are shifts");
+    const __m128i a = _mm256_cvttpd_epi32(i), b = _mm256_cvttpd_epi32(j), inside = _mm_set1_epi32((1 << bits) - 1);
+    const __m128i t = _mm_add_epi32(_mm_mullo_epi32(_mm_srli_epi32(b, bits), _mm_set1_epi32(g->tiles_x)),
+                                    _mm_srli_epi32(a, bits));
+    const __m128i row = _mm_and_si128(b, inside), column = _mm_and_si128(a, inside);
+    const __m128i first = _mm_add_epi32(_mm_add_epi32(_mm_slli_epi32(t, 2 * bits), _mm_slli_epi32(t, bits + 1)), t);
+    *tile = t;
+    return _mm_add_epi32(first, _mm_add_epi32(_mm_add_epi32(_mm_slli_epi32(row, bits), row), column));
 }
 
 /* Deactivates those that have left the level, or everything. */
@@ -114,12 +143,13 @@ static inline void cell(Rays4 *r, const GroundLevel *g)
     /* entry and exit points, and the posts: two of a row at once */
     const F64x4    u_low = (i - r->u0) * r->per_du, u_high = (i + one - r->u0) * r->per_du;
     const F64x4    v_low = (j - r->v0) * r->per_dv, v_high = (j + one - r->v0) * r->per_dv;
-    const __m128i at = element(i, j, g->nx);
-    const __m128i south = pairs(g->post, at), north = pairs(g->post + g->nx, at);
-    const F64x4    sw = f64x4_of_ints(_mm_and_si128(south, _mm_set1_epi32(0xffff)));
-    const F64x4    se = f64x4_of_ints(_mm_srli_epi32(south, 16));
-    const F64x4    nw = f64x4_of_ints(_mm_and_si128(north, _mm_set1_epi32(0xffff)));
-    const F64x4    ne = f64x4_of_ints(_mm_srli_epi32(north, 16));
+    __m128i       tile;
+    const __m128i at = stored_at(&tile, g, i, j), low = _mm_set1_epi32(0xffff);
+    const __m128i south = pairs(g->stored, at), north = pairs(g->stored + elevation_tile_side, at);
+    const F64x4    sw = f64x4_of_ints(posts_of(g, tile, _mm_and_si128(south, low)));
+    const F64x4    se = f64x4_of_ints(posts_of(g, tile, _mm_srli_epi32(south, 16)));
+    const F64x4    nw = f64x4_of_ints(posts_of(g, tile, _mm_and_si128(north, low)));
+    const F64x4    ne = f64x4_of_ints(posts_of(g, tile, _mm_srli_epi32(north, 16)));
     const F64x4    u_out = f64x4_select(r->per_du, u_low, u_high), v_out = f64x4_select(r->per_dv, v_low, v_high);
     F64x4          t[3];
     t[0] = f64x4_max(f64x4_max(f64x4_min(u_low, u_high), f64x4_min(v_low, v_high)), r->first_m);
@@ -192,7 +222,9 @@ static inline F64x4 node(Rays4 *r, const GroundLevel *g, int k, bool steep)
     int32_t    index[4];
     _mm_storeu_si128((__m128i *)index, element(r->i, r->j, g->pyramid_nx[k]));
     const uint16_t *z = g->pyramid[k];
-    const F64x4 highest = f64x4_of_ints(_mm_set_epi32(z[index[3]], z[index[2]], z[index[1]], z[index[0]]));
+    const __m128i entry = _mm_set_epi32(z[index[3]], z[index[2]], z[index[1]], z[index[0]]);
+    const F64x4 highest = f64x4_of_ints(
+        _mm_add_epi32(_mm_set1_epi32(g->pyramid_base), _mm_sll_epi32(entry, _mm_cvtsi32_si128(g->pyramid_shift))));
     const F64x4 at_u = ((r->i + east) * size - r->u0) * r->per_du, at_v = ((r->j + north) * size - r->v0) * r->per_dv;
     const F64x4 next = f64x4_min(f64x4_min(at_u, at_v), r->last_m);
     const F64x4 lowest = r->w0 + f64x4_select(r->dw, next, r->t_m) * r->dw;
@@ -209,7 +241,7 @@ static inline F64x4 node(Rays4 *r, const GroundLevel *g, int k, bool steep)
         const F64x4    magic = f64x4_set(0x1p52);
         const F64x4    rise_u = _mm256_castsi256_pd(_mm256_or_si256(by_u, _mm256_castpd_si256(magic))) - magic;
         const F64x4    rise_v = _mm256_castsi256_pd(_mm256_or_si256(by_v, _mm256_castpd_si256(magic))) - magic;
-        const F64x4    ground = rise_u * f64x4_abs(r->du) + rise_v * f64x4_abs(r->dv);
+        const F64x4    ground = (rise_u * f64x4_abs(r->du) + rise_v * f64x4_abs(r->dv)) * f64x4_set(g->rise_unit);
         outrun = f64x4_and(r->above, f64x4_less(ground + f64x4_set(1e-9), r->dw));
         clear  = f64x4_or(clear, outrun);
     }
@@ -290,11 +322,12 @@ static inline void begin(Rays4 *r, const Ground *ground, int level, const double
     const F64x4 size = f64x4_max(f64x4_abs(r->u0), f64x4_abs(r->v0));
     const F64x4 tame = f64x4_and(f64x4_at_most(size, f64x4_set(sure_cells)),
                                  f64x4_at_most(f64x4_abs(r->w0), f64x4_set(sure_height_posts)));
-    r->sure = f64x4_select(tame, f64x4_set(sure_posts), f64x4_set(INFINITY));
+    const double sure = sure_posts * fmax(g->steepest / sure_steep_posts, 1);
+    r->sure = f64x4_select(tame, f64x4_set(sure), f64x4_set(INFINITY));
     r->u_way = bits_16(f64x4_less(r->du, f64x4_set(0)));
     r->v_way = _mm256_add_epi64(_mm256_set1_epi64x(32), bits_16(f64x4_less(r->dv, f64x4_set(0))));
     /* rising, it is above everything from `above` on, if that is near enough to be exact; far_m limits the search */
-    const F64x4 rises = f64x4_and(f64x4_less(f64x4_set(1e-12), r->dw), f64x4_at_most(f64x4_abs(r->w0), f64x4_set(1e7)));
+    const F64x4 rises = f64x4_and(f64x4_less(f64x4_set(1e-12), r->dw), f64x4_at_most(f64x4_abs(r->w0), f64x4_set(sure_height_posts)));
     r->stop_m =
         f64x4_min(f64x4_select(rises, (f64x4_set(above) - r->w0) / r->dw, f64x4_set(INFINITY)), f64x4_loadu(far_m + n));
     const F64x4 from = f64x4_loadu(from_m + n);
@@ -346,7 +379,7 @@ static inline void walk(Rays4 r[quarters], const GroundLevel *g, int k, bool ste
             for (int h = 0; h < quarters; h++)
                 if (f64x4_bits(r[h].on)) cell(&r[h], g);
             if (++tried < (steep ? 1 : cells_tried)) continue;
-            k = steep && g->top >= elevation_rise_level ? elevation_rise_level : 1;
+            k = steep && g->top >= elevation_rise_level ? elevation_rise_level : elevation_pyramid_first;
         } else {
             unsigned blocked = 0;
             for (int h = 0; h < quarters; h++)
@@ -359,7 +392,7 @@ static inline void walk(Rays4 r[quarters], const GroundLevel *g, int k, bool ste
             } else {
                 run = 0;
                 if (blocked != on && ++waited < wait) continue;
-                k--;
+                k = ground_level_below(k);
             }
         }
         tried = waited = run = 0;

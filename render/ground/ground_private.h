@@ -11,8 +11,8 @@
 
 #include "render/ground/ground.h"
 
-/* Above a post by this much a ray is clear of it, despite the rounding of an interpolated height (65535 posts times
- * a few roundings is 3e-11 post). */
+/* Above a post by this much a ray is clear of it, despite the rounding of an interpolated height (2^25 posts times
+ * a few roundings is 3e-8 post). */
 static const double ground_clear_posts = 1e-6;
 
 /* Farther along a ray than this there is no ground: from 1e9 m out, either the track would be past it, or the ray is
@@ -78,8 +78,8 @@ static inline void ground_walk(double *start_m, double *stop_m, const GroundLeve
  * top is worth a tenth on small fields to primary rays. */
 static inline int ground_start_level(const GroundLevel *g, const LevelRay *r)
 {
-    const int k = g->top > 6 ? g->top - 6 : 0;
-    return r->dw > 0 && k > 2 ? 2 : k;
+    const int k = g->top > 6 + elevation_pyramid_first ? g->top - 6 : elevation_pyramid_first;
+    return r->dw > 0 ? elevation_pyramid_first : k;
 }
 
 /* The cell at t along one axis: the furthest along the ray whose line of entry is met at or before t. The estimate
@@ -103,13 +103,51 @@ static inline int ground_cell_at(double p0, double dp, double per_dp, double t, 
     return (int)e;
 }
 
+/* South-west, south-east, north-west and north-east post of a cell. */
+static inline void ground_cell_posts(int32_t z[4], const GroundLevel *g, int i, int j)
+{
+    const unsigned  cell_i = (unsigned)i, cell_j = (unsigned)j; /* not negative */
+    const unsigned  tile = cell_j / elevation_tile_cells * (unsigned)g->tiles_x + cell_i / elevation_tile_cells;
+    const uint16_t *post = g->stored + (size_t)tile * elevation_tile_posts +
+                           cell_j % elevation_tile_cells * elevation_tile_side + cell_i % elevation_tile_cells;
+    const int       sw = post[0], se = post[1], nw = post[elevation_tile_side], ne = post[elevation_tile_side + 1];
+    if (g->plain) {
+        z[0] = sw, z[1] = se, z[2] = nw, z[3] = ne;
+        return;
+    }
+    const ElevationTile of = g->tile[tile];
+    z[0] = elevation_of_tile(of, sw), z[1] = elevation_of_tile(of, se);
+    z[2] = elevation_of_tile(of, nw), z[3] = elevation_of_tile(of, ne);
+}
+
+/* Highest post of node (i, j) of pyramid level k, rounded up; k >= elevation_pyramid_first. */
+static inline int32_t ground_highest(const GroundLevel *g, int k, int i, int j)
+{
+    const uint16_t entry = g->pyramid[k][(size_t)j * (size_t)g->pyramid_nx[k] + (size_t)i];
+    return g->pyramid_base + ((int32_t)entry << g->pyramid_shift);
+}
+
+/* Highest post of a cell. */
+static inline int32_t ground_cell_highest(const GroundLevel *g, int i, int j)
+{
+    int32_t z[4];
+    ground_cell_posts(z, g, i, j);
+    const int32_t south = z[0] > z[1] ? z[0] : z[1], north = z[2] > z[3] ? z[2] : z[3];
+    return south > north ? south : north;
+}
+
+/* The pyramid's level above and below level k, where 0 are the cells. */
+static inline int ground_level_above(int k) { return k > 0 ? k + 1 : elevation_pyramid_first; }
+static inline int ground_level_below(int k) { return k > elevation_pyramid_first ? k - 1 : 0; }
+
 /* First point in cell (i, j) where the ray is not above the ground; INFINITY for none. Its height above the surface
  * is computed at the entry, the diagonal (again the entry where it is not crossed) and the exit, all four numbers of
  * one vector and without a branch: how a ray passes through a cell cannot be predicted. */
 static inline double ground_cell_hit(const GroundLevel *g, const LevelRay *r, int ci, int cj, bool *north_west)
 {
-    const uint16_t *post = g->post + (size_t)cj * (size_t)g->nx + (size_t)ci;
-    const double    sw = post[0], se = post[1], nw = post[g->nx], ne = post[g->nx + 1];
+    int32_t         z[4];
+    ground_cell_posts(z, g, ci, cj);
+    const double    sw = z[0], se = z[1], nw = z[2], ne = z[3];
     const double    i = ci, j = cj;
     const double    u_low = (i - r->u0) * r->per_du, u_high = (i + 1 - r->u0) * r->per_du;
     const double    v_low = (j - r->v0) * r->per_dv, v_high = (j + 1 - r->v0) * r->per_dv;

@@ -12,9 +12,9 @@
 /* Rays per strip: with fewer, sweeping costs more than it saves. Buckets hold rays of similar slope. */
 enum { strip_rays = 128, most_strips = 8, buckets = 128, highest_row = 8 };
 
-/* Margins for rounding: the eye is within 1e6 cells and 1e7 posts of every level's corner, where c and w are
- * accurate to 1e-9; and distances to 1e-9 of themselves and 1e-9 m. These are a hundred times that and more. */
-static const double near_cells = 1e6, near_posts = 1e7, room_posts = 1e-3, room_cells = 1e-6, room_m = 1e-6,
+/* Margins for rounding: the eye is within 1e6 cells and 1e8 posts of every level's corner, where c is accurate to 1e-9
+ * and w to 1e-7; and distances to 1e-9 of themselves and 1e-9 m. These are a hundred times that and more. */
+static const double near_cells = 1e6, near_posts = 1e8, room_posts = 1e-3, room_cells = 1e-6, room_m = 1e-6,
                     room_relative = 1e-9;
 
 typedef struct Strip {
@@ -59,10 +59,12 @@ static double covered(const Axis *axis, const Strip *s)
     return a * (1 - room_relative) - room_cells;
 }
 
-/* Highest post of a row of nodes between two c; -1: no node there. */
+/* Highest post of a row of nodes between two c; nothing_there: no node. */
+enum { nothing_there = INT32_MIN };
+
 static int highest_between(const GroundLevel *g, const Axis *axis, int k, int row, double c_low, double c_high)
 {
-    if (!(c_high >= 0 && c_low <= axis->c_cells)) return -1;
+    if (!(c_high >= 0 && c_low <= axis->c_cells)) return nothing_there;
     const double    last = axis->c_cells - 1;
     const int       from = (int)clamp(c_low, 0, last) >> k, to = (int)clamp(c_high, 0, last) >> k;
     const size_t    nx = (size_t)g->pyramid_nx[k], step = axis->along_v ? 1 : nx;
@@ -70,7 +72,7 @@ static int highest_between(const GroundLevel *g, const Axis *axis, int k, int ro
     const uint16_t *z = g->pyramid[k] + at;
     int             highest = 0;
     for (int n = from; n <= to; n++, z += step) highest = *z > highest ? *z : highest;
-    return highest;
+    return g->pyramid_base + (highest << g->pyramid_shift);
 }
 
 /* Reduces the strip's start distances to where this level's rows may block it, searching from a on. */
@@ -91,9 +93,9 @@ static void sweep_level(Strip *s, const GroundLevel *g, const Axis *axis, double
         const double c_high = axis->c0 + s->m_high * (s->m_high > 0 ? next : a) + room_cells;
         const int    highest = highest_between(g, axis, k, row, c_low, c_high);
         const double limit = highest + room_posts - axis->w0;
-        if (highest >= 0 && !(q * (q < 0 ? next : a) > limit)) {
+        if (highest != nothing_there && !(q * (q < 0 ? next : a) > limit)) {
             /* nodes half as wide as the strip are fine enough */
-            if (k > 0 && 2 * (1 << k) > (s->m_high - s->m_low) * next) {
+            if (k > elevation_pyramid_first && 2 * (1 << k) > (s->m_high - s->m_low) * next) {
                 k--;
                 continue;
             }

@@ -18,7 +18,7 @@ typedef struct Paths {
     int of_hit[hits_capacity], of_sample[hits_capacity];
     int of_path[hits_capacity]; /* its index among those that started together */
     float share[AIR_BAND_COUNT][hits_capacity]; /* share of the radiance met next that reaches the hit */
-    float texture[hits_capacity], temp_k[hits_capacity];
+    float texture[hits_capacity], warmth_k[hits_capacity], temp_k[hits_capacity];
     float sun[hits_capacity]; /* share of the direct sun that arrives */
     bool from_ground[hits_capacity]; /* hemisphere_change: the ground's own light is kept unchanged */
 } Paths;
@@ -121,7 +121,7 @@ static void resolve(Paths *p, const HemisphereScene *scene, unsigned bands, cons
     if (parts_alone) visibility_first_part(&p->hits, scene->visibility, &p->rays, list, listed, counters);
     else visibility_first_hit(&p->hits, scene->visibility, &p->rays, list, listed, -1, counters);
     for (int i = 0; i < p->hits.count; i++) {
-        p->texture[i] = 1;
+        p->texture[i] = 1, p->warmth_k[i] = 0;
     }
     uint8_t dark[hits_capacity] = {0};
     if (scene->air->light.sun_d_enu[2] > 0)
@@ -129,7 +129,7 @@ static void resolve(Paths *p, const HemisphereScene *scene, unsigned bands, cons
     for (int i = 0; i < p->hits.count; i++) p->sun[i] = dark[i] ? 0 : 1;
     if (bands & (1 << AIR_MWIR | 1 << AIR_LWIR))
         thermal_temperature(p->temp_k, scene->air, scene->materials, scene->catalog, scene->snapshot, &p->hits,
-                            p->hits.material, p->texture);
+                            p->hits.material, p->texture, p->warmth_k);
 }
 
 /* Radiance of level, open ground. */

@@ -59,12 +59,15 @@ static F32x8 air_k8(const Air *air, const Hits *hits, int first)
     return f32x8_lerp(low, high, at - f32x8_of_ints(node)) + f32x8_set(air->light.weather.air_temp_k);
 }
 
-/* Ground by class, with the sun on its own slope. Brighter ground takes less sun: texture turns half of its relative
- * brightness into relative warmth (a guess; bright patches are also dry ones), within the ground's own pattern
- * (landscape_texture: 0.6 .. 1.4). A photograph's white roof is six times as bright as its class's mean, and by that
- * relation would be colder than the air at noon. Eight hits at once, within 3e-5 K; what is not ground becomes air. */
+/* Ground by class, with the sun on its own slope, and the class's noise in kelvins (etc/ground_detail.csv; by day the
+ * sun makes it stronger: twice that of the night at 800 W/m2, an estimate). The noise stands for all that differs
+ * within a class: moisture, cover, conduction, reflectance; once heat is computed from such properties they replace
+ * it, and never are both added. Darkness is therefore taken from the photograph alone, which shows what the noise does
+ * not contain: half of its relative brightness becomes relative warmth (a guess), within 0.6 .. 1.4, since a white
+ * roof is six times as bright as its class's mean, and by that relation would be colder than the air at noon. Eight
+ * hits at once, within 3e-5 K; what is not ground becomes air. */
 static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, F32x8 air_k, const uint8_t surface[8],
-                      const float *const n_enu[3], const float texture[8])
+                      const float *const n_enu[3], const float photo[8], const float warmth_k[8])
 {
     const I32x8 class = i32x8_of_bytes(surface);
     const F32x8    along = f32x8_fma(f32x8_load(n_enu[0]), f32x8_set(air->light.sun_d_enu[0]),
@@ -74,14 +77,17 @@ static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, F32
     const F32x8 level = (f32x8_set(1) + f32x8_load(n_enu[2])) * f32x8_set(0.5 * air->light.solar_diffuse_w_m2);
     const F32x8 slope_kw_m2 =
         f32x8_fma(f32x8_max(along, f32x8_set(0)), f32x8_set(air->light.solar_direct_w_m2), level) * f32x8_set(1e-3);
-    const F32x8 dark = f32x8_set(1.5) - f32x8_set(0.5) * f32x8_clamp(f32x8_load(texture), 0.6, 1.4);
-    const F32x8 above = f32x8_fma(rise * slope_kw_m2, dark, fall * f32x8_set(-1e-2 * air->light.longwave_loss_w_m2));
+    const F32x8 dark = f32x8_set(1.5) - f32x8_set(0.5) * f32x8_clamp(f32x8_load(photo), 0.6, 1.4);
+    const F32x8 noise_k = f32x8_load(warmth_k) * f32x8_fma(slope_kw_m2, f32x8_set(1.25), f32x8_set(1));
+    const F32x8 above = noise_k + f32x8_fma(rise * slope_kw_m2, dark, fall * f32x8_set(-1e-2 *
+                                                                                       air->light.longwave_loss_w_m2));
     const F32x8 least = f32x8_gather(day->least_k, class), most = f32x8_gather(day->most_k, class);
     f32x8_store(temp_k, f32x8_min(f32x8_max(above + air_k, least), most));
 }
 
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
-                         const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *texture)
+                         const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *photo,
+                         const float *warmth_k)
 {
     const double sun_level_w_m2 = air->light.solar_direct_w_m2 * fmax(air->light.sun_d_enu[2], 0) + air->light.solar_diffuse_w_m2;
     const double film = film_w_m2_k(air->light.weather.wind_mps);
@@ -97,7 +103,7 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
             surface[k] = hits->surface[first + k] < SURFACE_COUNT ? hits->surface[first + k] : SURFACE_NONE;
         const F32x8 there_k = air_k8(air, hits, first);
         f32x8_store(air_k, there_k);
-        ground_k8(found, air, &day, there_k, surface, n_enu, texture + first);
+        ground_k8(found, air, &day, there_k, surface, n_enu, photo + first, warmth_k + first);
         for (int k = 0; k < some; k++) {
             const int i = first + k;
             temp_k[i] = found[k];

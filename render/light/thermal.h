@@ -8,10 +8,12 @@
 #include "render/scene/view.h"
 
 /* Temperature of each hit, K: parts from the snapshot's heat by role over a passive temperature, ground by
- * class, slope, texture and wind, all over the air of their own height; snow no warmer than 273.15 K, water no colder
- * than 271.35 K. No present sun ray enters: no instant thermal shadows. Sky: NaN. */
+ * class, slope, photograph (its brightness over the class's; 1: none), noise (warmth_k) and wind, all over the air of
+ * their own height; snow no warmer than 273.15 K, water no colder than 271.35 K. No present sun ray enters: no instant
+ * thermal shadows. Sky: NaN. */
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
-                         const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *texture);
+                         const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *photo,
+                         const float *warmth_k);
 
 /* band: BAND_MWIR or BAND_LWIR. sun: share of the direct sun that arrives, 0 .. 1, in MWIR; NULL: all. around_w_m2:
  * irradiance of each hit from sky and surroundings (render/light/hemisphere.h); NULL: sky and ground by the tilt

@@ -9,6 +9,7 @@
 #include "terrain/earth/geoid.h"
 #include "terrain/landscape/ground_image.h"
 #include "terrain/elevation/raster.h"
+#include "terrain/store/store.h"
 #include "sensor/settings/next_option.h"
 
 #include <errno.h>
@@ -92,11 +93,22 @@ static bool sheets_are_valid(const Check *c, const char *paths, const char *key)
                                                 "shows whether GDAL can read one");
 }
 
+static bool store_is_valid(const Check *c)
+{
+    TerrainStore store;
+    if (!*c->config->terrain.store) return true;
+    if (store_open(&store, c->config->terrain.store) != STATUS_OK)
+        return report(c, "terrain.store", "`pitviper terrain info FILE` looks into a terrain store");
+    store_close(&store);
+    return true;
+}
+
 static bool terrain_is_valid(const Check *c)
 {
     const Config *config = c->config;
     const char   *table = config->terrain.cover_table;
     bool          good = sheets_are_valid(c, config->terrain.elevation, "terrain.elevation");
+    good &= store_is_valid(c);
     good &= sheets_are_valid(c, config->terrain.cover, "terrain.cover");
     good &= sheets_are_valid(c, config->terrain.orthophoto, "terrain.orthophoto");
     if (strpbrk(table, "/.")) {

@@ -85,6 +85,10 @@ static void describe_ground(const LandscapeParts *g)
                 g->said.line_count, g->said.place_count);
         return;
     }
+    if (g->store && *g->store) {
+        log_print("ground: of the terrain store %s\n", g->store);
+        return;
+    }
     for (int n = 0, at = 0; n < g->elevation.level_count; n++) {
         const ElevationLevel *l = &g->elevation.level[n];
         at += snprintf(size + at, sizeof size - (size_t)at, "%s%d x %d at %.4g m", n ? ", " : "", l->nx, l->ny,

@@ -5,6 +5,7 @@
 #include "entities/import/model_import.h"
 #include "render/frame/render.h"
 #include "render/scene/upright.h"
+#include "sensor/commands/letters.h"
 #include "sensor/detector/colour.h"
 #include "sensor/detector/level.h"
 #include "sensor/detector/quantise.h"
@@ -19,36 +20,15 @@ static const double view_hfov_deg = 20, view_down_deg = 14;
 
 /* ---- letters --------------------------------------------------------------------------------- */
 
-/* Five columns of seven dots, the lowest bit at the top. */
-static const struct {
-    char    letter;
-    uint8_t column[5];
-} glyphs[] = {
-    {'0', {0x3e, 0x51, 0x49, 0x45, 0x3e}}, {'1', {0x00, 0x42, 0x7f, 0x40, 0x00}}, {'2', {0x62, 0x51, 0x49, 0x49, 0x46}},
-    {'3', {0x22, 0x41, 0x49, 0x49, 0x36}}, {'4', {0x18, 0x14, 0x12, 0x7f, 0x10}}, {'5', {0x27, 0x45, 0x45, 0x45, 0x39}},
-    {'6', {0x3c, 0x4a, 0x49, 0x49, 0x30}}, {'7', {0x01, 0x71, 0x09, 0x05, 0x03}}, {'8', {0x36, 0x49, 0x49, 0x49, 0x36}},
-    {'9', {0x06, 0x49, 0x49, 0x29, 0x1e}}, {'.', {0x00, 0x60, 0x60, 0x00, 0x00}}, {'m', {0x7c, 0x04, 0x78, 0x04, 0x78}},
-    {'x', {0x44, 0x28, 0x10, 0x28, 0x44}}, {'d', {0x38, 0x44, 0x44, 0x48, 0x7f}}, {'e', {0x38, 0x54, 0x54, 0x54, 0x18}},
-    {'g', {0x08, 0x54, 0x54, 0x54, 0x3c}},
-};
-
 static void dot(uint8_t *rgb, int x, int y, uint8_t value)
 {
     if (x < 0 || y < 0 || x >= width || y >= height) return;
     memset(rgb + 3 * ((size_t)y * width + (size_t)x), value, 3);
 }
 
-/* White on black, twice the size of the dots. */
 static void write_text(uint8_t *rgb, int x, int y, const char *text)
 {
-    const int length = (int)strlen(text);
-    for (int v = -2; v < 16; v++)
-        for (int u = -2; u < 12 * length; u++) dot(rgb, x + u, y + v, 0);
-    for (int i = 0; i < length; i++)
-        for (size_t g = 0; g < sizeof glyphs / sizeof *glyphs; g++)
-            for (int u = 0; glyphs[g].letter == text[i] && u < 10; u++)
-                for (int v = 0; v < 14; v++)
-                    if (glyphs[g].column[u / 2] >> (v / 2) & 1) dot(rgb, x + 12 * i + u, y + v, 255);
+    letters_write(rgb, width, height, x, y, text);
 }
 
 /* The largest of 1, 2 or 5 times a power of ten that is not above this. */

@@ -156,7 +156,8 @@ Status chunks_open(ChunkSource *out, const uint8_t *bytes, size_t count, Arena *
         out->fault = "it does not begin as a frame file does";
         return STATUS_BAD_VALUE;
     }
-    if (version == chunks_version && !out->rest.truncated) return STATUS_OK;
+    out->version = (int)version;
+    if (version >= 1 && version <= chunks_version && !out->rest.truncated) return STATUS_OK;
     out->fault = "it has another version of the format";
     return STATUS_UNSUPPORTED;
 }

@@ -11,7 +11,7 @@
 
 #include "pitviper.h"
 
-enum { chunk_name_size = 8, chunks_version = 1 };
+enum { chunk_name_size = 8, chunks_version = 2 };
 static const uint64_t chunk_most_octets = (uint64_t)1 << 30;
 
 /* ---- writing: a growing buffer ------------------------------------------------------------------ */
@@ -65,10 +65,11 @@ typedef struct ChunkSource {
     ByteSource rest;
     Arena     *arena;     /* of what is decompressed */
     uint64_t   octets;    /* decompressed so far */
+    int        version;   /* 1 .. chunks_version */
     const char *fault;    /* text of the failure; static storage */
 } ChunkSource;
 
-/* STATUS_UNSUPPORTED: another version, STATUS_BAD_VALUE: not a frame file. */
+/* STATUS_UNSUPPORTED: a later version, STATUS_BAD_VALUE: not a frame file. */
 Status chunks_open(ChunkSource *out, const uint8_t *bytes, size_t count, Arena *arena);
 /* The next chunk; STATUS_OK with an empty name: the end. */
 Status chunks_next(ChunkSource *chunks, char name[chunk_name_size + 1], ByteSource *content);

@@ -9,6 +9,7 @@ typedef struct Fields {
     ByteSink   *to;    /* one of the two */
     ByteSource *from;
     Arena      *arena; /* reading: of arrays and texts */
+    int         version; /* of the format (sensor/framefile/chunks.h) */
     const char *fault; /* the name of the field; static storage */
     bool        no_memory;
 } Fields;

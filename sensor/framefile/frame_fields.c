@@ -4,6 +4,9 @@
 
 #include "entities/effects/effects_history.h"
 #include "sensor/framefile/ground_cutout.h"
+#include "terrain/landscape/photo.h"
+
+#include <stdlib.h>
 
 static const double earth_m = 1e8;    /* of a position in ECEF: far beyond any in an image */
 static const double local_m = 2e7;    /* of a position in a local frame */
@@ -228,6 +231,8 @@ static void grid_values(Fields *f, const GroundCutout *kept, void **values, int 
     }
     *values = fields_good(f) ? arena_alloc(f->arena, (size_t)nx * (size_t)ny, (size_t)octets) : NULL;
     if (fields_good(f) && !*values) f->no_memory = true;
+    if (*values && octets == (int)sizeof(PhotoBlock)) /* omitted: not covered */
+        for (size_t n = 0; n < (size_t)nx * (size_t)ny; n++) ((PhotoBlock *)*values)[n].index = 0xffffffff;
     if (*values) cutout_get(f->from, &grid, *values);
 }
 
@@ -238,17 +243,79 @@ static void limit(Fields *f, const char *name, size_t *sum, int nx, int ny, size
     if (f->from && fields_good(f) && *sum > most) f->fault = name;
 }
 
+/* Base and shift of each tile, which version 1 did not have; reading, they are allocated. */
+static void tile_fields(Fields *f, ElevationLevel *l)
+{
+    const int tiles = l->tiles_x * l->tiles_y;
+    if (f->from) {
+        l->tile = arena_alloc(f->arena, (size_t)tiles, sizeof *l->tile);
+        f->no_memory |= !l->tile;
+        if (!l->tile) return;
+        memset(l->tile, 0, (size_t)tiles * sizeof *l->tile);
+    }
+    if (f->version >= 2) field_bool(f, "tiles of a level", &l->plain);
+    for (int t = 0; t < tiles && !l->plain && fields_good(f); t++) {
+        field_int(f, "base of a tile", &l->tile[t].base, elevation_lowest_post, elevation_highest_post);
+        field_int(f, "shift of a tile", &l->tile[t].shift, 0, elevation_most_shift);
+        if (fields_good(f) && l->tile[t].base % elevation_base_unit != 0) f->fault = "base of a tile";
+    }
+}
+
+/* Stored posts, those of an edge in the tile that begins with it, row by row. */
+static void stored_to_rows(uint16_t *post, const ElevationLevel *l)
+{
+    for (int j = 0; j < l->ny; j++)
+        for (int i = 0; i < l->nx; i++) *post++ = l->stored[elevation_stored_index(l, i, j)];
+}
+
+static void stored_from_rows(ElevationLevel *l, const uint16_t *post)
+{
+    for (int j = 0; j < l->ny; j++)
+        for (int i = 0; i < l->nx; i++) {
+            const ElevationTile tile = l->tile[elevation_tile_index(l, i, j)];
+            elevation_set_post(l, i, j, tile.base + ((int32_t)*post++ << tile.shift));
+        }
+    elevation_fill_edges(l);
+}
+
+static void post_fields(Fields *f, ElevationLevel *l, const GroundCutout *kept)
+{
+    uint16_t *post = NULL;
+    if (f->from && fields_good(f)) {
+        ElevationLevel described;
+        if (elevation_level_describe(&described, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m) !=
+            STATUS_OK)
+            f->fault = "size of a level";
+        else *l = described;
+    }
+    if (fields_good(f)) tile_fields(f, l);
+    if (!fields_good(f)) return;
+    if (f->to) {
+        post = malloc((size_t)l->nx * (size_t)l->ny * sizeof *post);
+        f->no_memory |= !post;
+        if (post) stored_to_rows(post, l);
+    }
+    if (post || f->from) grid_values(f, kept, (void **)&post, l->nx, l->ny, 2, l->x0_m, l->y0_m, l->spacing_m);
+    if (f->to) {
+        free(post);
+    } else if (post) {
+        l->stored = arena_alloc(f->arena, elevation_level_stored(l), sizeof *l->stored);
+        f->no_memory |= !l->stored;
+        if (l->stored) stored_from_rows(l, post);
+    }
+}
+
 static void level_fields(Fields *f, ElevationLevel *l, size_t *posts, const GroundCutout *kept)
 {
-    field_int(f, "posts of a level", &l->nx, 2, 32768);
-    field_int(f, "posts of a level", &l->ny, 2, 32768);
+    field_int(f, "posts of a level", &l->nx, 2, elevation_most_posts);
+    field_int(f, "posts of a level", &l->ny, 2, elevation_most_posts);
     field_real(f, "place of a level", &l->x0_m, -local_m, local_m);
     field_real(f, "place of a level", &l->y0_m, -local_m, local_m);
     field_real(f, "spacing of a level", &l->spacing_m, 0.1, 1e5);
     field_real(f, "height of a level", &l->z0_m, -local_m, local_m);
     field_real(f, "step of a level", &l->step_m, 1e-9, 100);
     limit(f, "posts of the ground", posts, l->nx, l->ny, landscape_parts_posts);
-    grid_values(f, kept, (void **)&l->post, l->nx, l->ny, 2, l->x0_m, l->y0_m, l->spacing_m);
+    post_fields(f, l, kept);
 }
 
 static void cover_fields(Fields *f, CoverGrid *g, size_t *cells, const GroundCutout *kept)
@@ -270,6 +337,7 @@ static void photo_fields(Fields *f, Photo *p, const GroundCutout *kept)
 {
     size_t pixels = 0;
     field_int(f, "photograph", &p->mips, 0, ground_image_mips);
+    if (f->version < 2 && p->mips > 0) f->fault = "photograph of version 1";
     if (!fields_good(f) || p->mips == 0) return;
     field_real(f, "place of the photograph", &p->x0_m, -local_m, local_m);
     field_real(f, "place of the photograph", &p->y0_m, -local_m, local_m);
@@ -279,7 +347,9 @@ static void photo_fields(Fields *f, Photo *p, const GroundCutout *kept)
         field_int(f, "pixels of the photograph", &p->nx[k], 1, 65536);
         field_int(f, "pixels of the photograph", &p->ny[k], 1, 65536);
         limit(f, "pixels of the photograph", &pixels, p->nx[k], p->ny[k], landscape_parts_pixels);
-        grid_values(f, kept, (void **)&p->rgba[k], p->nx[k], p->ny[k], 4, p->x0_m, p->y0_m, ldexp(p->cell_m, k));
+        const int across = (int)photo_blocks_across(p->nx[k]), up = (int)photo_blocks_across(p->ny[k]);
+        grid_values(f, kept, (void **)&p->block[k], across, up, sizeof **p->block, p->x0_m, p->y0_m,
+                    ldexp(p->cell_m, k + 2));
     }
 }
 
@@ -303,6 +373,12 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
         evidence_fields(f, &g->said);
         return;
     }
+    if (!g->store) g->store = "";
+    if (f->version >= 2) {
+        field_text(f, "terrain store", &g->store, 4096);
+        field_u64(f, &g->store_content);
+    }
+    if (!fields_good(f) || (g->store && *g->store)) return;
     field_u64(f, &g->cover_seed);
     field_real(f, "geoid", &g->geoid_m, -1e4, 1e4);
     field_real(f, "treeline", &g->treeline_m, -1e5, 1e5);

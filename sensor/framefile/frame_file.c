@@ -23,7 +23,7 @@ Status frame_file_pack(ByteSink *out, const FrameFile *file, const GroundCutout 
     chunks_begin(out);
     for (int c = 0; c < chunk_kinds; c++) {
         ByteSink content = {0};
-        Fields   f       = {.to = &content};
+        Fields   f       = {.to = &content, .version = chunks_version};
         if (chunks[c].fields) chunks[c].fields(&f, &fields);
         else frame_fields_ground(&f, &fields, kept);
         chunks_put(out, chunks[c].name, &content);
@@ -69,7 +69,7 @@ static Status parse(FrameFile *out, ChunkSource *source, unsigned *met, const ch
         int c = 0;
         while (c < chunk_kinds && strcmp(chunks[c].name, name) != 0) c++;
         if (c == chunk_kinds) continue; /* of a later version, with a field that this one need not know */
-        Fields f = {.from = &content, .arena = source->arena};
+        Fields f = {.from = &content, .arena = source->arena, .version = source->version};
         if (*met >> c & 1) source->fault = "a chunk is there twice";
         else if (chunks[c].fields) chunks[c].fields(&f, out);
         else frame_fields_ground(&f, out, NULL);

@@ -3,6 +3,7 @@
 #include "sensor/framefile/frame_save.h"
 
 #include "sensor/framefile/frame_again.h"
+#include "sensor/framefile/frame_ground.h"
 #include "sensor/framefile/frame_tables.h"
 #include "sensor/framefile/ground_cutout.h"
 #include "sensor/world/frame_world.h"
@@ -21,6 +22,7 @@ static Status write_settings(char **text, const Config *config)
     Config plain = *config;
     size_t octets;
     *plain.terrain.elevation = *plain.terrain.cover = *plain.terrain.cover_table = *plain.terrain.orthophoto = 0;
+    *plain.terrain.store = 0;
     *plain.terrain.geoid = *plain.record.path = *plain.quality.table = 0;
     FILE *to = open_memstream(text, &octets);
     if (!to) return STATUS_NO_MEMORY;
@@ -135,12 +137,10 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Ar
     FrameAgain  *again = arena_alloc(arena, 1, sizeof *again);
     Landscape    landscape = {0};
     World        world = {0};
-    const char  *why = NULL;
     *same = false;
     if (!again) return STATUS_NO_MEMORY;
     Status status = frame_file_parse(&file, bytes->bytes, bytes->count, "the file just made", arena);
-    if (status == STATUS_OK) status = landscape_from_parts(&landscape, &why, &file.ground);
-    if (status == STATUS_BAD_VALUE && why) log_error("frame: the ground of the file just made: %s", why);
+    if (status == STATUS_OK) status = frame_ground_open(&landscape, &file.ground);
     if (status == STATUS_OK)
         status = frame_world(&world, save->config, f->world->catalog, &landscape, &file.ground.frame, "avx2");
     if (status == STATUS_OK) {
@@ -164,9 +164,10 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *fil
     Arena              *arena = arena_create();
     bool                same = false;
     Status              status = arena ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK && !file->ground.invented) status = gather_places(&kept, save->frame, gathered);
+    const bool cut = !file->ground.invented && !(file->ground.store && *file->ground.store);
+    if (status == STATUS_OK && cut) status = gather_places(&kept, save->frame, gathered);
     for (size_t r = 0; r < sizeof reaches_m / sizeof *reaches_m && status == STATUS_OK && !same; r++) {
-        if (file->ground.invented && isfinite(reaches_m[r][0])) continue;
+        if (!cut && isfinite(reaches_m[r][0])) continue;
         *reach_m = kept.reach_m = reaches_m[r][0];
         kept.looks_reach_m = reaches_m[r][1];
         sink_free(bytes);

@@ -1,6 +1,7 @@
 /* sensor/framefile/frame_scene.c: the world of a frame file, from its own ground and this installation's tables. */
 #include "sensor/framefile/frame_scene.h"
 
+#include "sensor/framefile/frame_ground.h"
 #include "sensor/framefile/frame_tables.h"
 #include "sensor/world/frame_world.h"
 #include "sensor/settings/band_choice.h"
@@ -113,15 +114,6 @@ static Status take_models(FrameScene *s, const FrameFile *file, bool forced)
 
 /* ---- all of it ---------------------------------------------------------------------------------- */
 
-static Status open_ground(FrameScene *s, const FrameFile *file)
-{
-    const char  *why = NULL;
-    const Status status = landscape_from_parts(&s->landscape, &why, &file->ground);
-    if (status == STATUS_BAD_VALUE)
-        log_error("frame: the ground in the file cannot be used: %s", why ? why : "values out of range");
-    return status;
-}
-
 Status frame_scene_open(FrameScene *s, const FrameFile *file, bool forced, const char *isa)
 {
     char       catalog[path_size], effects[path_size];
@@ -138,7 +130,7 @@ Status frame_scene_open(FrameScene *s, const FrameFile *file, bool forced, const
     if (status == STATUS_OK) status = catalog_open(&s->catalog, catalog, s->config.models.sag_m);
     if (status == STATUS_OK) status = take_models(s, file, forced);
     if (status == STATUS_OK) status = effect_table_open(&s->effects, effects);
-    if (status == STATUS_OK) status = open_ground(s, file);
+    if (status == STATUS_OK) status = frame_ground_open(&s->landscape, &file->ground);
     if (status == STATUS_OK)
         status = frame_world(&s->world, &s->config, s->catalog, &s->landscape, &file->ground.frame, isa);
     s->snapshot.effect_table = &s->effects;

@@ -109,27 +109,7 @@ static void unpack_u16(uint16_t *value, const uint8_t *in, size_t count)
     }
 }
 
-/* Colours: one channel after the other, as differences. */
-static void pack_rgba(uint8_t *out, const uint8_t *value, size_t count)
-{
-    for (size_t c = 0; c < 4; c++) {
-        uint8_t before = 0;
-        for (size_t n = 0; n < count; n++) {
-            out[c * count + n] = (uint8_t)(value[4 * n + c] - before);
-            before             = value[4 * n + c];
-        }
-    }
-}
-
-static void unpack_rgba(uint8_t *value, const uint8_t *in, size_t count)
-{
-    for (size_t c = 0; c < 4; c++) {
-        uint8_t before = 0;
-        for (size_t n = 0; n < count; n++) value[4 * n + c] = before = (uint8_t)(before + in[c * count + n]);
-    }
-}
-
-enum { tile_values = cutout_tile * cutout_tile, most_octets = 4 };
+enum { tile_values = cutout_tile * cutout_tile, most_octets = 8 };
 
 void cutout_put(ByteSink *sink, const CutoutGrid *grid, const void *values, const GroundCutout *kept)
 {
@@ -154,8 +134,7 @@ void cutout_put(ByteSink *sink, const CutoutGrid *grid, const void *values, cons
             memcpy(words, tile_bytes, 2 * b.values);
             pack_u16(packed, words, b.values);
         }
-        if (grid->octets == 4) pack_rgba(packed, tile_bytes, b.values);
-        sink_bytes(sink, grid->octets == 1 ? tile_bytes : packed, b.values * (size_t)grid->octets);
+        sink_bytes(sink, grid->octets == 2 ? packed : tile_bytes, b.values * (size_t)grid->octets);
     }
 done:
     free(t.kept);
@@ -164,7 +143,6 @@ done:
 void cutout_get(ByteSource *source, const CutoutGrid *grid, void *values)
 {
     uint16_t       words[tile_values];
-    uint8_t        colours[tile_values * most_octets];
     const Tiles    t    = tiles_of(grid);
     const uint8_t *kept = source_bytes(source, t.octets);
     for (size_t tile = 0; kept && tile < (size_t)t.nx * (size_t)t.ny; tile++) {
@@ -176,10 +154,6 @@ void cutout_get(ByteSource *source, const CutoutGrid *grid, void *values)
         if (grid->octets == 2) {
             unpack_u16(words, bytes, b.values);
             bytes = (const uint8_t *)words;
-        }
-        if (grid->octets == 4) {
-            unpack_rgba(colours, bytes, b.values);
-            bytes = colours;
         }
         for (int j = 0; j < b.ny; j++)
             memcpy((uint8_t *)values +

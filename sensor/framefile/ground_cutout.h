@@ -24,10 +24,10 @@ typedef struct CutoutGrid {
 } CutoutGrid;
 
 /* Which tiles are kept, a bit each, then their values, row by row, tile by tile. In a tile, of values of two octets
- * (posts) the differences, their low octets before their high ones; of four (colours) a channel after the other, as
- * differences too; of one (classes) as they are. */
+ * (posts) the differences, their low octets before their high ones; of one (classes) and of eight (blocks of pixels) as
+ * they are. */
 void cutout_put(ByteSink *sink, const CutoutGrid *grid, const void *values, const GroundCutout *kept);
-/* values: [ny][nx], zeroed. */
+/* values: [ny][nx]; those of omitted tiles are left as they are. */
 void cutout_get(ByteSource *source, const CutoutGrid *grid, void *values);
 
 #endif

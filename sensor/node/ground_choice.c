@@ -4,6 +4,7 @@
 
 #include "entities/table/contact.h"
 #include "sensor/node/ground_evidence.h"
+#include "sensor/node/ground_store.h"
 #include "terrain/landscape/landscape_import.h"
 
 #include <stdlib.h>
@@ -258,15 +259,17 @@ Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, c
 {
     GroundEvidence      e = {0};
     const char         *said = config->terrain.ground;
-    const bool          real = *config->terrain.elevation, by_itself = strcmp(said, "auto") == 0;
+    const bool          stored = *config->terrain.store, real = stored || *config->terrain.elevation;
+    const bool          by_itself = strcmp(said, "auto") == 0;
     const GroundContact fitted = strcmp(said, "trust") == 0 ? GROUND_CONTACT_NONE : GROUND_CONTACT_INCONSISTENT;
     const GroundContact set = strcmp(said, "clamp") == 0 || (by_itself && real) ? GROUND_CONTACT_ALL
                               : real                                           ? GROUND_CONTACT_NONE
                                                                                : fitted;
     Status status = ground_evidence_collect(&e, survey, frame, catalog, plan->host, plan->aim);
     if (status == STATUS_OK)
-        status = real ? import(out, choices, config, frame, &e, strcmp(said, "fit") == 0)
-                      : invent(out, config, frame, &e);
+        status = stored ? ground_store_open(out, choices, config)
+                 : real ? import(out, choices, config, frame, &e, strcmp(said, "fit") == 0)
+                        : invent(out, config, frame, &e);
     if (status == STATUS_OK && !real) status = report_fit(choices, set, out, survey, &e);
     if (status == STATUS_OK && (real || set == GROUND_CONTACT_ALL))
         status = report_contact(choices, set == GROUND_CONTACT_ALL, out, survey, &e);

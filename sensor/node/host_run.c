@@ -1,6 +1,7 @@
 /* sensor/node/host_run.c: from received datagrams to choices, a world, a session and run.json. */
 #include "sensor/node/host_run.h"
 
+#include "sensor/node/ground_store.h"
 #include "sensor/world/frame_world.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/quality/quality.h"
@@ -195,6 +196,10 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     Status         status = host ? plan_host(plan, choices, &run->survey, &o->config, *host)
                                  : choose_host(plan, choices, &run->survey, &o->config);
     if (status == STATUS_OK) status = choose_frame(&frame, &run->survey, plan);
+    if (status == STATUS_OK && *o->config.terrain.store) {
+        const LocalFrame aim = frame;
+        status = ground_store_frame(&frame, choices, &o->config, &aim);
+    }
     if (status == STATUS_OK) status = choose_time(unix_s, choices, &run->survey, &o->config, &frame);
     if (status == STATUS_OK)
         status = choose_ground(landscape, contact, choices, &run->survey, &o->config, &frame, run->catalog, plan);

@@ -205,6 +205,8 @@ static const Setting keys[] = {
      "rms height of the hills of synthetic terrain"},
     {"terrain.spacing_m", SETTING_DOUBLE, AT(terrain.spacing_m), 0, 1000, NULL, "m",
      "distance between elevation posts; 0: 4 for synthetic terrain, else that of the files"},
+    {"terrain.store", SETTING_PATH, AT(terrain.store), 0, 0, NULL, "",
+     "terrain store of `pitviper terrain import`, instead of elevation, cover and orthophoto; empty: none"},
     {"terrain.elevation", SETTING_PATHS, AT(terrain.elevation), 0, 0, NULL, "",
      "elevation files or folders, comma separated; empty: synthetic terrain"},
     {"terrain.vertical", SETTING_TEXT, AT(terrain.vertical), 0, 0, "auto|geoid|ellipsoid", "",
@@ -222,6 +224,8 @@ static const Setting keys[] = {
      "fit the terrain "
      "to them; auto: clamp on real terrain; fit synthetic terrain and clamp the entities whose positions are "
      "inconsistent with it"},
+    {"terrain.detail", SETTING_TEXT, AT(terrain.detail), 0, 0, "on|off", "",
+     "noise of the ground within each surface class (etc/ground_detail.csv); off: classes of one value"},
     {"observer.range_m", SETTING_DOUBLE, AT(observer.range_m), 10, 100000, NULL, "m",
      "ground distance of the stand-off observer from its aim point"},
     {"observer.height_m", SETTING_DOUBLE, AT(observer.height_m), 1, 20000, NULL, "m",
@@ -337,6 +341,7 @@ Config config_default(void)
     c.terrain.relief_m              = 15;
     strcpy(c.terrain.vertical, "auto");
     strcpy(c.terrain.ground, "auto");
+    strcpy(c.terrain.detail, "on");
     c.observer.range_m              = 600;
     c.observer.height_m             = 250;
     c.observer.rate_dps             = 2;
@@ -430,6 +435,30 @@ Status config_read_as(Config *config, const char *path, const char *file)
     return status;
 }
 
+/* A store has all of the ground: nothing else can be named beside it, and it is not fitted to an exercise. */
+static bool store_alone(const Config *config)
+{
+    const struct {
+        const char *key;
+        bool        set;
+    } other[] = {{"elevation", *config->terrain.elevation}, {"cover", *config->terrain.cover},
+                 {"orthophoto", *config->terrain.orthophoto}, {"spacing_m", config->terrain.spacing_m > 0}};
+    if (!*config->terrain.store) return true;
+    for (size_t k = 0; k < sizeof other / sizeof *other; k++)
+        if (other[k].set) {
+            log_error("config: terrain.store and terrain.%s exclude each other: the store has all of the ground; give "
+                      "it to `pitviper terrain import` when the store is made, or leave terrain.store out",
+                      other[k].key);
+            return false;
+        }
+    if (strcmp(config->terrain.ground, "fit") == 0) {
+        log_error("config: terrain.ground: a terrain store is mapped read-only and cannot be led through the entities; "
+                  "use clamp or trust, or terrain.elevation instead of terrain.store for a fit");
+        return false;
+    }
+    return is_readable("terrain.store", config->terrain.store);
+}
+
 Status config_check(const Config *config)
 {
     if (config->detector.bits != 8 && config->detector.bits != 16) {
@@ -456,6 +485,7 @@ Status config_check(const Config *config)
                   config->sensor.table);
         return STATUS_BAD_VALUE;
     }
+    if (!store_alone(config)) return STATUS_BAD_VALUE;
     if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&
         !(config->terrain.spacing_m >= 1 && config->terrain.spacing_m <= 30)) {
         log_error("config: terrain.spacing_m: %g is not 0 or 1 .. 30 m for synthetic terrain",

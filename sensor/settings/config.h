@@ -97,11 +97,13 @@ typedef struct Config {
     } weather;
     struct {
         double relief_m, spacing_m;
+        char   store[1024];        /* a terrain store; empty: none */
         char   elevation[config_paths_size], vertical[16], geoid[1024];
         char   cover[config_paths_size], cover_table[1024];
         int    cover_band;
         char   orthophoto[config_paths_size];
         char   ground[8];
+        char   detail[8];          /* on or off: noise of the ground */
     } terrain;
     struct {
         double range_m, height_m, rate_dps; /* the stand-off observer */

@@ -10,38 +10,69 @@ void patch_free(Patch *patch)
     *patch = (Patch){0};
 }
 
-/* Mean of what is valid, NaN where nothing is. in: rows of `width` pixels of the raster, factor of them. */
-static void average_row(float *out, int nx, const float *in, int width, int rows, int factor)
+/* Mean of what is valid, NaN where nothing is. in: rows of `pitch` floats, `width` pixels of each, `rows` of them. */
+static void average_row(float *restrict out, int nx, const float *restrict in, size_t pitch, int width, int rows,
+                        int factor)
 {
+    if (factor == 1) {
+        memcpy(out, in, (size_t)nx * sizeof *out);
+        return;
+    }
     for (int i = 0; i < nx; i++) {
         double sum = 0;
         int    count = 0;
         for (int r = 0; r < rows; r++)
             for (int c = i * factor; c < (i + 1) * factor && c < width; c++) {
-                const float value = in[(size_t)r * (size_t)width + (size_t)c];
+                const float value = in[(size_t)r * pitch + (size_t)c];
                 if (isnan(value)) continue;
-                sum += value;
+                sum += (double)value;
                 count++;
             }
         out[i] = count ? (float)(sum / count) : NAN;
     }
 }
 
-static void halve(float *out, int out_nx, int out_ny, const float *in, int nx, int ny)
+/* ---- mips ------------------------------------------------------------------------------------ */
+
+typedef struct Halving {
+    float       *out;
+    const float *in;
+    int          out_nx, out_ny, nx, ny;
+} Halving;
+
+enum { rows_a_task = 64 };
+
+static void halve_rows(void *user, int worker, int task)
 {
-    for (int j = 0; j < out_ny; j++)
-        for (int i = 0; i < out_nx; i++) {
+    const Halving *h = user;
+    (void)worker;
+    const int end = (task + 1) * rows_a_task < h->out_ny ? (task + 1) * rows_a_task : h->out_ny;
+    for (int j = task * rows_a_task; j < end; j++)
+        for (int i = 0; i < h->out_nx; i++) {
             double sum = 0;
             int    count = 0;
-            for (int b = 2 * j; b < 2 * j + 2 && b < ny; b++)
-                for (int a = 2 * i; a < 2 * i + 2 && a < nx; a++) {
-                    const float value = in[(size_t)b * (size_t)nx + (size_t)a];
+            for (int b = 2 * j; b < 2 * j + 2 && b < h->ny; b++)
+                for (int a = 2 * i; a < 2 * i + 2 && a < h->nx; a++) {
+                    const float value = h->in[(size_t)b * (size_t)h->nx + (size_t)a];
                     if (isnan(value)) continue;
-                    sum += value;
+                    sum += (double)value;
                     count++;
                 }
-            out[(size_t)j * (size_t)out_nx + (size_t)i] = count ? (float)(sum / count) : NAN;
+            h->out[(size_t)j * (size_t)h->out_nx + (size_t)i] = count ? (float)(sum / count) : NAN;
         }
+}
+
+static void run(Pool *pool, int count, PoolTask *task, void *user)
+{
+    if (pool) pool_run(pool, count, task, user);
+    else
+        for (int n = 0; n < count; n++) task(user, 0, n);
+}
+
+static void halve(Patch *p, int k, Pool *pool)
+{
+    Halving h = {p->v[k], p->v[k - 1], p->nx[k], p->ny[k], p->nx[k - 1], p->ny[k - 1]};
+    run(pool, (h.out_ny + rows_a_task - 1) / rows_a_task, halve_rows, &h);
 }
 
 static double bilinear(const float *v, int nx, int ny, double x, double y)
@@ -56,16 +87,30 @@ static double bilinear(const float *v, int nx, int ny, double x, double y)
     return south + w * (north - south);
 }
 
+/* Between the posts of one mip, at a place in pixels of the raster: of the wider patch where the own mips end. */
+static double mip_at(const Patch *p, int k, double x_px, double y_px)
+{
+    if (k >= p->mips) {
+        k -= p->mips;
+        p = p->wider;
+        if (k > p->mips - 1) k = p->mips - 1;
+    }
+    const double s = exp2(-k);
+    return bilinear(p->v[k], p->nx[k], p->ny[k], (x_px - p->x0) / p->factor * s, (y_px - p->y0) / p->factor * s);
+}
+
 /* Voids of one mip: first from the coarser one, then relaxed towards the mean of the neighbours, so that the
  * filling meets the rim without a step and has no extremum of its own (a membrane; Laplace's equation). */
-static Status fill(float *v, int nx, int ny, const float *coarse, int coarse_nx, int coarse_ny, uint8_t *hole,
-                   long *voids)
+static Status fill(Patch *p, int k)
 {
     enum { sweeps = 24 };
+    float       *v = p->v[k];
+    const int    nx = p->nx[k], ny = p->ny[k];
+    const double post_px = p->factor * exp2(k);
     const size_t posts = (size_t)nx * (size_t)ny;
     size_t       count = 0;
     for (size_t n = 0; n < posts; n++) count += isnan(v[n]);
-    if (voids) *voids = (long)count;
+    if (k == 0) p->voids = (long)count;
     if (count == 0) return STATUS_OK;
     size_t *at = malloc(count * sizeof *at);
     if (!at) return STATUS_NO_MEMORY;
@@ -73,101 +118,144 @@ static Status fill(float *v, int nx, int ny, const float *coarse, int coarse_nx,
     for (size_t n = 0; n < posts; n++)
         if (isnan(v[n])) at[count++] = n;
     for (size_t n = 0; n < count; n++) {
-        v[at[n]] = (float)bilinear(coarse, coarse_nx, coarse_ny, 0.5 * ((double)(at[n] % (size_t)nx) + 0.5),
-                                   0.5 * ((double)(at[n] / (size_t)nx) + 0.5));
-        if (hole) hole[at[n]] = 1;
+        v[at[n]] = (float)mip_at(p, k + 1, p->x0 + post_px * ((double)(at[n] % (size_t)nx) + 0.5),
+                                 p->y0 + post_px * ((double)(at[n] / (size_t)nx) + 0.5));
+        if (k == 0) p->hole[at[n]] = 1;
     }
     for (int sweep = 0; sweep < sweeps; sweep++)
         for (size_t n = 0; n < count; n++) {
-            const size_t p = sweep & 1 ? at[count - 1 - n] : at[n], i = p % (size_t)nx, j = p / (size_t)nx;
+            const size_t q = sweep & 1 ? at[count - 1 - n] : at[n], i = q % (size_t)nx, j = q / (size_t)nx;
             double       sum = 0;
             int          neighbours = 0;
-            if (i > 0) sum += v[p - 1], neighbours++;
-            if (i + 1 < (size_t)nx) sum += v[p + 1], neighbours++;
-            if (j > 0) sum += v[p - (size_t)nx], neighbours++;
-            if (j + 1 < (size_t)ny) sum += v[p + (size_t)nx], neighbours++;
-            if (neighbours) v[p] = (float)(sum / neighbours);
+            if (i > 0) sum += (double)v[q - 1], neighbours++;
+            if (i + 1 < (size_t)nx) sum += (double)v[q + 1], neighbours++;
+            if (j > 0) sum += (double)v[q - (size_t)nx], neighbours++;
+            if (j + 1 < (size_t)ny) sum += (double)v[q + (size_t)nx], neighbours++;
+            if (neighbours) v[q] = (float)(sum / neighbours);
         }
     free(at);
     return STATUS_OK;
 }
 
-static Status read_posts(Patch *p, const Raster *raster, int band, int width, int height, double low, double high,
-                         const char *key)
+static Status fill_all(Patch *p, Pool *pool)
 {
-    int rows = p->factor; /* a strip of about a megapixel, complete rows of the patch */
-    while ((int64_t)rows * width < 1 << 20 && rows < height) rows += p->factor;
-    float *strip = malloc((size_t)rows * (size_t)width * sizeof *strip);
-    if (!strip) return STATUS_NO_MEMORY;
     Status status = STATUS_OK;
-    for (int y = 0; status == STATUS_OK && y < height; y += rows) {
-        const int here = height - y < rows ? height - y : rows;
-        status = raster_read(strip, raster, band, p->x0, p->y0 + y, width, here, key);
-        if (status != STATUS_OK) break;
-        const size_t count = (size_t)here * (size_t)width;
-        for (size_t n = 0; n < count; n++)
-            if (!(strip[n] >= low && strip[n] <= high)) strip[n] = NAN;
-        for (int r = 0; r < here; r += p->factor)
-            average_row(p->v[0] + (size_t)((y + r) / p->factor) * (size_t)p->nx[0], p->nx[0],
-                        strip + (size_t)r * (size_t)width, width, here - r < p->factor ? here - r : p->factor,
-                        p->factor);
+    for (int k = 1; k < p->mips; k++) halve(p, k, pool);
+    const bool none = p->wider ? p->wider->mips == 0 : isnan(p->v[p->mips - 1][0]);
+    if (none) {
+        patch_free(p);
+        return STATUS_OK;
     }
-    free(strip);
+    for (int k = p->wider ? p->mips - 1 : p->mips - 2; status == STATUS_OK && k >= 0; k--) status = fill(p, k);
     return status;
 }
 
-Status patch_read(Patch *out, const Raster *raster, int band, int x0, int y0, int x1, int y1, int factor, double low,
-                  double high, const char *key)
+/* ---- reading --------------------------------------------------------------------------------- */
+
+typedef struct Reading {
+    const PatchSource *source;
+    const PatchWindow *window;
+    Patch             *patch;
+    int                count;
+    int                x0, x1, y0, y1, rows; /* of all windows; rows: of a strip, which a task reads */
+    Status            *status;               /* [strips] */
+} Reading;
+
+static void read_strip(void *user, int worker, int task)
 {
-    x0 = x0 > 0 ? x0 / factor * factor : 0;
-    y0 = y0 > 0 ? y0 / factor * factor : 0;
-    x1 = x1 < raster->width ? x1 : raster->width;
-    y1 = y1 < raster->height ? y1 : raster->height;
-    if (x1 <= x0 || y1 <= y0) return STATUS_BAD_VALUE;
-    Patch p = {.factor = factor, .x0 = x0, .y0 = y0};
-    int   nx = (x1 - x0 + factor - 1) / factor, ny = (y1 - y0 + factor - 1) / factor, k = 0;
-    Status status = STATUS_OK;
-    for (;; k++) {
-        p.nx[k] = nx;
-        p.ny[k] = ny;
-        p.v[k]  = malloc((size_t)nx * (size_t)ny * sizeof **p.v);
-        if (!p.v[k]) status = STATUS_NO_MEMORY;
-        if (status != STATUS_OK || (nx == 1 && ny == 1) || k == patch_most_mips - 1) break;
+    const Reading *r = user;
+    (void)worker;
+    const int y0 = (r->y0 / r->rows + task) * r->rows > r->y0 ? (r->y0 / r->rows + task) * r->rows : r->y0;
+    const int end = (r->y0 / r->rows + task + 1) * r->rows, y1 = end < r->y1 ? end : r->y1;
+    const int width = r->x1 - r->x0;
+    float    *strip = malloc((size_t)(y1 - y0) * (size_t)width * sizeof *strip);
+    if (!strip) {
+        r->status[task] = STATUS_NO_MEMORY;
+        return;
+    }
+    r->status[task] = raster_read(strip, r->source->raster, r->source->band, r->x0, y0, width, y1 - y0, r->source->key);
+    const float  low = (float)r->source->low, high = (float)r->source->high;
+    const size_t count = (size_t)(y1 - y0) * (size_t)width;
+    for (size_t n = 0; n < count; n++) strip[n] = strip[n] >= low && strip[n] <= high ? strip[n] : NAN;
+    for (int w = 0; w < r->count && r->status[task] == STATUS_OK; w++) {
+        const PatchWindow *of = &r->window[w];
+        Patch             *p = &r->patch[w];
+        const int from = y0 > p->y0 ? y0 : p->y0, to = y1 < of->y1 ? y1 : of->y1;
+        for (int y = from; y < to; y += p->factor)
+            average_row(p->v[0] + (size_t)((y - p->y0) / p->factor) * (size_t)p->nx[0], p->nx[0],
+                        strip + (size_t)(y - y0) * (size_t)width + (size_t)(p->x0 - r->x0), (size_t)width,
+                        of->x1 - p->x0, to - y < p->factor ? to - y : p->factor, p->factor);
+    }
+    free(strip);
+}
+
+static Status allocate(Patch *p, const PatchWindow *w)
+{
+    int nx = (w->x1 - w->x0 + w->factor - 1) / w->factor, ny = (w->y1 - w->y0 + w->factor - 1) / w->factor, most = patch_most_mips;
+    *p = (Patch){.factor = w->factor, .x0 = w->x0, .y0 = w->y0, .wider = w->wider};
+    if (w->wider && w->wider->mips > 0)
+        for (most = 0; w->factor << most < w->wider->factor;) most++;
+    for (int k = 0; k < most; k++) {
+        p->nx[k] = nx;
+        p->ny[k] = ny;
+        p->v[k]  = malloc((size_t)nx * (size_t)ny * sizeof **p->v);
+        if (!p->v[k]) return STATUS_NO_MEMORY;
+        p->mips = k + 1;
+        if (nx == 1 && ny == 1 && !w->wider) break;
         nx = (nx + 1) / 2;
         ny = (ny + 1) / 2;
     }
-    p.mips = k + 1;
-    p.hole = calloc((size_t)p.nx[0] * (size_t)p.ny[0], 1);
-    if (!p.hole) status = STATUS_NO_MEMORY;
-    if (status == STATUS_OK) status = read_posts(&p, raster, band, x1 - x0, y1 - y0, low, high, key);
-    if (status != STATUS_OK) goto fail;
+    p->hole = calloc((size_t)p->nx[0] * (size_t)p->ny[0], 1);
+    return p->hole ? STATUS_OK : STATUS_NO_MEMORY;
+}
 
-    for (k = 1; k < p.mips; k++) halve(p.v[k], p.nx[k], p.ny[k], p.v[k - 1], p.nx[k - 1], p.ny[k - 1]);
-    if (isnan(p.v[p.mips - 1][0])) {
-        patch_free(&p);
-        *out = p;
-        return STATUS_OK;
+Status patches_read(Patch *out, const PatchWindow *window, int count, const PatchSource *source)
+{
+    const Raster *raster = source->raster;
+    PatchWindow  *w = calloc((size_t)count, sizeof *w);
+    Patch        *p = calloc((size_t)count, sizeof *p);
+    Reading       r = {.source = source, .window = w, .patch = p, .count = count, .x0 = raster->width,
+                       .y0 = raster->height, .rows = raster->row_block > 0 ? raster->row_block : 64};
+    Status        status = w && p ? STATUS_OK : STATUS_NO_MEMORY;
+    for (int k = 0; status == STATUS_OK && k < count; k++) {
+        w[k] = window[k];
+        /* aligned to the wider patch's posts, so that the mips go on there */
+        const int align = w[k].wider && w[k].wider->mips > 0 ? w[k].wider->factor : w[k].factor;
+        w[k].x0 = w[k].x0 > 0 ? w[k].x0 / align * align : 0;
+        w[k].y0 = w[k].y0 > 0 ? w[k].y0 / align * align : 0;
+        w[k].x1 = w[k].x1 < raster->width ? w[k].x1 : raster->width;
+        w[k].y1 = w[k].y1 < raster->height ? w[k].y1 : raster->height;
+        if (w[k].x1 <= w[k].x0 || w[k].y1 <= w[k].y0) status = STATUS_BAD_VALUE;
+        else status = allocate(&p[k], &w[k]);
+        r.x0 = w[k].x0 < r.x0 ? w[k].x0 : r.x0;
+        r.y0 = w[k].y0 < r.y0 ? w[k].y0 : r.y0;
+        r.x1 = w[k].x1 > r.x1 ? w[k].x1 : r.x1;
+        r.y1 = w[k].y1 > r.y1 ? w[k].y1 : r.y1;
+        while (r.rows < w[k].factor) r.rows *= 2;
     }
-    for (k = p.mips - 2; status == STATUS_OK && k >= 0; k--)
-        status = fill(p.v[k], p.nx[k], p.ny[k], p.v[k + 1], p.nx[k + 1], p.ny[k + 1], k ? NULL : p.hole,
-                      k ? NULL : &p.voids);
-    if (status != STATUS_OK) goto fail;
-    *out = p;
-    return STATUS_OK;
-
-fail:
-    patch_free(&p);
+    const int strips = (r.y1 - 1) / r.rows - r.y0 / r.rows + 1;
+    if (status == STATUS_OK) r.status = calloc((size_t)strips, sizeof *r.status);
+    if (status == STATUS_OK && !r.status) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) run(source->pool, strips, read_strip, &r);
+    for (int k = 0; status == STATUS_OK && k < strips; k++) status = r.status[k];
+    for (int k = 0; status == STATUS_OK && k < count; k++) status = fill_all(&p[k], source->pool);
+    for (int k = 0; p && k < count; k++) {
+        if (status == STATUS_OK) out[k] = p[k];
+        else patch_free(&p[k]);
+    }
+    free(r.status);
+    free(w);
+    free(p);
     return status;
 }
 
 double patch_at(const Patch *patch, double x_px, double y_px, double mip)
 {
-    const double x = (x_px - patch->x0) / patch->factor, y = (y_px - patch->y0) / patch->factor;
-    if (!(mip > 0)) return bilinear(patch->v[0], patch->nx[0], patch->ny[0], x, y);
-    mip = fmin(mip, patch->mips - 1);
+    if (!(mip > 0)) return mip_at(patch, 0, x_px, y_px);
+    const int most = patch->mips - 1 + (patch->wider ? patch->wider->mips : 0);
+    mip = fmin(mip, most);
     const int    k = (int)mip;
-    const double s = exp2(-k), fine = bilinear(patch->v[k], patch->nx[k], patch->ny[k], x * s, y * s);
-    if (!(mip > k) || k + 1 >= patch->mips) return fine;
-    const double coarse = bilinear(patch->v[k + 1], patch->nx[k + 1], patch->ny[k + 1], 0.5 * x * s, 0.5 * y * s);
-    return fine + (mip - k) * (coarse - fine);
+    const double fine = mip_at(patch, k, x_px, y_px);
+    if (!(mip > k) || k + 1 > most) return fine;
+    return fine + (mip - k) * (mip_at(patch, k + 1, x_px, y_px) - fine);
 }

@@ -15,12 +15,27 @@ typedef struct Patch {
     float   *v[patch_most_mips];/* [0] finest; each next one the mean of 2 x 2 */
     uint8_t *hole;              /* [ny[0]][nx[0]] 1: was void, and is filled */
     long     voids;             /* posts filled within the raster */
+    /* A coarser patch of a wider window of the same raster: its mip 0 continues the mips here. NULL: none. Borrowed. */
+    const struct Patch *wider;
 } Patch;
 
-/* Values outside low .. high count as void. out starts zeroed; a patch without any valid post has mips 0. Reads by
- * strips: beyond the patch itself it takes some megabytes. */
-Status patch_read(Patch *out, const Raster *raster, int band, int x0, int y0, int x1, int y1, int factor, double low,
-                  double high, const char *key);
+/* One window to be read: pixels x0 .. x1 - 1, y0 .. y1 - 1 of the raster, averaged over factor x factor. */
+typedef struct PatchWindow {
+    int x0, y0, x1, y1, factor; /* factor: a power of two */
+    const Patch *wider;         /* of a factor 2, 4 or 8 ... times as large, covering the window; NULL: none */
+} PatchWindow;
+
+typedef struct PatchSource {
+    const Raster *raster;
+    int           band;
+    double        low, high;    /* values outside count as void */
+    const char   *key;          /* for messages */
+    Pool         *pool;         /* NULL: one thread */
+} PatchSource;
+
+/* Several windows of one raster in one pass over it. out starts zeroed; a patch without any valid post has mips 0. Reads
+ * by strips: beyond the patches it takes some megabytes a thread. The same bits for any number of threads. */
+Status patches_read(Patch *out, const PatchWindow *window, int count, const PatchSource *source);
 void   patch_free(Patch *patch); /* accepts zeroes */
 
 /* Bilinear between posts, held at the edges, at a place in pixels of the raster. mip: how often halved, 0 .. mips - 1,

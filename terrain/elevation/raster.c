@@ -6,18 +6,33 @@
 #include <cpl_conv.h>
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <gdal.h>
 #include <ogr_srs_api.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* most_side: of a sheet, px; sheets lie within 1e8 px of the first, so that sums stay in an int */
 enum { most_sheets = 4096, path_size = 4096, most_side = 100000000 };
 
+/* Handles of one file, so that threads read at once and GDAL's cache of blocks lasts from one read to the next. */
+enum { handles = 8, most_open_sheets = 48 };
+typedef struct RasterOpen {
+    pthread_mutex_t lock[handles];
+    GDALDatasetH    file[handles];
+} RasterOpen;
+
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 
-static void register_drivers(void) { GDALAllRegister(); }
+static void register_drivers(void)
+{
+    static const GIntBig most_cache = 256 << 20; /* octets; by default a twentieth of the memory */
+    GDALAllRegister();
+    if (GDALGetCacheMax64() > most_cache) GDALSetCacheMax64(most_cache);
+}
 
 /* GDAL's reason for the last failure, or a default text. */
 static const char *reason(const char *else_text)
@@ -43,6 +58,8 @@ typedef struct Opened {
     int    width, height, bands;
     bool   ellipsoidal, bytes, whole;
     double metres_per_unit;
+    int    row_block, band;
+    RasterVertical vertical;
     OGRSpatialReferenceH crs;
 } Opened;
 
@@ -107,6 +124,9 @@ static Status describe(Opened *out, GDALDatasetH file, const char *path, const c
     o.ellipsoidal     = !OSRIsCompound(crs) && OSRGetAxesCount(crs) == 3;
     o.bytes           = GDALGetRasterDataType(GDALGetRasterBand(file, 1)) == GDT_Byte;
     o.whole           = GDALDataTypeIsInteger(GDALGetRasterDataType(GDALGetRasterBand(file, 1)));
+    int block_x = 0, block_y = 0;
+    GDALGetBlockSize(GDALGetRasterBand(file, 1), &block_x, &block_y);
+    for (o.row_block = 64; o.row_block < block_y && o.row_block < 1024;) o.row_block *= 2;
     o.metres_per_unit = metres_of_unit(GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
     if (o.metres_per_unit == 0) {
         if (!o.bytes) /* codes and photographs have no length */
@@ -127,7 +147,7 @@ static bool same_grid(const Raster *raster, const Opened *o, double at_px[2])
 {
     const double *a = raster->crs_from_px, *b = o->transform;
     if (!OSRIsSame(raster->crs, o->crs) || raster->ellipsoidal != o->ellipsoidal || raster->bytes != o->bytes ||
-        raster->bands != o->bands || raster->metres_per_unit != o->metres_per_unit)
+        raster->bands != o->bands || raster->metres_per_unit != o->metres_per_unit || raster->vertical != o->vertical)
         return false;
     static const int terms[4] = {1, 2, 4, 5};
     for (int k = 0; k < 4; k++)
@@ -151,6 +171,8 @@ static Status start_raster(Raster *raster, Opened *o)
     raster->metres_per_unit = o->metres_per_unit;
     raster->bytes           = o->bytes;
     raster->whole           = o->whole;
+    raster->vertical        = o->vertical;
+    raster->row_block       = o->row_block;
     raster->crs             = o->crs;
     o->crs                  = NULL;
     if (OSRIsGeographic(raster->crs)) {
@@ -170,11 +192,34 @@ static Status start_raster(Raster *raster, Opened *o)
     return status;
 }
 
-static Status add_sheet(RasterSet *set, const char *path, const char *key)
+/* Takes `@geoid`, `@ellipsoid` and `:N` off the end of a name; a file that is called so stays as it is. */
+static void take_suffixes(Opened *o, char *path)
+{
+    struct stat about;
+    if (stat(path, &about) == 0) return;
+    char *at = strrchr(path, '@');
+    if (at && (strcmp(at, "@geoid") == 0 || strcmp(at, "@ellipsoid") == 0)) {
+        o->vertical = at[1] == 'g' ? RASTER_VERTICAL_GEOID : RASTER_VERTICAL_ELLIPSOID;
+        *at = 0;
+    }
+    char     *colon = strrchr(path, ':');
+    long long band;
+    if (stat(path, &about) == 0 || !colon || !text_to_long(&band, colon + 1) || band < 1 || band > 65535) return;
+    *colon = 0;
+    if (stat(path, &about) == 0) o->band = (int)band;
+    else *colon = ':';
+}
+
+static Status add_sheet(RasterSet *set, const char *name, const char *key)
 {
     Opened o = {0};
     Status status = STATUS_IO;
     double at_px[2] = {0, 0};
+    char   path[path_size];
+    snprintf(path, sizeof path, "%s", name);
+    take_suffixes(&o, path);
+    const RasterVertical vertical = o.vertical;
+    const int            chosen_band = o.band;
     GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
     if (!file) {
         log_error("%s: cannot read %s: %s; gdalinfo %s says what it is", key, path, reason("not a raster GDAL knows"),
@@ -184,6 +229,13 @@ static Status add_sheet(RasterSet *set, const char *path, const char *key)
     status = describe(&o, file, path, key);
     GDALClose(file);
     if (status != STATUS_OK) return status;
+    o.vertical = vertical;
+    o.band     = chosen_band;
+    if (o.band > o.bands) {
+        log_error("%s: %s has %d bands, not %d; gdalinfo %s lists them", key, path, o.bands, o.band, path);
+        status = STATUS_BAD_VALUE;
+        goto done;
+    }
 
     Raster *raster = NULL;
     for (int k = 0; !raster && k < set->count; k++)
@@ -196,7 +248,7 @@ static Status add_sheet(RasterSet *set, const char *path, const char *key)
         }
         set->raster = more;
         raster      = &set->raster[set->count++];
-        *raster     = (Raster){0};
+        *raster     = (Raster){.order = set->count};
         at_px[0] = at_px[1] = 0;
         status = start_raster(raster, &o);
         if (status != STATUS_OK) {
@@ -212,7 +264,8 @@ static Status add_sheet(RasterSet *set, const char *path, const char *key)
     }
     raster->sheet = sheets;
     sheets[raster->sheet_count] =
-        (RasterSheet){strdup(path), (int)lrint(at_px[0]), (int)lrint(at_px[1]), o.width, o.height};
+        (RasterSheet){strdup(path), (int)lrint(at_px[0]), (int)lrint(at_px[1]), o.width, o.height, o.band, NULL};
+    if (o.row_block > raster->row_block) raster->row_block = o.row_block;
     if (sheets[raster->sheet_count].path) raster->sheet_count++;
     else status = STATUS_NO_MEMORY;
 done:
@@ -300,9 +353,34 @@ static Status add_folder(RasterSet *set, const char *path, const char *key)
 static int finer_first(const void *a, const void *b)
 {
     const Raster *p = a, *q = b;
-    const double  x = fmax(p->posting_m[0], p->posting_m[1]), y = fmax(q->posting_m[0], q->posting_m[1]);
+    /* within a hundredth they are the same: a posting in degrees changes along the meridian */
+    const double x = rint(100 * log(fmax(p->posting_m[0], p->posting_m[1]))),
+                 y = rint(100 * log(fmax(q->posting_m[0], q->posting_m[1])));
     if (x != y) return x < y ? -1 : 1;
-    return strcmp(p->sheet[0].path, q->sheet[0].path);
+    return p->order < q->order ? -1 : p->order > q->order;
+}
+
+/* Room for handles, unless that takes more files than a process may have open. */
+static void keep_open(RasterSet *set)
+{
+    int sheets = 0;
+    for (int k = 0; k < set->count; k++) sheets += set->raster[k].sheet_count;
+    for (int k = 0; sheets <= most_open_sheets && k < set->count; k++)
+        for (int n = 0; n < set->raster[k].sheet_count; n++) {
+            RasterOpen *open = set->raster[k].sheet[n].open = calloc(1, sizeof *open);
+            for (int h = 0; open && h < handles; h++) pthread_mutex_init(&open->lock[h], NULL);
+        }
+}
+
+static void kept_free(struct RasterKept *kept);
+
+static void close_handles(RasterOpen *open)
+{
+    for (int h = 0; open && h < handles; h++) {
+        if (open->file[h]) GDALClose(open->file[h]);
+        pthread_mutex_destroy(&open->lock[h]);
+    }
+    free(open);
 }
 
 Status raster_set_open(RasterSet *out, const char *paths, const char *key)
@@ -334,6 +412,7 @@ Status raster_set_open(RasterSet *out, const char *paths, const char *key)
         status = STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK) qsort(set.raster, (size_t)set.count, sizeof *set.raster, finer_first);
+    if (status == STATUS_OK) keep_open(&set);
     loud();
     if (status == STATUS_OK) *out = set;
     else raster_set_close(&set);
@@ -344,8 +423,12 @@ void raster_set_close(RasterSet *set)
 {
     for (int k = 0; k < set->count; k++) {
         Raster *raster = &set->raster[k];
-        for (int n = 0; n < raster->sheet_count; n++) free(raster->sheet[n].path);
+        for (int n = 0; n < raster->sheet_count; n++) {
+            close_handles(raster->sheet[n].open);
+            free(raster->sheet[n].path);
+        }
         free(raster->sheet);
+        kept_free(raster->kept);
         if (raster->crs_from_earth) OCTDestroyCoordinateTransformation(raster->crs_from_earth);
         if (raster->earth_from_crs) OCTDestroyCoordinateTransformation(raster->earth_from_crs);
         if (raster->crs) OSRDestroySpatialReference(raster->crs);
@@ -396,27 +479,143 @@ void raster_earth_from_px(const Raster *raster, int count, double *x_to_lon, dou
 
 /* ---- pixels --------------------------------------------------------------------------------- */
 
-/* One sheet's share of the window, over what is there already: the first sheet that has a value wins. */
-static Status read_sheet(float *out, const RasterSheet *s, int number, int x0, int y0, int width,
-                         int height, const char *key)
+/* A sheet's handle for a window that begins at row y, locked; NULL, logged: the file cannot be read. */
+static GDALDatasetH sheet_open(const RasterSheet *s, int row_block, int y, const char *key)
 {
-    const int wx0 = x0 > s->x0 ? x0 : s->x0, wy0 = y0 > s->y0 ? y0 : s->y0;
-    const int wx1 = x0 + width < s->x0 + s->width ? x0 + width : s->x0 + s->width;
-    const int wy1 = y0 + height < s->y0 + s->height ? y0 + height : s->y0 + s->height;
-    if (wx0 >= wx1 || wy0 >= wy1) return STATUS_OK;
-    const int w = wx1 - wx0, h = wy1 - wy0;
+    const int    h = y / (row_block > 0 ? row_block : 1) % handles;
+    GDALDatasetH file = NULL;
+    if (s->open) {
+        pthread_mutex_lock(&s->open->lock[h]);
+        file = s->open->file[h];
+    }
+    if (!file) file = GDALOpen(s->path, GA_ReadOnly);
+    if (s->open) s->open->file[h] = file;
+    if (file && GDALGetRasterXSize(file) == s->width && GDALGetRasterYSize(file) == s->height) return file;
+    log_error("%s: %s: %s", key, s->path, file ? "it changed while it was read" : reason("it cannot be opened"));
+    if (s->open) {
+        s->open->file[h] = NULL;
+        pthread_mutex_unlock(&s->open->lock[h]);
+    }
+    if (file) GDALClose(file);
+    return NULL;
+}
+
+static void sheet_done(const RasterSheet *s, int row_block, int y, GDALDatasetH file)
+{
+    if (!s->open) GDALClose(file);
+    else pthread_mutex_unlock(&s->open->lock[y / (row_block > 0 ? row_block : 1) % handles]);
+}
+
+/* What a sheet and a window have in common, px of the raster. False: nothing. */
+static bool common_part(int part[4], const RasterSheet *s, int x0, int y0, int width, int height)
+{
+    part[0] = x0 > s->x0 ? x0 : s->x0;
+    part[1] = y0 > s->y0 ? y0 : s->y0;
+    part[2] = x0 + width < s->x0 + s->width ? x0 + width : s->x0 + s->width;
+    part[3] = y0 + height < s->y0 + s->height ? y0 + height : s->y0 + s->height;
+    return part[0] < part[2] && part[1] < part[3];
+}
+
+/* ---- decoded rows ---------------------------------------------------------------------------- */
+
+/* A file without a name: the raster's rows in float, those that have been read. */
+typedef struct RasterKept {
+    int           file;
+    int           band;
+    atomic_uchar *has; /* [height] */
+} RasterKept;
+
+void raster_keep(Raster *raster, int band, const char *folder)
+{
+    RasterKept *kept = calloc(1, sizeof *kept);
+    if (!kept || raster->kept) {
+        free(kept);
+        return;
+    }
+    kept->band = band;
+    kept->has  = calloc((size_t)raster->height, sizeof *kept->has);
+    kept->file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (!kept->has || kept->file < 0) { /* no such file system: read twice */
+        if (kept->file >= 0) close(kept->file);
+        free(kept->has);
+        free(kept);
+        return;
+    }
+    raster->kept = kept;
+}
+
+static void kept_free(RasterKept *kept)
+{
+    if (!kept) return;
+    close(kept->file);
+    free(kept->has);
+    free(kept);
+}
+
+static bool whole_io(bool write, int file, float *at, size_t count, size_t offset)
+{
+    char  *octets = (char *)at;
+    size_t left = count * sizeof *at;
+    off_t  where = (off_t)(offset * sizeof *at);
+    while (left > 0) {
+        const ssize_t n = write ? pwrite(file, octets, left, where) : pread(file, octets, left, where);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        octets += n;
+        where += n;
+        left -= (size_t)n;
+    }
+    return true;
+}
+
+/* Full rows of the raster into the file; a full disk only costs another reading. */
+static void keep_rows(const Raster *raster, float *rows, int y0, int height)
+{
+    RasterKept *kept = raster->kept;
+    for (int y = y0; y < y0 + height; y++)
+        if (!atomic_load(&kept->has[y]) && whole_io(true, kept->file, rows + (size_t)(y - y0) * (size_t)raster->width,
+                                                   (size_t)raster->width, (size_t)y * (size_t)raster->width))
+            atomic_store(&kept->has[y], 1);
+}
+
+static bool read_kept(float *out, const Raster *raster, int x0, int y0, int width, int height)
+{
+    const RasterKept *kept = raster->kept;
+    if (x0 < 0 || y0 < 0 || x0 + width > raster->width || y0 + height > raster->height) return false;
+    for (int y = y0; y < y0 + height; y++)
+        if (!atomic_load(&kept->has[y])) return false;
+    if (x0 == 0 && width == raster->width)
+        return whole_io(false, kept->file, out, (size_t)width * (size_t)height, (size_t)y0 * (size_t)width);
+    for (int y = y0; y < y0 + height; y++)
+        if (!whole_io(false, kept->file, out + (size_t)(y - y0) * (size_t)width, (size_t)width,
+                      (size_t)y * (size_t)raster->width + (size_t)x0))
+            return false;
+    return true;
+}
+
+static Status damaged(const RasterSheet *s, const char *key)
+{
+    log_error("%s: %s is damaged: %s; fetch it anew, or leave it out", key, s->path, reason("rows are missing"));
+    return STATUS_IO;
+}
+
+/* One sheet's part of the window, over what is there already: the first sheet that has a value wins. */
+static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s, bool first, int number, int x0, int y0,
+                         int width, int height, const char *key)
+{
+    int part[4];
+    if (!common_part(part, s, x0, y0, width, height)) return STATUS_OK;
+    const int w = part[2] - part[0], h = part[3] - part[1];
     const int strip = h < 256 ? h : 256;
 
-    Status         status = STATUS_NO_MEMORY;
-    GDALDatasetH   file = NULL;
-    float         *value = malloc((size_t)w * (size_t)strip * sizeof *value);
-    unsigned char *mask = malloc((size_t)w * (size_t)strip);
-    if (!value || !mask) goto done;
-    status = STATUS_IO;
-    file   = GDALOpen(s->path, GA_ReadOnly);
-    GDALRasterBandH band = file ? GDALGetRasterBand(file, number) : NULL;
-    if (!band || GDALGetRasterXSize(file) != s->width || GDALGetRasterYSize(file) != s->height) {
-        log_error("%s: %s: %s", key, s->path, reason("it has no such band, or changed under our hands"));
+    Status         status = STATUS_IO;
+    float         *value = NULL;
+    unsigned char *mask = NULL;
+    GDALDatasetH   file = sheet_open(s, raster->row_block, part[1], key);
+    if (!file) return status;
+    GDALRasterBandH band = GDALGetRasterBand(file, s->band ? s->band : number);
+    if (!band) {
+        log_error("%s: %s: %s", key, s->path, reason("it has no such band"));
         goto done;
     }
     const bool masked = !(GDALGetMaskFlags(band) & GMF_ALL_VALID);
@@ -424,27 +623,94 @@ static Status read_sheet(float *out, const RasterSheet *s, int number, int x0, i
     double     scale = GDALGetRasterScale(band, &has_scale), offset = GDALGetRasterOffset(band, &has_offset);
     if (!has_scale || !(scale != 0) || !isfinite(scale)) scale = 1;
     if (!has_offset || !isfinite(offset)) offset = 0;
-    for (int y = wy0; y < wy1; y += strip) {
-        const int rows = wy1 - y < strip ? wy1 - y : strip;
-        if (GDALRasterIO(band, GF_Read, wx0 - s->x0, y - s->y0, w, rows, value, w, rows, GDT_Float32, 0, 0) !=
+    if (first && !masked && scale == 1 && offset == 0) { /* nothing else is there: without a copy */
+        float *to = out + (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
+        status = GDALRasterIO(band, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, to, w, h, GDT_Float32, 0,
+                              width * (int)sizeof *to) == CE_None ? STATUS_OK : damaged(s, key);
+        goto done;
+    }
+    status = STATUS_NO_MEMORY;
+    value  = malloc((size_t)w * (size_t)strip * sizeof *value);
+    mask   = malloc((size_t)w * (size_t)strip);
+    if (!value || !mask) goto done;
+    for (int y = part[1]; y < part[3]; y += strip) {
+        const int rows = part[3] - y < strip ? part[3] - y : strip;
+        if (GDALRasterIO(band, GF_Read, part[0] - s->x0, y - s->y0, w, rows, value, w, rows, GDT_Float32, 0, 0) !=
                 CE_None ||
-            (masked && GDALRasterIO(GDALGetMaskBand(band), GF_Read, wx0 - s->x0, y - s->y0, w, rows, mask, w, rows,
+            (masked && GDALRasterIO(GDALGetMaskBand(band), GF_Read, part[0] - s->x0, y - s->y0, w, rows, mask, w, rows,
                                     GDT_Byte, 0, 0) != CE_None)) {
-            log_error("%s: %s is damaged: %s; fetch it anew, or leave it out", key, s->path,
-                      reason("rows are missing"));
+            status = damaged(s, key);
             goto done;
         }
         for (int r = 0; r < rows; r++) {
-            float *to = out + (size_t)(y + r - y0) * (size_t)width + (size_t)(wx0 - x0);
+            float *to = out + (size_t)(y + r - y0) * (size_t)width + (size_t)(part[0] - x0);
             const float         *from = value + (size_t)r * (size_t)w;
             const unsigned char *valid = mask + (size_t)r * (size_t)w;
-            for (int i = 0; i < w; i++)
-                if (isnan(to[i]) && !(masked && !valid[i])) to[i] = (float)(from[i] * scale + offset);
+            if (masked)
+                for (int i = 0; i < w; i++)
+                    to[i] = isnan(to[i]) && valid[i] ? (float)(from[i] * scale + offset) : to[i];
+            else
+                for (int i = 0; i < w; i++) to[i] = isnan(to[i]) ? (float)(from[i] * scale + offset) : to[i];
         }
     }
     status = STATUS_OK;
 done:
-    if (file) GDALClose(file);
+    sheet_done(s, raster->row_block, part[1], file);
+    free(value);
+    free(mask);
+    return status;
+}
+
+static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, const RasterSheet *s, int first,
+                               int bands, int x0, int y0, int width, int height, const char *key)
+{
+    int part[4];
+    if (!common_part(part, s, x0, y0, width, height)) return STATUS_OK;
+    const int      w = part[2] - part[0], h = part[3] - part[1];
+    const size_t   count = (size_t)w * (size_t)h;
+    uint8_t       *value = NULL, *mask = NULL;
+    Status         status = STATUS_IO;
+    GDALDatasetH   file = sheet_open(s, raster->row_block, part[1], key);
+    if (!file) return status;
+    int band[4] = {0};
+    for (int b = 0; b < bands; b++) band[b] = s->band && bands == 1 ? s->band : first + b;
+    const GDALRasterBandH of = GDALGetRasterBand(file, band[0]);
+    if (!of || !GDALGetRasterBand(file, band[bands - 1])) {
+        log_error("%s: %s: %s", key, s->path, reason("it has no such band"));
+        goto done;
+    }
+    const bool masked = !(GDALGetMaskFlags(of) & GMF_ALL_VALID);
+    if (raster->sheet_count == 1 && !masked) { /* nothing else is there: without a copy */
+        const size_t at = (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
+        status = GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, out + at * (size_t)bands, w, h,
+                                     GDT_Byte, bands, band, bands, bands * width, 1) == CE_None ? STATUS_OK : damaged(s, key);
+        for (int r = 0; r < h; r++) memset(valid + at + (size_t)r * (size_t)width, 255, (size_t)w);
+        goto done;
+    }
+    status = STATUS_NO_MEMORY;
+    value  = malloc(count * (size_t)bands);
+    mask   = malloc(count);
+    if (!value || !mask) goto done;
+    status = STATUS_IO;
+    if (GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, value, w, h, GDT_Byte, bands, band,
+                            bands, bands * w, 1) != CE_None ||
+        (masked && GDALRasterIO(GDALGetMaskBand(of), GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, mask, w, h,
+                                GDT_Byte, 0, 0) != CE_None)) {
+        status = damaged(s, key);
+        goto done;
+    }
+    for (int r = 0; r < h; r++) {
+        const size_t at = (size_t)(part[1] + r - y0) * (size_t)width + (size_t)(part[0] - x0), from = (size_t)r * (size_t)w;
+        for (size_t i = 0; i < (size_t)w; i++) {
+            if (valid[at + i] || (masked && !mask[from + i])) continue;
+            valid[at + i] = 255;
+            for (int b = 0; b < bands; b++)
+                out[(at + i) * (size_t)bands + (size_t)b] = value[(from + i) * (size_t)bands + (size_t)b];
+        }
+    }
+    status = STATUS_OK;
+done:
+    sheet_done(s, raster->row_block, part[1], file);
     free(value);
     free(mask);
     return status;
@@ -477,10 +743,30 @@ Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, i
 {
     Status       status = STATUS_OK;
     const size_t count = (size_t)width * (size_t)height;
+    const bool   keeps = raster->kept && ((RasterKept *)raster->kept)->band == band;
+    if (keeps && read_kept(out, raster, x0, y0, width, height)) return STATUS_OK;
+    const RasterSheet *only = raster->sheet_count == 1 ? &raster->sheet[0] : NULL;
     for (size_t k = 0; k < count; k++) out[k] = NAN;
     quiet();
     for (int k = 0; status == STATUS_OK && k < raster->sheet_count; k++)
-        status = read_sheet(out, &raster->sheet[k], band, x0, y0, width, height, key);
+        status = read_sheet(out, raster, &raster->sheet[k], only != NULL, band, x0, y0, width, height, key);
+    loud();
+    if (status == STATUS_OK && keeps && x0 == 0 && width == raster->width && y0 >= 0 && y0 + height <= raster->height)
+        keep_rows(raster, out, y0, height);
+    return status;
+}
+
+Status raster_read_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, int first_band, int bands, int x0, int y0,
+                         int width, int height, const char *key)
+{
+    Status       status = STATUS_OK;
+    const size_t count = (size_t)width * (size_t)height;
+    if (bands < 1 || bands > 4) return STATUS_BAD_VALUE;
+    memset(out, 0, count * (size_t)bands);
+    memset(valid, 0, count);
+    quiet();
+    for (int k = 0; status == STATUS_OK && k < raster->sheet_count; k++)
+        status = read_sheet_bytes(out, valid, raster, &raster->sheet[k], first_band, bands, x0, y0, width, height, key);
     loud();
     return status;
 }

@@ -12,12 +12,19 @@
 typedef struct RasterSheet {
     char *path;
     int   x0, y0, width, height; /* px of the Raster */
+    int   band;                  /* of `FILE:BAND`; 0: the caller's choice */
+    struct RasterOpen *open;     /* private: handles kept between reads; NULL: the file is opened for each */
 } RasterSheet;
+
+typedef enum RasterVertical { RASTER_VERTICAL_BY_CRS, RASTER_VERTICAL_GEOID, RASTER_VERTICAL_ELLIPSOID } RasterVertical;
 
 typedef struct Raster {
     int     width, height, bands;
     double  posting_m[2];        /* along a row and along a column, at the middle */
     bool    ellipsoidal;         /* the CRS is three-dimensional: heights above the ellipsoid */
+    RasterVertical vertical;     /* as the list of files has it: `FILE@geoid`, `FILE@ellipsoid` */
+    int     order;               /* in the list of files, of its first sheet */
+    int     row_block;           /* rows that are read together at the least cost; a power of two */
     double  metres_per_unit;     /* of band 1 */
     bool    bytes;               /* its samples are octets: of a picture, or a class */
     bool    whole;               /* they are whole numbers: no elevation in float */
@@ -27,6 +34,7 @@ typedef struct Raster {
     double  crs_from_px[6], px_from_crs[6];
     double  whole_turn_px;       /* geographic: px of 360 degrees; else 0 */
     void   *crs, *crs_from_earth, *earth_from_crs;
+    struct RasterKept *kept;
 } Raster;
 
 typedef struct RasterSet {
@@ -34,8 +42,9 @@ typedef struct RasterSet {
     Raster *raster;              /* finest posting first; equals in the order given */
 } RasterSet;
 
-/* paths: files and folders, separated by commas; of a folder, all that GDAL reads. key: the setting, for messages. An
- * unusable file is one logged line with a remedy, and STATUS_IO or STATUS_BAD_VALUE. */
+/* paths: files and folders, separated by commas; of a folder, all that GDAL reads. After a name `@geoid` or `@ellipsoid`
+ * says what its heights are above, and `:N` which band to read. key: the setting, for messages. An unusable file is one
+ * logged line with a remedy, and STATUS_IO or STATUS_BAD_VALUE. */
 Status raster_set_open(RasterSet *out, const char *paths, const char *key);
 void   raster_set_close(RasterSet *set); /* accepts zeroes */
 
@@ -48,7 +57,16 @@ void raster_earth_from_px(const Raster *raster, int count, double *x_to_lon, dou
 void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, const LocalFrame *frame, double inset_px);
 
 /* band from 1, its scale and offset applied. out [height][width]; NaN for void, nodata, masked, and between sheets.
- * The window may reach beyond the raster. STATUS_IO, logged, when a file turns out to be damaged. */
+ * Where sheets overlap the first that has a value wins. The window may reach beyond the raster. Several threads may read
+ * at once; windows whose first rows lie in different blocks of row_block rows do not wait for each other. STATUS_IO,
+ * logged, when a file turns out to be damaged. */
 Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key);
+/* From now on whole rows of a band that are read are kept, decoded, in a nameless file of this folder, and read from it when
+ * they are asked for again: 4 octets a pixel. Nothing where the folder cannot have such a file. */
+void raster_keep(Raster *raster, int band, const char *folder);
+/* The same of a raster of octets: out [height][width][bands], and valid [height][width], 0 or 255. bands: how many, from
+ * the first on. */
+Status raster_read_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, int first_band, int bands, int x0, int y0,
+                         int width, int height, const char *key);
 
 #endif

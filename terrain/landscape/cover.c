@@ -4,6 +4,7 @@
 #include "terrain/landscape/landscape_eight_private.h"
 
 #include <stdlib.h>
+#include <sys/mman.h>
 
 /* ---- slope ---------------------------------------------------------------------------------- */
 
@@ -39,19 +40,46 @@ static Lattice moved(Lattice at, F32x8 by)
     return (Lattice){i32x8_add(at.cell, i32x8_truncate(whole)), share - whole};
 }
 
-/* Heights in the level's own steps, of lanes within its cells. Two posts of a row take one load. */
-static F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattice y, F32x8 lanes)
+/* Tiles of lanes within the level's cells. */
+static I32x8 tiles_of(const ElevationLevel *level, Lattice x, Lattice y)
+{
+    enum { bits = 6 };
+    _Static_assert(elevation_tile_cells == 1 << bits, "cells to tiles by shifts");
+    return i32x8_add(i32x8_mul(i32x8_shift_right(y.cell, bits), i32x8_set(level->tiles_x)),
+                     i32x8_shift_right(x.cell, bits));
+}
+
+/* One of the two values of each lane's tile. */
+static I32x8 of_tiles(const int32_t *value, I32x8 tile, I32x8 mask)
+{
+    return _mm256_mask_i32gather_epi32(i32x8_set(0), value, tile, mask, sizeof(ElevationTile));
+}
+
+/* Heights above `about` in the level's own steps, of lanes within its cells. Two posts of a row take one load;
+ * differences are formed of whole steps. */
+static F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattice y, F32x8 lanes, I32x8 about)
 {
     const I32x8 post = i32x8_set(0xffff), none = i32x8_set(0), mask = _mm256_castps_si256(lanes);
-    const I32x8 at = i32x8_add(i32x8_mul(y.cell, i32x8_set(level->nx)), x.cell);
-    const I32x8 south = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)level->post, at, mask, 2);
-    const I32x8 north = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)(level->post + level->nx), at,
-                                                       mask, 2);
-    const F32x8    sw = f32x8_of_ints(i32x8_and(south, post)), se = f32x8_of_ints(i32x8_shift_right(south, 16));
-    const F32x8    nw = f32x8_of_ints(i32x8_and(north, post)), ne = f32x8_of_ints(i32x8_shift_right(north, 16));
-    const F32x8    south_east = f32x8_fma(x.share, se - sw, y.share * (ne - se));
-    const F32x8    north_west = f32x8_fma(x.share, ne - nw, y.share * (nw - sw));
-    return sw + f32x8_select(f32x8_less(x.share, y.share), north_west, south_east);
+    const I32x8 inside = i32x8_set(elevation_tile_cells - 1), tile = tiles_of(level, x, y);
+    const I32x8 row = i32x8_mul(i32x8_and(y.cell, inside), i32x8_set(elevation_tile_side));
+    const I32x8 at = i32x8_add(i32x8_mul(tile, i32x8_set(elevation_tile_posts)),
+                               i32x8_add(row, i32x8_and(x.cell, inside)));
+    const uint16_t *north_of = level->stored + elevation_tile_side;
+    const I32x8 south = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)level->stored, at, mask, 2);
+    const I32x8 north = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)north_of, at, mask, 2);
+    I32x8       sw = i32x8_and(south, post), se = i32x8_shift_right(south, 16);
+    I32x8       nw = i32x8_and(north, post), ne = i32x8_shift_right(north, 16);
+    if (!level->plain) {
+        const I32x8 base = i32x8_sub(of_tiles(&level->tile->base, tile, mask), about);
+        const I32x8 shift = of_tiles(&level->tile->shift, tile, mask);
+        sw = i32x8_add(base, _mm256_sllv_epi32(sw, shift)), se = i32x8_add(base, _mm256_sllv_epi32(se, shift));
+        nw = i32x8_add(base, _mm256_sllv_epi32(nw, shift)), ne = i32x8_add(base, _mm256_sllv_epi32(ne, shift));
+    }
+    const F32x8 east_s = f32x8_of_ints(i32x8_sub(se, sw)), north_s = f32x8_of_ints(i32x8_sub(ne, se));
+    const F32x8 east_n = f32x8_of_ints(i32x8_sub(ne, nw)), north_n = f32x8_of_ints(i32x8_sub(nw, sw));
+    const F32x8 south_east = f32x8_fma(x.share, east_s, y.share * north_s);
+    const F32x8 north_west = f32x8_fma(x.share, east_n, y.share * north_n);
+    return f32x8_of_ints(sw) + f32x8_select(f32x8_less(x.share, y.share), north_west, south_east);
 }
 
 /* Slope about eight places, of those whose arms end on one level together; the others' are evaluated one by one. Within
@@ -82,8 +110,12 @@ static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const
         left &= ~(near | here);
         if (!here) continue;
         const F32x8 found = f32x8_mask(here);
-        const F32x8 dx = level_heights(level, east, y, found) - level_heights(level, west, y, found);
-        const F32x8 dy = level_heights(level, x, north, found) - level_heights(level, x, south, found);
+        const I32x8 about = level->plain ? i32x8_set(0) : of_tiles(&level->tile->base, tiles_of(level, x, y),
+                                                                   _mm256_castps_si256(found));
+        const F32x8 dx =
+            level_heights(level, east, y, found, about) - level_heights(level, west, y, found, about);
+        const F32x8 dy =
+            level_heights(level, x, north, found, about) - level_heights(level, x, south, found, about);
         const F32x8 rise = f32x8_sqrt(f32x8_fma(dx, dx, dy * dy)) * f32x8_set(level->step_m / (2 * arm_m));
         slope = f32x8_select(found, rise, slope);
     }
@@ -338,5 +370,7 @@ void cover_free(Cover *cover)
     cover_grid_free(cover->grid);
     photo_free(&cover->photo);
     coast_destroy(&cover->coast);
+    if (cover->store.map) munmap(cover->store.map, cover->store.octets);
+    free(cover->store.path);
     free(cover);
 }

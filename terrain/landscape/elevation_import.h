@@ -21,6 +21,8 @@ typedef struct ElevationFiles {
     ElevationVertical vertical;
     double            spacing_m;  /* of level 0; 0: the posting of the finest data at the origin */
     double            horizon_m;  /* half width of the outermost level */
+    double            size_m[2];  /* width of level 0, about the origin, x and y; 0: all data */
+    const char       *keep_folder; /* large files are decoded once into a nameless file here; NULL: as often as needed */
 } ElevationFiles;
 
 typedef struct ElevationReport {

@@ -2,6 +2,7 @@
  * points. */
 #include "terrain/landscape/ground_image.h"
 
+#include "terrain/landscape/cover_table.h"
 #include "terrain/landscape/raster_window.h"
 
 #include <stdlib.h>
@@ -25,82 +26,10 @@ static Status open_whole(RasterSet *set, const char *paths, const char *key, con
     return status;
 }
 
-enum { most_codes = 256 };
-
-typedef struct CoverTable {
-    bool    known[most_codes];
-    uint8_t surface[most_codes];
-} CoverTable;
-
-static Status cover_table_read(CoverTable *out, const char *path)
-{
-    Table  table = {0};
-    Status status = table_open(&table, path);
-    if (status != STATUS_OK) return status;
-    CoverTable t = {0};
-    const int code_column = table_column(&table, "code"), surface_column = table_column(&table, "surface");
-    status = STATUS_BAD_VALUE;
-    if (code_column < 0 || surface_column < 0) {
-        log_error("cover: %s needs the columns code and surface", path);
-        goto done;
-    }
-    for (int row = 0; row < table.rows; row++) {
-        double      code;
-        const char *name = table_text(&table, row, surface_column);
-        if (table_number(&code, &table, row, code_column, 1, most_codes - 1) != STATUS_OK) goto done;
-        const SurfaceClass surface = surface_find(name);
-        if (code != floor(code) || t.known[(int)code] || (surface == SURFACE_NONE && strcmp(name, "none") != 0)) {
-            log_error(
-                "cover: %s:%d: code %g is not whole, given twice, or its surface '%s' unknown; terrain/surface.h and "
-                "etc/surfaces.csv list them",
-                path, table.line[row + 1], code, name);
-            goto done;
-        }
-        t.known[(int)code]   = true;
-        t.surface[(int)code] = (uint8_t)surface;
-    }
-    *out   = t;
-    status = STATUS_OK;
-done:
-    table_close(&table);
-    return status;
-}
-
 Status cover_table_check(const char *path)
 {
     CoverTable table;
     return cover_table_read(&table, path);
-}
-
-static const char *const built_in[] = {"worldcover", "nlcd", "fbfm40"};
-
-/* The table with most of the pixels' codes; of equals the first. */
-static Status choose_table(CoverTable *out, const char **name, const char *asked, const long histogram[most_codes])
-{
-    char path[4096], file[64];
-    bool named = false;
-    for (size_t k = 0; k < sizeof built_in / sizeof *built_in; k++) named |= strcmp(asked, built_in[k]) == 0;
-    if (*asked) {
-        *name = asked;
-        if (!named) return cover_table_read(out, asked);
-        snprintf(file, sizeof file, "cover_%s.csv", asked);
-        return etc_path(path, sizeof path, file) ? cover_table_read(out, path) : STATUS_BAD_VALUE;
-    }
-    long best = -1;
-    for (size_t k = 0; k < sizeof built_in / sizeof *built_in; k++) {
-        CoverTable table;
-        long       known = 0;
-        snprintf(file, sizeof file, "cover_%s.csv", built_in[k]);
-        if (!etc_path(path, sizeof path, file)) return STATUS_BAD_VALUE;
-        const Status status = cover_table_read(&table, path);
-        if (status != STATUS_OK) return status;
-        for (int c = 1; c < most_codes; c++) known += table.known[c] ? histogram[c] : 0;
-        if (known <= best) continue;
-        best  = known;
-        *out  = table;
-        *name = built_in[k];
-    }
-    return STATUS_OK;
 }
 
 static Status cover_codes(uint8_t *code, const Window *window, const Raster *raster, int band,
@@ -121,7 +50,7 @@ static Status cover_codes(uint8_t *code, const Window *window, const Raster *ras
                 const double x = floor(at[0]) - box[0], y = floor(at[1]) - box[1];
                 if (!(x >= 0 && y >= 0 && x < (double)w && y < (double)h)) continue;
                 const float value = px[(size_t)y * w + (size_t)x];
-                if (value >= 1 && value < most_codes && code[(size_t)j * (size_t)window->nx + (size_t)i] == 0)
+                if (value >= 1 && value < cover_codes_most && code[(size_t)j * (size_t)window->nx + (size_t)i] == 0)
                     code[(size_t)j * (size_t)window->nx + (size_t)i] = (uint8_t)value;
             }
         free(px);
@@ -174,10 +103,10 @@ Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const 
             status = cover_codes(g->surface, &window, &set.raster[k], r.band, elevation, frame);
         if (status != STATUS_OK) goto done;
     }
-    long histogram[most_codes] = {0}, classed = 0, of_class[SURFACE_COUNT] = {0};
+    long histogram[cover_codes_most] = {0}, classed = 0, of_class[SURFACE_COUNT] = {0};
     for (int w = 0; w < cover_windows; w++)
         for (size_t n = 0; n < (size_t)grid[w].nx * (size_t)grid[w].ny; n++) histogram[grid[w].surface[n]]++;
-    status = choose_table(&chosen, &r.table, table, histogram);
+    status = cover_table_choose(&chosen, &r.table, table, histogram);
     if (status != STATUS_OK) goto done;
     for (int w = 0; w < cover_windows; w++)
         for (size_t n = 0; n < (size_t)grid[w].nx * (size_t)grid[w].ny; n++) {
@@ -206,7 +135,7 @@ done:
 void cover_grid_free(CoverGrid grid[cover_windows])
 {
     for (int w = 0; w < cover_windows; w++) {
-        free(grid[w].surface);
+        if (!grid[w].borrowed) free(grid[w].surface);
         grid[w] = (CoverGrid){0};
     }
 }
@@ -218,60 +147,12 @@ SurfaceClass cover_grid_at(const CoverGrid grid[cover_windows], double x_m, doub
         const double     x = (x_m - g->x0_m) / g->cell_m, y = (y_m - g->y0_m) / g->cell_m;
         if (!(g->surface && x >= 0 && y >= 0 && x < g->nx && y < g->ny)) continue;
         const SurfaceClass surface = (SurfaceClass)g->surface[(size_t)y * (size_t)g->nx + (size_t)x];
-        if (surface != SURFACE_NONE) return surface;
+        if (surface > SURFACE_NONE && surface < SURFACE_COUNT) return surface; /* a damaged store may hold others */
     }
     return SURFACE_NONE;
 }
 
 /* ---- photograph ----------------------------------------------------------------------------- */
-
-/* IEC 61966-2-1. */
-static double linear_of(double encoded)
-{
-    return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-static double encoded_of(double linear)
-{
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-}
-
-typedef struct Codes {
-    float   linear[256];
-    uint8_t of_linear[4096]; /* finer than an octet's steps where they are finest */
-} Codes;
-
-static const Codes *codes(void)
-{
-    static Codes c;
-    static bool  ready;
-    if (!ready) { /* first called by photo_read, before there are threads */
-        for (int k = 0; k < 256; k++) c.linear[k] = (float)linear_of(k / 255.0);
-        for (int k = 0; k < 4096; k++) c.of_linear[k] = (uint8_t)lrint(255 * encoded_of(k / 4095.0));
-        ready = true;
-    }
-    return &c;
-}
-
-static void halve(Photo *p, int k)
-{
-    const Codes *c = codes();
-    const int nx = p->nx[k - 1], ny = p->ny[k - 1];
-    for (int j = 0; j < p->ny[k]; j++)
-        for (int i = 0; i < p->nx[k]; i++) {
-            float sum[3] = {0}, cover = 0;
-            for (int n = 0; n < 4; n++) {
-                const int a = 2 * i + (n & 1), b = 2 * j + (n >> 1);
-                if (a >= nx || b >= ny) continue;
-                const uint8_t *from = p->rgba[k - 1] + 4 * ((size_t)b * (size_t)nx + (size_t)a);
-                for (int ch = 0; ch < 3; ch++) sum[ch] += from[3] * c->linear[from[ch]];
-                cover += from[3];
-            }
-            uint8_t *to = p->rgba[k] + 4 * ((size_t)j * (size_t)p->nx[k] + (size_t)i);
-            for (int ch = 0; ch < 3; ch++) to[ch] = cover > 0 ? c->of_linear[(int)(4095 * sum[ch] / cover + 0.5f)] : 0;
-            to[3] = (uint8_t)(cover / 4 + 0.5f);
-        }
-}
 
 static int by_value(const void *a, const void *b)
 {
@@ -307,7 +188,6 @@ static Status white_of(double *white, const Raster *raster, int bands)
 static void photo_cell(uint8_t to[4], float *const px[3], int bands, bool bytes, double white, int w, int h, double x,
                        double y)
 {
-    const Codes *c = codes();
     x = clamp(x - 0.5, 0, w - 1);
     y = clamp(y - 0.5, 0, h - 1);
     const int    a = (int)x < w - 1 ? (int)x : w - 2, b = (int)y < h - 1 ? (int)y : h - 2;
@@ -318,15 +198,16 @@ static void photo_cell(uint8_t to[4], float *const px[3], int bands, bool bytes,
         double       sum = 0;
         for (int n = 0; n < 4; n++) {
             if (!isfinite(four[n])) return;
-            sum += weight[n] * (bytes ? (double)c->linear[(int)clamp(four[n], 0, 255)] : four[n] / white);
+            sum += weight[n] * (bytes ? (double)photo_linear((uint8_t)clamp(four[n], 0, 255)) : four[n] / white);
         }
-        value[k] = c->of_linear[(int)(4095 * clamp(sum, 0, 1) + 0.5)];
+        value[k] = photo_encoded((float)clamp(sum, 0, 1));
     }
     for (int k = 0; k < 3; k++) to[k] = value[bands == 3 ? k : 0];
     to[3] = 255;
 }
 
-static Status photo_pixels(Photo *p, const Raster *raster, const Elevation *elevation, const LocalFrame *frame)
+static Status photo_pixels(uint8_t *rgba, const Photo *p, const Raster *raster, const Elevation *elevation,
+                           const LocalFrame *frame)
 {
     const Window window = {p->x0_m, p->y0_m, p->cell_m, p->nx[0], p->ny[0]};
     const int    bands = raster->bands >= 3 ? 3 : 1;
@@ -346,7 +227,7 @@ static Status photo_pixels(Photo *p, const Raster *raster, const Elevation *elev
         }
         for (int j = j0; status == STATUS_OK && j < j0 + block_cells && j < window.ny; j++)
             for (int i = 0; i < window.nx; i++) {
-                uint8_t *to = p->rgba[0] + 4 * ((size_t)j * (size_t)window.nx + (size_t)i);
+                uint8_t *to = rgba + 4 * ((size_t)j * (size_t)window.nx + (size_t)i);
                 double   at[2];
                 if (to[3]) continue; /* covered by an earlier, finer photograph */
                 finder_at(at, &f, i, j);
@@ -359,12 +240,31 @@ static Status photo_pixels(Photo *p, const Raster *raster, const Elevation *elev
     return status;
 }
 
+/* The blocks of all mips; rgba is overwritten by the smaller ones. */
+static Status photo_from_pixels(Photo *p, uint8_t *rgba)
+{
+    for (int k = 0; k < p->mips; k++) {
+        const int    nx = p->nx[k], ny = p->ny[k];
+        const size_t row = 4 * (size_t)nx;
+        p->block[k] = malloc(photo_block_count(p, k) * sizeof **p->block);
+        if (!p->block[k]) return STATUS_NO_MEMORY;
+        for (int j = 0; j < ny; j += 4)
+            photo_block_row(p->block[k] + (size_t)(j / 4) * photo_blocks_across(nx), rgba + (size_t)j * row, nx,
+                            ny - j < 4 ? ny - j : 4);
+        for (int j = 0; k + 1 < p->mips && j < ny; j += 2) /* a row of the next mip ends before those still needed */
+            photo_halve_row(rgba + (size_t)(j / 2) * 4 * (size_t)p->nx[k + 1], rgba + (size_t)j * row,
+                            j + 1 < ny ? rgba + (size_t)(j + 1) * row : NULL, nx);
+    }
+    return STATUS_OK;
+}
+
 Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevation *elevation, const LocalFrame *frame)
 {
     static const double most_cells = 36e6;
     RasterSet set = {0};
     Photo     p = {0};
     Window    window;
+    uint8_t  *rgba = NULL;
     Status    status = open_whole(&set, paths, photo_key, "a photograph");
     if (status != STATUS_OK) return status;
     const Raster *first = &set.raster[0];
@@ -388,66 +288,18 @@ Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevat
     p.y0_m  = low[1];
     p.nx[0] = (int)((high[0] - low[0]) / p.cell_m + 0.5);
     p.ny[0] = (int)((high[1] - low[1]) / p.cell_m + 0.5);
-    for (int k = 0;; k++) {
-        p.rgba[k] = calloc((size_t)p.nx[k] * (size_t)p.ny[k], 4);
-        if (!p.rgba[k]) {
-            status = STATUS_NO_MEMORY;
-            goto done;
-        }
-        p.mips = k + 1;
-        if (k == ground_image_mips - 1 || (p.nx[k] == 1 && p.ny[k] == 1)) break;
-        p.nx[k + 1] = (p.nx[k] + 1) / 2;
-        p.ny[k + 1] = (p.ny[k] + 1) / 2;
-    }
+    p.mips  = photo_mips(p.nx, p.ny);
+    rgba    = calloc((size_t)p.nx[0] * (size_t)p.ny[0], 4);
+    status  = rgba ? STATUS_OK : STATUS_NO_MEMORY;
     for (int k = 0; status == STATUS_OK && k < set.count; k++)
-        status = photo_pixels(&p, &set.raster[k], elevation, frame);
+        status = photo_pixels(rgba, &p, &set.raster[k], elevation, frame);
+    if (status == STATUS_OK) status = photo_from_pixels(&p, rgba);
     if (status != STATUS_OK) goto done;
-    for (int k = 1; k < p.mips; k++) halve(&p, k);
     *out = p;
     p    = (Photo){0};
 done:
+    free(rgba);
     photo_free(&p);
     raster_set_close(&set);
     return status;
-}
-
-void photo_free(Photo *photo)
-{
-    for (int k = 0; k < ground_image_mips; k++) free(photo->rgba[k]);
-    *photo = (Photo){0};
-}
-
-/* Premultiplied by coverage, so that what lies beyond the rim does not darken it. */
-static void mip_at(double sum[4], const Photo *p, int k, double x, double y, double share)
-{
-    const Codes *c = codes();
-    const int    nx = p->nx[k], ny = p->ny[k];
-    x -= 0.5;
-    y -= 0.5;
-    const double fx = floor(x), fy = floor(y), u = x - fx, v = y - fy;
-    if (!(fx >= -1 && fy >= -1 && fx < nx && fy < ny)) return;
-    for (int n = 0; n < 4; n++) {
-        const int a = (int)fx + (n & 1), b = (int)fy + (n >> 1);
-        if (a < 0 || b < 0 || a >= nx || b >= ny) continue;
-        const uint8_t *from = p->rgba[k] + 4 * ((size_t)b * (size_t)nx + (size_t)a);
-        const double   weight = share * (n & 1 ? u : 1 - u) * (n >> 1 ? v : 1 - v) * from[3] / 255;
-        for (int ch = 0; ch < 3; ch++) sum[ch] += weight * (double)c->linear[from[ch]];
-        sum[3] += weight;
-    }
-}
-
-double photo_at(double linear[photo_channels], const Photo *photo, double x_m, double y_m, double footprint_m)
-{
-    double sum[4] = {0};
-    if (photo->mips == 0) return 0;
-    const double x = (x_m - photo->x0_m) / photo->cell_m, y = (y_m - photo->y0_m) / photo->cell_m;
-    if (!(x > -1 && y > -1 && x < photo->nx[0] + 1 && y < photo->ny[0] + 1)) return 0;
-    const double mip = clamp(log2(fmax(footprint_m / photo->cell_m, 1)), 0, photo->mips - 1);
-    const int    k = (int)mip;
-    const double between = mip - k, s = exp2(-k);
-    mip_at(sum, photo, k, x * s, y * s, 1 - between);
-    if (between > 0) mip_at(sum, photo, k + 1, 0.5 * x * s, 0.5 * y * s, between);
-    if (!(sum[3] > 0)) return 0;
-    for (int ch = 0; ch < photo_channels; ch++) linear[ch] = sum[ch] / sum[3];
-    return fmin(sum[3], 1);
 }

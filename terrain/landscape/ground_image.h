@@ -5,15 +5,17 @@
 
 #include "terrain/elevation/elevation.h"
 #include "terrain/earth/local_frame.h"
+#include "terrain/landscape/photo.h"
 #include "terrain/surface.h"
 
-enum { ground_image_mips = 16, cover_windows = 2 };
+enum { cover_windows = 2 };
 
 /* Classes by nearest pixel. Window 0 is fine and about the origin, window 1 eight times coarser and wider. */
 typedef struct CoverGrid {
     int      nx, ny;       /* 0: none */
     double   x0_m, y0_m, cell_m; /* south-west corner of the first cell */
     uint8_t *surface;      /* [ny][nx]; SURFACE_NONE where the files have no data */
+    bool     borrowed;     /* the classes are another's: not freed */
 } CoverGrid;
 
 typedef struct CoverReport {
@@ -34,23 +36,8 @@ Status cover_table_check(const char *path);
 void   cover_grid_free(CoverGrid grid[cover_windows]);
 SurfaceClass cover_grid_at(const CoverGrid grid[cover_windows], double x_m, double y_m);
 
-enum { photo_red, photo_green, photo_blue, photo_channels };
-
-/* A photograph: linear light encoded as sRGB in octets, and coverage. */
-typedef struct Photo {
-    int      mips;         /* 0: none */
-    int      nx[ground_image_mips], ny[ground_image_mips];
-    double   x0_m, y0_m, cell_m; /* corner; of mip 0 */
-    uint8_t *rgba[ground_image_mips]; /* [ny][nx][4] */
-    float    mean[SURFACE_COUNT][photo_channels]; /* linear, over each class: filled in by the caller, which has the
-                                                   * classes */
-} Photo;
-
 /* Three bands or one, octets (taken as sRGB) or wider (taken as linear, brightest thousandth cut). */
 Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevation *elevation,
                   const LocalFrame *frame);
-void   photo_free(Photo *photo);
-/* Linear light averaged over the footprint, and how much of it the photograph covers (0 .. 1). */
-double photo_at(double linear[photo_channels], const Photo *photo, double x_m, double y_m, double footprint_m);
 
 #endif

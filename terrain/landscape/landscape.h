@@ -1,5 +1,5 @@
 /* terrain/landscape/landscape.h: the terrain: from files (terrain/landscape/landscape_import.h), or without files a
- * synthetic terrain fitted to the exercise. Surface, texture and albedo of both are queried here.
+ * synthetic terrain fitted to the exercise. Surface and albedo of both are queried here.
  *
  * The synthetic terrain:
  *
@@ -63,6 +63,14 @@ typedef struct Landscape {
     void           *cover;        /* private; surface and texture need it */
 } Landscape;
 
+/* The mapped file of a landscape from a terrain store (terrain/store/store.h). */
+typedef struct LandscapeMap {
+    char    *path;    /* absolute; NULL: of no store */
+    void    *map;
+    size_t   octets;
+    uint64_t content; /* hash of the store */
+} LandscapeMap;
+
 LandscapeConfig landscape_default_config(void);
 /* 0.2 s with nothing to fit, 0.7 s with 40 000 fixes and 23 000 lines (one core). Level 0 grows beyond half_width_m
  * to hold the fixes as long as it stays below 16 M posts; fixes further out are fitted on coarser levels. Of two fixes
@@ -94,14 +102,10 @@ double landscape_taper_m(const LandscapeConfig *config);
  * many positions at once a tenth of the time each, and the same results. */
 SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m);
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m);
-/* Relative brightness of the ground's own texture, mean 1, about 0.6 .. 1.4, band-limited to features of
- * footprint_m and larger so that it neither aliases nor shimmers. */
-double landscape_texture(const Landscape *landscape, SurfaceClass surface, double x_m, double y_m, double footprint_m);
-void landscape_textures(float *texture, const Landscape *landscape, int count, const uint8_t *surface,
-                        const double *x_m, const double *y_m, const float *footprint_m);
 /* Where there is a photograph: its brightness relative to its own mean over that class, a channel, averaged over the
- * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. Texture
- * then adds only what is finer than the photograph's pixels. factor: red, green, blue, and all three together. */
+ * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. The
+ * detail (terrain/landscape/detail.h) then adds only what is finer than the photograph's pixels. factor: red, green,
+ * blue, and all three together. */
 bool   landscape_has_photo(const Landscape *landscape);
 enum { albedo_red, albedo_green, albedo_blue, albedo_all, albedo_channels };
 void   landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,

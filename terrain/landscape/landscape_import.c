@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 /* A rough guess: trees end at some 3900 m within 30 degrees of the equator, and at the sea at 70. */
-static double treeline_m(double lat_rad)
+double landscape_treeline_m(double lat_rad)
 {
     return clamp(3900 - 97.5 * (fabs(lat_rad) / rad_per_deg - 30), 0, 3900);
 }
@@ -28,7 +28,7 @@ Status landscape_import(Landscape *out, LandscapeReport *report, const Landscape
     cover->seed       = landscape_hash(files->seed, 2, 0);
     cover->real       = true;
     cover->geoid_m    = r.elevation.geoid_m;
-    cover->treeline_m = treeline_m(frame->origin.lat_rad);
+    cover->treeline_m = landscape_treeline_m(frame->origin.lat_rad);
     curve_of_frame(&cover->curve, frame);
     if (*files->cover)
         status = cover_grid_read(cover->grid, &r.cover, files->cover, files->cover_table, files->cover_band,

@@ -2,6 +2,7 @@
 #include "terrain/landscape/landscape_parts.h"
 
 #include "terrain/landscape/landscape_private.h"
+#include "terrain/landscape/photo.h"
 
 #include <stdlib.h>
 
@@ -14,6 +15,11 @@ void landscape_parts(LandscapeParts *out, const Landscape *landscape)
                             .said = landscape->fitted_to, .cover_seed = cover->seed, .geoid_m = cover->geoid_m,
                             .treeline_m = cover->treeline_m};
     if (out->invented) return;
+    if (cover->store.path) {
+        out->store         = cover->store.path;
+        out->store_content = cover->store.content;
+        return;
+    }
     out->elevation = landscape->elevation;
     out->photo     = cover->photo;
     memcpy(out->cover, cover->grid, sizeof out->cover);
@@ -50,8 +56,7 @@ static bool is_whole(double x, double low)
     return x >= low && x <= 1e6 && fabs(x - rint(x)) <= 1e-6;
 }
 
-/* The seams of terrain/elevation/elevation.h: a level's outline runs along cell edges of the next one, inside it. */
-static bool is_nested(const ElevationLevel *fine, const ElevationLevel *coarse)
+bool landscape_parts_nested(const ElevationLevel *fine, const ElevationLevel *coarse)
 {
     const double ratio = coarse->spacing_m / fine->spacing_m;
     const double low[2] = {fine->x0_m - coarse->x0_m, fine->y0_m - coarse->y0_m};
@@ -70,13 +75,17 @@ static const char *levels_fault(const Elevation *e)
     if (e->level_count < 1 || e->level_count > elevation_max_levels) return "the number of levels";
     for (int n = 0; n < e->level_count; n++) {
         const ElevationLevel *l = &e->level[n];
-        if (l->nx < 2 || l->ny < 2 || l->nx > 32768 || l->ny > 32768 || !l->post) return "the size of a level";
+        const int most = elevation_most_posts;
+        if (l->nx < 2 || l->ny < 2 || l->nx > most || l->ny > most || !l->stored || !l->tile ||
+            l->tiles_x != (l->nx - 2) / elevation_tile_cells + 1 ||
+            l->tiles_y != (l->ny - 2) / elevation_tile_cells + 1)
+            return "the size of a level";
         posts += (size_t)l->nx * (size_t)l->ny;
         if (posts > landscape_parts_posts) return "the number of posts";
         if (!(l->spacing_m >= 0.1 && l->spacing_m <= 1e5) || !(l->step_m > 0 && l->step_m <= 100) ||
             !is_place(l->x0_m) || !is_place(l->y0_m) || !is_place(l->z0_m))
             return "the place or the steps of a level";
-        if (n > 0 && !is_nested(&e->level[n - 1], l)) return "a level that does not lie on the next one's cells";
+        if (n > 0 && !landscape_parts_nested(&e->level[n - 1], l)) return "a level that does not lie on the next one's cells";
     }
     return NULL;
 }
@@ -99,7 +108,7 @@ static const char *photo_fault(const Photo *p)
     if (p->mips < 0 || p->mips > ground_image_mips) return "the sizes of the photograph";
     for (int k = 0; k < p->mips; k++) {
         const bool half = k == 0 || (p->nx[k] == (p->nx[k - 1] + 1) / 2 && p->ny[k] == (p->ny[k - 1] + 1) / 2);
-        if (p->nx[k] < 1 || p->ny[k] < 1 || !half || !p->rgba[k] ||
+        if (p->nx[k] < 1 || p->ny[k] < 1 || !half || !p->block[k] ||
             (size_t)p->nx[k] * (size_t)p->ny[k] > landscape_parts_pixels)
             return "the sizes of the photograph";
     }
@@ -120,6 +129,13 @@ static void *copied(const void *from, size_t octets)
     return to ? memcpy(to, from, octets) : NULL;
 }
 
+static void copy_posts(ElevationLevel *to, const ElevationLevel *from)
+{
+    memcpy(to->tile, from->tile, (size_t)to->tiles_x * (size_t)to->tiles_y * sizeof *to->tile);
+    memcpy(to->stored, from->stored, elevation_level_stored(to) * sizeof *to->stored);
+    to->plain = from->plain;
+}
+
 static Status copy_levels(Elevation *out, const Elevation *from)
 {
     Status status = STATUS_OK;
@@ -127,7 +143,7 @@ static Status copy_levels(Elevation *out, const Elevation *from)
         const ElevationLevel *l = &from->level[n];
         status = elevation_level_create(out, n, l->nx, l->ny, l->x0_m, l->y0_m, l->spacing_m, l->z0_m, l->step_m);
         if (status == STATUS_OK)
-            memcpy(out->level[n].post, l->post, (size_t)l->nx * (size_t)l->ny * sizeof *l->post);
+            copy_posts(&out->level[n], l);
     }
     if (status == STATUS_OK) elevation_build_pyramids(out);
     return status;
@@ -138,16 +154,18 @@ static Status copy_cover(Cover *out, const LandscapeParts *parts)
     for (int w = 0; w < cover_windows; w++) {
         const CoverGrid *from = &parts->cover[w];
         if (from->nx == 0) continue;
-        out->grid[w]         = *from;
+        out->grid[w]          = *from;
+        out->grid[w].borrowed = false;
         out->grid[w].surface = copied(from->surface, (size_t)from->nx * (size_t)from->ny);
         if (!out->grid[w].surface) return STATUS_NO_MEMORY;
     }
     if (parts->photo.mips == 0) return STATUS_OK;
     out->photo = parts->photo;
-    memset(out->photo.rgba, 0, sizeof out->photo.rgba);
+    out->photo.borrowed = false;
+    memset(out->photo.block, 0, sizeof out->photo.block);
     for (int k = 0; k < parts->photo.mips; k++) {
-        out->photo.rgba[k] = copied(parts->photo.rgba[k], 4 * (size_t)parts->photo.nx[k] * (size_t)parts->photo.ny[k]);
-        if (!out->photo.rgba[k]) return STATUS_NO_MEMORY;
+        out->photo.block[k] = copied(parts->photo.block[k], photo_block_count(&parts->photo, k) * sizeof(PhotoBlock));
+        if (!out->photo.block[k]) return STATUS_NO_MEMORY;
     }
     return STATUS_OK;
 }
@@ -181,6 +199,8 @@ static const char *arrays_fault(const LandscapeParts *parts)
 
 Status landscape_from_parts(Landscape *out, const char **why, const LandscapeParts *parts)
 {
+    *why = parts->store && *parts->store ? "it is in a terrain store" : NULL;
+    if (*why) return STATUS_BAD_VALUE;
     *why = parts->invented ? evidence_fault(&parts->said) : arrays_fault(parts);
     if (!*why && !v3_is_finite(parts->frame.origin_ecef)) *why = "the origin";
     if (*why) return STATUS_BAD_VALUE;
@@ -189,3 +209,36 @@ Status landscape_from_parts(Landscape *out, const char **why, const LandscapePar
     if (status == STATUS_BAD_VALUE) *why = "the figures of the invented ground";
     return status;
 }
+
+/* ---- borrowed ------------------------------------------------------------------------------------ */
+
+Status landscape_borrow(Landscape *out, const LandscapeParts *parts, const LandscapeMap *map)
+{
+    Cover *cover = calloc(1, sizeof *cover);
+    if (!cover) return STATUS_NO_MEMORY;
+    cover->seed       = parts->cover_seed;
+    cover->real       = true;
+    cover->geoid_m    = parts->geoid_m;
+    cover->treeline_m = landscape_treeline_m(parts->frame.origin.lat_rad);
+    cover->photo      = parts->photo;
+    memcpy(cover->grid, parts->cover, sizeof cover->grid);
+    curve_of_frame(&cover->curve, &parts->frame);
+    if (map) cover->store = *map;
+    *out = (Landscape){.frame = parts->frame, .config = parts->config, .elevation = parts->elevation, .cover = cover};
+    return STATUS_OK;
+}
+
+LandscapeMap landscape_map(const Landscape *landscape)
+{
+    const Cover *cover = landscape->cover;
+    return cover ? cover->store : (LandscapeMap){0};
+}
+
+void landscape_photo_means(float mean[SURFACE_COUNT][photo_channels], Landscape *landscape)
+{
+    const Cover *cover = landscape->cover;
+    cover_measure_photo(landscape);
+    memcpy(mean, cover->photo.mean, sizeof cover->photo.mean);
+}
+
+uint64_t landscape_cover_seed(uint64_t seed) { return landscape_hash(seed, 2, 0); }

@@ -10,7 +10,8 @@
  * nearest_fix.c      spatial index of points
  * plots.c            synthetic fields
  * cover.c            land cover: tracks, hedges, woods; land cover from files
- * texture.c          brightness of the ground; brightness from photographs */
+ * texture.c          rows of fields; brightness from photographs
+ * detail.c           noise of the ground; detail_table.c: its statistics */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 
@@ -184,6 +185,9 @@ Status levels_bend(Field *posts, const Curve *curve);
 void   levels_join(WorkLevel *level, const WorkLevel *outer, int band);
 /* Quantises all levels and builds their pyramids; keeps both promises of terrain/elevation/elevation.h on seams. */
 Status levels_store(Elevation *out, const WorkLevel *level, int count);
+/* The same for heights from files: steps of 1/2048 m for all levels (where they are less than 16 km apart in height),
+ * shifted in tiles whose heights are more than 31 m apart (in those along a seam, 23 m). */
+Status levels_store_fine(Elevation *out, const WorkLevel *level, int count);
 
 /* ---- coast -------------------------------------------------------------------------------- */
 
@@ -217,7 +221,11 @@ typedef struct Cover {
     CoverGrid grid[cover_windows];
     Photo     photo;
     Coast     coast;
+    LandscapeMap store;           /* grid, photo and the elevation borrow from it */
 } Cover;
+
+/* Height above the sea up to which trees grow. */
+double landscape_treeline_m(double lat_rad);
 
 /* Means of the photograph over each class, once the classes are known. */
 void cover_measure_photo(Landscape *landscape);

@@ -128,8 +128,9 @@ static void quantise(Elevation *elevation, const WorkLevel *levels, int count, c
         const float      inv_step = (float)(1 / quanta[k].step_m), z0 = (float)quanta[k].z0_m;
         /* coarse steps may rival the clearance of lines: round down there */
         const float  half = k < 2 ? 0.5f : 0.0f;
-        const size_t posts = (size_t)z->nx * z->ny;
-        for (size_t n = 0; n < posts; n++) to->post[n] = (uint16_t)((z->v[n] - z0) * inv_step + half);
+        const float *v = z->v;
+        for (int j = 0; j < z->ny; j++)
+            for (int i = 0; i < z->nx; i++) elevation_set_post(to, i, j, (uint16_t)((*v++ - z0) * inv_step + half));
 
         if (k > 0) {
             const double coarse = fmax(quanta[k].step_m, level_ratio * quanta[k - 1].step_m);
@@ -142,7 +143,8 @@ static void quantise(Elevation *elevation, const WorkLevel *levels, int count, c
                         continue;
                     }
                     const size_t at = (size_t)(j - z->j0) * z->nx + (i - z->i0);
-                    to->post[at] = (uint16_t)((floor(z->v[at] / coarse) * coarse - quanta[k].z0_m) / quanta[k].step_m);
+                    elevation_set_post(to, i - z->i0, j - z->j0, (uint16_t)((floor(z->v[at] / coarse) * coarse -
+                                                                             quanta[k].z0_m) / quanta[k].step_m));
                 }
         }
         if (level->outermost) continue;
@@ -155,13 +157,11 @@ static void quantise(Elevation *elevation, const WorkLevel *levels, int count, c
             for (int m = 0; m < n; m++) {
                 const int    i = along_x ? m : far_side ? z->nx - 1 : 0, j = along_x ? far_side ? z->ny - 1 : 0 : m;
                 const int    c = m / level_ratio, part = m % level_ratio;
-                const size_t a =
-                    (size_t)(oj + (along_x ? j / level_ratio : c)) * outer->nx + oi + (along_x ? c : i / level_ratio);
-                const size_t b = part ? a + (along_x ? 1 : (size_t)outer->nx) : a;
-                const double za = outer->z0_m + outer->step_m * outer->post[a];
-                const double zb = outer->z0_m + outer->step_m * outer->post[b];
-                to->post[(size_t)j * z->nx + i] =
-                    (uint16_t)((za + (zb - za) * part / level_ratio - quanta[k].z0_m) / quanta[k].step_m);
+                const int    ai = oi + (along_x ? c : i / level_ratio), aj = oj + (along_x ? j / level_ratio : c);
+                const double za = elevation_post_m(outer, ai, aj);
+                const double zb = part ? elevation_post_m(outer, ai + along_x, aj + !along_x) : za;
+                const double post = (za + (zb - za) * part / level_ratio - quanta[k].z0_m) / quanta[k].step_m;
+                elevation_set_post(to, i, j, (uint16_t)post);
             }
         }
     }

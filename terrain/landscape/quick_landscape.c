@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-enum { octaves = 10, longest_posts = 4096, rows_a_task = 64 };
+enum { octaves = 10, longest_posts = 4096, rows_a_task = elevation_tile_cells };
 
 static const double span_m = 250; /* valley to top, about: three sigma each way of the octaves' sum */
 
@@ -21,6 +21,7 @@ typedef struct Octave {
 
 typedef struct Maker {
     ElevationLevel *level;
+    int32_t        *post;       /* [threads][elevation_tile_side][level->nx] */
     Octave         *octave;     /* [octaves] */
     float          *line;       /* [threads][level->nx + longest_posts], a row of heights */
     float          *knots;      /* [threads][most nx] */
@@ -81,16 +82,24 @@ static void make_rows(void *user, int worker, int task)
     ElevationLevel *level = m->level;
     float          *line = m->line + (size_t)worker * (size_t)m->line_size;
     float          *knots = m->knots + (size_t)worker * (size_t)m->knots_size;
-    for (int j = task * rows_a_task; j < (task + 1) * rows_a_task && j < level->ny; j++) {
-        uint16_t *post = level->post + (size_t)j * (size_t)level->nx;
+    int32_t        *rows = m->post + (size_t)worker * elevation_tile_side * (size_t)level->nx, *post = rows;
+    for (int j = task * rows_a_task; j <= (task + 1) * rows_a_task && j < level->ny; j++, post += level->nx) {
         memset(line, 0, (size_t)m->line_size * sizeof *line);
         for (int o = 0; o < octaves; o++) add_octave(line, knots, &m->octave[o], level->nx, j);
         const float scale = (float)(1 / level->step_m), base = (float)(-level->z0_m / level->step_m + 0.5);
         for (int i = 0; i < level->nx; i++) {
             const float posts = line[i] * scale + base;
-            post[i] = (uint16_t)(posts < 0 ? 0 : posts > 65535 ? 65535 : posts);
+            post[i] = (int32_t)(posts < 0 ? 0 : posts > 65535 ? 65535 : posts);
         }
     }
+    elevation_fill_tiles(level, task, rows);
+}
+
+static void make_pyramid_rows(void *user, int worker, int task)
+{
+    const Maker *m = user;
+    (void)worker;
+    elevation_build_pyramid_tiles(m->level, task);
 }
 
 Status quick_landscape_create(Landscape *out, double times_s[2], const LocalFrame *frame, double east_m, double north_m,
@@ -118,13 +127,16 @@ Status quick_landscape_create(Landscape *out, double times_s[2], const LocalFram
     maker.knots_size = maker.octave[octaves - 1].nx;
     maker.line  = malloc((size_t)pool_threads(pool) * (size_t)maker.line_size * sizeof *maker.line);
     maker.knots = malloc((size_t)pool_threads(pool) * (size_t)maker.knots_size * sizeof *maker.knots);
-    if (!maker.line || !maker.knots) {
+    maker.post  = malloc((size_t)pool_threads(pool) * elevation_tile_side * (size_t)nx * sizeof *maker.post);
+    if (!maker.line || !maker.knots || !maker.post) {
         status = STATUS_NO_MEMORY;
         goto done;
     }
-    pool_run(pool, (ny + rows_a_task - 1) / rows_a_task, make_rows, &maker);
+    pool_run(pool, maker.level->tiles_y, make_rows, &maker);
     const double made_s = wall_clock_s();
-    elevation_build_pyramids(&landscape.elevation);
+    elevation_begin_pyramid(maker.level);
+    pool_run(pool, maker.level->tiles_y, make_pyramid_rows, &maker);
+    elevation_finish_pyramid(maker.level);
     times_s[0] = made_s - start_s;
     times_s[1] = wall_clock_s() - made_s;
 
@@ -133,6 +145,7 @@ done:
     free(maker.octave);
     free(maker.line);
     free(maker.knots);
+    free(maker.post);
     if (status == STATUS_OK) *out = landscape;
     else landscape_destroy(&landscape);
     return status;
@@ -143,8 +156,9 @@ void quick_landscape_bytes(size_t *posts, size_t *pyramids, const Elevation *ele
     *posts = *pyramids = 0;
     for (int n = 0; n < elevation->level_count; n++) {
         const ElevationLevel *level = &elevation->level[n];
-        *posts += (size_t)level->nx * (size_t)level->ny * sizeof *level->post;
-        for (int k = 0; k < level->pyramid_count; k++)
+        *posts += elevation_level_stored(level) * sizeof *level->stored +
+                  (size_t)level->tiles_x * (size_t)level->tiles_y * sizeof *level->tile;
+        for (int k = elevation_pyramid_first; k < level->pyramid_count; k++)
             *pyramids += (size_t)level->pyramid_nx[k] * (size_t)level->pyramid_ny[k] *
                          (sizeof **level->pyramid + (level->rise[k] ? sizeof **level->rise : 0));
     }

@@ -1,33 +1,9 @@
-/* terrain/landscape/texture.c: brightness of the ground relative to the mean of its class: a synthetic pattern of
- * several wavelengths, and the photograph. */
+/* terrain/landscape/texture.c: brightness of the ground relative to the mean of its class: rows of fields, and the
+ * photograph. */
+#include "terrain/landscape/detail_private.h"
 #include "terrain/landscape/landscape_eight_private.h"
 
-/* ---- pattern -------------------------------------------------------------------------------- */
-
-static const double octave_m[] = {0.11, 0.31, 0.9, 2.6, 7.5, 23, 71};
-enum { octave_count = sizeof octave_m / sizeof octave_m[0] };
-
-/* Amplitude of each octave by class: grass is mottled, soil clotted, a track worn in stripes and puddles. The rows are
- * estimates, chosen by appearance. */
-static const float amplitude[SURFACE_COUNT][octave_count] = {
-    [SURFACE_NONE] = {0},
-    [SURFACE_GRASS] = {.07f, .06f, .05f, .05f, .05f, .05f, .05f},
-    [SURFACE_DRY_GRASS] = {.08f, .08f, .07f, .06f, .05f, .04f, .05f},
-    [SURFACE_CROP] = {.07f, .05f, .03f, .03f, .03f, .04f, .05f},
-    [SURFACE_BARE_SOIL] = {.06f, .06f, .05f, .04f, .04f, .05f, .06f},
-    [SURFACE_PLOUGHED] = {.09f, .07f, .04f, .03f, .03f, .04f, .05f},
-    [SURFACE_TRACK] = {.06f, .07f, .06f, .06f, .04f, .03f, .02f},
-    [SURFACE_ROCK] = {.08f, .09f, .09f, .08f, .06f, .04f, .02f},
-    [SURFACE_SCRUB] = {.09f, .10f, .11f, .09f, .05f, .03f, .02f},
-    [SURFACE_WATER] = {.01f, .01f, .01f, .01f, .01f, .01f, .01f},
-    [SURFACE_FOREST_BROADLEAF] = {.06f, .08f, .10f, .12f, .12f, .04f, .03f},
-    [SURFACE_FOREST_CONIFER] = {.06f, .08f, .12f, .14f, .10f, .04f, .03f},
-    [SURFACE_BUILT] = {.03f, .04f, .06f, .10f, .14f, .10f, .04f},
-    [SURFACE_ROAD] = {.03f, .03f, .03f, .03f, .02f, .02f, .02f},
-    [SURFACE_SAND] = {.04f, .04f, .03f, .03f, .03f, .04f, .04f},
-    [SURFACE_SNOW] = {.01f, .01f, .02f, .02f, .02f, .02f, .02f},
-    [SURFACE_WETLAND] = {.08f, .08f, .07f, .07f, .08f, .07f, .05f},
-};
+/* ---- rows of fields ------------------------------------------------------------------------- */
 
 /* 1 for wavelengths of four texture footprints, 0 for two: below that a pixel averages to the mean, which is 1. */
 static F32x8 fade(double wavelength_m, F32x8 footprint_m)
@@ -62,86 +38,53 @@ static F32x8 rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const
     return f32x8_load(wave);
 }
 
-/* Largest wavelength of synthetic detail under a photograph: wavelengths from two of its pixels on are in it. */
-static F32x8 photo_fineness(const Photo *photo, const double x_m[8], const double y_m[8], unsigned lanes)
+void texture_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
+                         unsigned lanes)
 {
-    float seen_m[8];
+    const Photo *photo = &((const Cover *)landscape->cover)->photo;
     for (int k = 0; k < 8; k++) {
-        double linear[photo_channels];
-        seen_m[k] = INFINITY;
-        if (photo->mips > 0 && lanes >> k & 1 && photo_at(linear, photo, x_m[k], y_m[k], photo->cell_m) > 0.5)
-            seen_m[k] = (float)(2 * photo->cell_m);
+        cell_m[k] = 0;
+        if (photo->mips > 0 && lanes >> k & 1 && photo_cover_at(photo, x_m[k], y_m[k]) > 0.5)
+            cell_m[k] = (float)photo->cell_m;
     }
-    return f32x8_load(seen_m);
 }
 
-/* One eight of places; lanes: those of a known class. */
-static F32x8 textures(const Cover *cover, PlotCells *cells, I32x8 class, const double x_m[8], const double y_m[8],
-                      F32x8 footprint_m, unsigned lanes)
+void texture_rows(float *albedo, const Landscape *landscape, int count, const uint8_t *surface, const double *x_m,
+                  const double *y_m, const float *footprint_m)
 {
-    static const double crop_rows_m = 0.75, furrows_m = 1.1;
-    const uint64_t      seed = cover->seed + 20;
-    const F32x8         seen_m = photo_fineness(&cover->photo, x_m, y_m, lanes), known = f32x8_mask(lanes);
-    const I32x8      row = i32x8_mul(class, i32x8_set(octave_count));
-    F32x8               sum = f32x8_set(1);
-    for (int n = octave_count - 1; n >= 0; n--) {
-        F32x8 share = fade(octave_m[n], footprint_m);
-        share = f32x8_and(f32x8_and(share, known), f32x8_less(f32x8_set(octave_m[n]), seen_m));
-        if (!f32x8_bits(f32x8_greater(share, f32x8_set(0)))) continue;
-        const F32x8 strength = _mm256_mask_i32gather_ps(f32x8_set(0), &amplitude[0][n], row, known, 4);
-        sum = f32x8_fma(share * strength, noise_eight(seed + (uint64_t)n, octave_m[n], x_m, y_m), sum);
-    }
-    const struct {
+    static const struct {
         SurfaceClass class;
         double       apart_m;
-    } rows[] = {{SURFACE_CROP, crop_rows_m}, {SURFACE_PLOUGHED, furrows_m}};
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const F32x8 ours = i32x8_equal(class, i32x8_set(rows[k].class));
-        F32x8       share = fade(rows[k].apart_m, footprint_m);
-        share = f32x8_and(f32x8_and(share, f32x8_and(ours, known)), f32x8_less(f32x8_set(rows[k].apart_m), seen_m));
-        const unsigned some = f32x8_bits(f32x8_greater(share, f32x8_set(0)));
-        if (!some) continue;
-        const F32x8 wave = rows_of(cells, cover->seed, x_m, y_m, rows[k].apart_m, some);
-        sum = f32x8_fma(f32x8_set(0.08) * share, wave, sum);
-    }
-    return f32x8_select(known, f32x8_clamp(sum, 0.6, 1.4), f32x8_set(1));
-}
-
-void landscape_textures(float *texture, const Landscape *landscape, int count, const uint8_t *surface,
-                        const double *x_m, const double *y_m, const float *footprint_m)
-{
+    } rows[] = {{SURFACE_CROP, 0.75}, {SURFACE_PLOUGHED, 1.1}};
     const Cover *cover = landscape->cover;
     PlotCells    cells;
+    if (!cover) return;
     for (int k = 0; k < plot_cells_kept; k++) cells.cell[k].known = false;
     for (int first = 0; first < count; first += 8) {
-        double    x[8], y[8];
-        float     footprint[8] = {0}, out[8];
-        int32_t   class[8] = {0};
-        unsigned  lanes = 0;
+        double    x[8] = {0}, y[8] = {0};
+        float     footprint[8] = {0}, factor[8] = {0}, cell_m[8];
         const int some = count - first < 8 ? count - first : 8;
-        for (int k = 0; k < 8; k++) {
-            x[k] = k < some ? x_m[first + k] : 0, y[k] = k < some ? y_m[first + k] : 0;
-            if (k < some) footprint[k] = footprint_m[first + k], class[k] = surface[first + k];
-            const bool known = class[k] > SURFACE_NONE && class[k] < SURFACE_COUNT && isfinite(x[k]) && isfinite(y[k]);
-            lanes |= (unsigned)(cover && known) << k;
+        for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+            unsigned lanes = 0;
+            for (int k = 0; k < some; k++) {
+                const int i = first + k;
+                if (surface[i] != rows[r].class || !(footprint_m[i] < rows[r].apart_m / 2)) continue;
+                if (!isfinite(x_m[i]) || !isfinite(y_m[i])) continue;
+                x[k] = x_m[i], y[k] = y_m[i], footprint[k] = footprint_m[i], factor[k] = albedo[i];
+                lanes |= 1u << k;
+            }
+            if (!lanes) continue;
+            F32x8 share = f32x8_and(fade(rows[r].apart_m, f32x8_load(footprint)), f32x8_mask(lanes));
+            texture_photo_cells(cell_m, landscape, x, y, lanes);
+            const F32x8 photo_m = f32x8_load(cell_m); /* which has the rows itself from two of its pixels on */
+            share = f32x8_and_not(share, f32x8_and(f32x8_greater(photo_m, f32x8_set(0)),
+                                                   f32x8_less(photo_m, f32x8_set(rows[r].apart_m / 2))));
+            const F32x8 wave = rows_of(&cells, cover->seed, x, y, rows[r].apart_m, lanes);
+            f32x8_store(factor, f32x8_load(factor) * f32x8_fma(f32x8_set(0.08) * share, wave, f32x8_set(1)));
+            for (int k = 0; k < some; k++)
+                if (lanes >> k & 1) albedo[first + k] = factor[k];
         }
-        if (!lanes) {
-            for (int k = 0; k < some; k++) texture[first + k] = 1;
-            continue;
-        }
-        const F32x8 wide = f32x8_max(f32x8_load(footprint), f32x8_set(0)); /* NaN: 0 */
-        f32x8_store(out, textures(cover, &cells, i32x8_load(class), x, y, wide, lanes));
-        memcpy(texture + first, out, (size_t)some * sizeof *out);
     }
-}
-
-double landscape_texture(const Landscape *landscape, SurfaceClass surface, double x_m, double y_m, double footprint_m)
-{
-    const float   wide = (float)footprint_m;
-    const uint8_t class = surface > SURFACE_NONE && surface < SURFACE_COUNT ? (uint8_t)surface : SURFACE_NONE;
-    float         texture;
-    landscape_textures(&texture, landscape, 1, &class, &x_m, &y_m, &wide);
-    return (double)texture;
 }
 
 /* ---- photograph ----------------------------------------------------------------------------- */

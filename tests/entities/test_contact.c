@@ -13,7 +13,7 @@ static Elevation plane(double half_m, double spacing_m, double base_m, double sl
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++) {
             const double z_m = base_m + slope_x * (i * spacing_m - half_m) + slope_y * (j * spacing_m - half_m);
-            ground.level[0].post[(size_t)j * (size_t)n + (size_t)i] = (uint16_t)lrint((z_m - z0_m) / step_m);
+            elevation_set_post(&ground.level[0], i, j, (int32_t)lrint((z_m - z0_m) / step_m));
         }
     elevation_build_pyramids(&ground);
     return ground;

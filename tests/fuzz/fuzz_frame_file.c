@@ -17,8 +17,10 @@ static void identity(double r[9]) { m3_identity(r); }
 /* Two entities, a puff; ground of two nested levels with cover and a photograph, or invented. */
 static void small_file(ByteSink *out, bool invented)
 {
-    static uint16_t fine[17 * 17], coarse[9 * 9];
-    static uint8_t  cover[16 * 16], rgba[3][16];
+    static uint16_t stored[elevation_tile_posts];
+    static ElevationTile tile[1] = {{-elevation_base_unit, 2}};
+    static uint8_t  cover[16 * 16];
+    static PhotoBlock block[2];
     static NodePose node[2];
     static SnapshotEntity entity[2];
     static EffectPuff puff;
@@ -51,13 +53,15 @@ static void small_file(ByteSink *out, bool invented)
     if (invented) {
         file.ground.said = (LandscapeEvidence){1, 1, 1, &fix, &line, &place, 0};
     } else {
+        ElevationLevel *level = file.ground.elevation.level;
         file.ground.elevation.level_count = 2;
-        file.ground.elevation.level[0] = (ElevationLevel){.nx = 17, .ny = 17, .x0_m = -8, .y0_m = -8, .spacing_m = 1,
-                                                          .step_m = 0.1, .post = fine};
-        file.ground.elevation.level[1] = (ElevationLevel){.nx = 9, .ny = 9, .x0_m = -32, .y0_m = -32, .spacing_m = 8,
-                                                          .step_m = 0.1, .post = coarse};
-        file.ground.cover[0] = (CoverGrid){16, 16, -8, -8, 1, cover};
-        file.ground.photo    = (Photo){.mips = 2, .nx = {2, 1}, .ny = {2, 1}, .cell_m = 8, .rgba = {rgba[0], rgba[1]}};
+        if (elevation_level_describe(&level[0], 17, 17, -8, -8, 1, 0, 0.1) != STATUS_OK) abort();
+        if (elevation_level_describe(&level[1], 9, 9, -32, -32, 8, 0, 0.1) != STATUS_OK) abort();
+        level[0].tile = level[1].tile = tile, level[0].stored = level[1].stored = stored;
+        level[1].plain = false;
+        file.ground.cover[0] = (CoverGrid){.nx = 16, .ny = 16, .x0_m = -8, .y0_m = -8, .cell_m = 1, .surface = cover};
+        file.ground.photo    = (Photo){.mips = 2, .nx = {2, 1}, .ny = {2, 1}, .cell_m = 8,
+                                       .block = {&block[0], &block[1]}};
     }
     if (frame_file_pack(out, &file, NULL) != STATUS_OK) abort();
 }

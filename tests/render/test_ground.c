@@ -28,7 +28,8 @@ static void make_level(Elevation *e, int index, int nx, int ny, double x0_m, dou
 static void make_rough(Elevation *e, int index, int highest)
 {
     ElevationLevel *level = &e->level[index];
-    for (int n = 0; n < level->nx * level->ny; n++) level->post[n] = (uint16_t)uniform(0, highest);
+    for (int n = 0; n < level->nx * level->ny; n++)
+        elevation_set_post(level, n % level->nx, n / level->nx, (uint16_t)uniform(0, highest));
 }
 
 /* 33 x 29 posts, 3 m apart, 0 .. 20 m high: steeper than any country. */
@@ -59,7 +60,7 @@ static void post_at(double p[3], const ElevationLevel *e, int i, int j)
 {
     p[0] = e->x0_m + i * e->spacing_m;
     p[1] = e->y0_m + j * e->spacing_m;
-    p[2] = e->z0_m + e->step_m * e->post[j * e->nx + i];
+    p[2] = elevation_post_m(e, i, j);
 }
 
 static void soup_wall(Soup *soup, const double a[3], const double b[3])
@@ -198,7 +199,7 @@ static void planes_are_met_where_paper_says(void **state)
         make_level(&e, 0, 301, 401, -3000, -4000, 20, 100, 1.0 / 64);
         for (int j = 0; j < 401; j++)
             for (int i = 0; i < 301; i++)
-                e.level[0].post[j * 301 + i] = (uint16_t)(20000 + rise[p][0] * i + rise[p][1] * j);
+                elevation_set_post(&e.level[0], i, j, (uint16_t)(20000 + rise[p][0] * i + rise[p][1] * j));
         elevation_build_pyramids(&e);
         Ground ground;
         ground_prepare(&ground, &e);
@@ -270,7 +271,9 @@ static void make_levels(Elevation *e, bool meet)
         /* an edge post is so many quarters of the way between two posts outside: a whole number, if those are
          * multiples of 16, and of 4 one level further in */
         ElevationLevel *in = &e->level[k];
-        for (int n = 0; n < in->nx * in->ny; n++) in->post[n] &= (uint16_t)(k == 2 ? ~15u : k == 1 ? ~3u : ~0u);
+        const int unit = k == 2 ? 16 : k == 1 ? 4 : 1;
+        for (int j = 0; j < in->ny; j++)
+            for (int i = 0; i < in->nx; i++) elevation_set_post(in, i, j, elevation_post(in, i, j) / unit * unit);
         if (k == 2) continue;
         const Elevation outer = {.level_count = 1, .level = {e->level[k + 1]}};
         for (int j = 0; j < in->ny; j++)
@@ -278,7 +281,7 @@ static void make_levels(Elevation *e, bool meet)
                 if (i > 0 && j > 0 && i + 1 < in->nx && j + 1 < in->ny) continue;
                 const double x = in->x0_m + i * in->spacing_m, y = in->y0_m + j * in->spacing_m;
                 const double z = elevation_height(&outer, x, y, NULL);
-                in->post[j * in->nx + i] = (uint16_t)((z - in->z0_m) / in->step_m);
+                elevation_set_post(in, i, j, (uint16_t)((z - in->z0_m) / in->step_m));
             }
     }
     elevation_build_pyramids(e);
@@ -491,7 +494,7 @@ static void skipping_changes_no_bit(void **state)
     for (int n = 0; n < skip.count; n++) copy_ray(&all, n, &skip, n);
     trace_one_by_one(&skip, &ground);
     for (int k = 0; k < e.level_count; k++)
-        for (int p = 0; p < e.level[k].pyramid_count; p++)
+        for (int p = elevation_pyramid_first; p < e.level[k].pyramid_count; p++)
             memset(e.level[k].pyramid[p], 0xff,
                    (size_t)e.level[k].pyramid_nx[p] * (size_t)e.level[k].pyramid_ny[p] * sizeof(uint16_t));
     ground_prepare(&ground, &e);

@@ -30,7 +30,8 @@ static void add_level(Elevation *e, int index, int nx, int ny, double x0_m, doub
     CHECK(elevation_level_create(e, index, nx, ny, x0_m, y0_m, spacing_m, -20, 1.0 / 128) == STATUS_OK);
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++)
-            e->level[index].post[j * nx + i] = (uint16_t)(128 * (country(x0_m + i * spacing_m, y0_m + j * spacing_m) + 20));
+            elevation_set_post(&e->level[index], i, j,
+                               (uint16_t)(128 * (country(x0_m + i * spacing_m, y0_m + j * spacing_m) + 20)));
 }
 
 static void make_country(Elevation *e, Country *country, bool nested)

@@ -95,8 +95,9 @@ static void add_level(Elevation *e, int index, int nx, int ny, double x0_m, doub
     ElevationLevel *level = &e->level[index];
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++)
-            level->post[j * nx + i] =
-                (uint16_t)clamp(128 * (country(x0_m + i * spacing_m, y0_m + j * spacing_m) + 20), 0, 65535);
+            elevation_set_post(
+                level, i, j,
+                (uint16_t)clamp(128 * (country(x0_m + i * spacing_m, y0_m + j * spacing_m) + 20), 0, 65535));
 }
 
 /* One level; three that meet only nearly; two of which the inner lies on the outer's edge; a country on a plain below

@@ -10,7 +10,7 @@ typedef struct Scene {
     Hits      hits;
     Rays      rays;
     uint16_t  material[hits_capacity];
-    float     texture[hits_capacity], temp_k[hits_capacity], out[hits_capacity];
+    float     texture[hits_capacity], warmth_k[hits_capacity], temp_k[hits_capacity], out[hits_capacity];
     float     sun[hits_capacity];
     Material  rows[64];
     Materials materials;
@@ -260,7 +260,8 @@ static void temperatures_are_those_of_a_day(void **state)
         const int cold = add_part(&m, tank, hot, side);
         scene.hits.entity[cold] = 2;
         scene.sun[roof] = 0; /* no instant thermal shadows: not asked for */
-        thermal_temperature(scene.temp_k, &air, &m, catalog, &snapshot, &scene.hits, scene.material, scene.texture);
+        thermal_temperature(scene.temp_k, &air, &m, catalog, &snapshot, &scene.hits, scene.material, scene.texture,
+                            scene.warmth_k);
         const float *t = scene.temp_k;
         CHECK(isnan(t[sky]));
         print_message("%s: grass %.1f crop %.1f soil %.1f track %.1f water %.1f; hull top %.1f side %.1f belly %.1f, "
@@ -345,7 +346,8 @@ static void wind_takes_what_the_balance_says(void **state)
         clear();
         int ground[SURFACE_COUNT] = {0};
         for (int s = 1; s < SURFACE_COUNT; s++) ground[s] = add_ground(&m, (SurfaceClass)s, up, 1);
-        thermal_temperature(scene.temp_k, &air, &m, NULL, NULL, &scene.hits, scene.material, scene.texture);
+        thermal_temperature(scene.temp_k, &air, &m, NULL, NULL, &scene.hits, scene.material, scene.texture,
+                            scene.warmth_k);
         const double sun_w_m2 = air.light.solar_direct_w_m2 * sin(60 * rad_per_deg) + air.light.solar_diffuse_w_m2;
         for (int s = 1; s < SURFACE_COUNT; s++) {
             if (s == SURFACE_SNOW) continue; /* at 0 C */
@@ -377,7 +379,8 @@ static void excess_k(double out_k[SURFACE_COUNT], const Materials *m, double air
     const Air air = air_when(&weather, 55);
     clear();
     for (int s = 0; s < SURFACE_COUNT; s++) add_ground(m, (SurfaceClass)s, (double[3]){0, 0, 1}, 1);
-    thermal_temperature(scene.temp_k, &air, m, NULL, NULL, &scene.hits, scene.material, scene.texture);
+    thermal_temperature(scene.temp_k, &air, m, NULL, NULL, &scene.hits, scene.material, scene.texture,
+                        scene.warmth_k);
     for (int s = 0; s < SURFACE_COUNT; s++) out_k[s] = (double)scene.temp_k[s] - air_k;
 }
 
@@ -467,7 +470,8 @@ static void air_is_colder_above(void **state)
             for (int i = 0; i < 4; i++) scene.hits.p_enu[2][i] = i % 2 ? heights_m[k] + air.light.zero_z_m : air.light.zero_z_m;
             scene.hits.p_enu[0][1] = 100e3; /* and there the tangent plane is 785 m up */
             scene.hits.p_enu[2][1] -= 100e3 * 100e3 / (2 * 6371e3);
-            thermal_temperature(scene.temp_k, &air, &m, catalog, &snapshot, &scene.hits, scene.material, scene.texture);
+            thermal_temperature(scene.temp_k, &air, &m, catalog, &snapshot, &scene.hits, scene.material, scene.texture,
+                                scene.warmth_k);
             const double want_k = heights_m[k] < 11000 ? -0.0065 * heights_m[k] : 216.65 - 288.15;
             /* the profile is in tenths of a kelvin, and of geometric heights: 0.1 K at 10 km */
             CHECK_NEAR(scene.temp_k[1] - scene.temp_k[0], want_k, 0.16);
@@ -495,7 +499,8 @@ static void turning_changes_nothing(void **state)
         const double a = k * 10 * rad_per_deg;
         add_part(&m, 0, 0, (double[3]){cos(a), sin(a), 0.3});
     }
-    thermal_temperature(scene.temp_k, &air, &m, catalog, &snapshot, &scene.hits, scene.material, scene.texture);
+    thermal_temperature(scene.temp_k, &air, &m, catalog, &snapshot, &scene.hits, scene.material, scene.texture,
+                        scene.warmth_k);
     for (int i = 1; i < scene.hits.count; i++) CHECK_NEAR(scene.temp_k[i], scene.temp_k[0], 1e-4);
     materials_close(&m);
     catalog_close(catalog);

@@ -48,11 +48,9 @@ static inline Landscape every_fourth(const Landscape *of)
         assert_int_equal(elevation_level_create(&made.elevation, n, nx, ny, l->x0_m, l->y0_m, stride * l->spacing_m,
                                                 l->z0_m, l->step_m),
                          STATUS_OK);
-        uint16_t *post = made.elevation.level[n].post;
         for (int j = 0; j < ny; j++)
             for (int i = 0; i < nx; i++)
-                post[(size_t)j * (size_t)nx + (size_t)i] =
-                    l->post[(size_t)(j * stride) * (size_t)l->nx + (size_t)(i * stride)];
+                elevation_set_post(&made.elevation.level[n], i, j, elevation_post(l, i * stride, j * stride));
     }
     elevation_build_pyramids(&made.elevation);
     return made;

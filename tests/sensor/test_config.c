@@ -37,6 +37,7 @@ static void what_is_wrong_is_said_and_nothing_applied(void **state)
         {"sensor:\n  width_px: 320\n  wdith_px: 3\n", ":3: no such key: sensor.wdith_px"},
         {"sensor:\n  width_px: 1,5\n", ":2: sensor.width_px: '1,5' is not a whole number in 8 .. 8192 px"},
         {"sensor:\n  width_px: 7\n", "in 8 .. 8192"},
+        {"terrain:\n  detail: maybe\n", ":2: terrain.detail: 'maybe' is not"},
         {"sensor:\n  hfov_deg: nan\n", "sensor.hfov_deg: 'nan' is not a number in 0.01 .. 120 deg"},
         {"sensor:\n  width_px: 320\n  width_px: 321\n", ":3: sensor.width_px is given twice"},
         {"sensor:\n  optical: sepia\n", "'sepia' is not one of rgb|pan|nir"},
@@ -104,6 +105,29 @@ static void ranges_of_several_keys_are_checked(void **state)
     assert_int_equal(config_check(&config), STATUS_BAD_VALUE);
 }
 
+static void a_store_is_the_whole_ground(void **state)
+{
+    (void)state;
+    static const char *const other[][3] = {
+        {"terrain.elevation", "a.tif", "terrain.store and terrain.elevation exclude"},
+        {"terrain.cover", "a.tif", "terrain.store and terrain.cover exclude"},
+        {"terrain.orthophoto", "a.tif", "terrain.store and terrain.orthophoto exclude"},
+        {"terrain.spacing_m", "2", "terrain.store and terrain.spacing_m exclude"},
+        {"terrain.ground", "fit", "mapped read-only"},
+        {"terrain.store", "/nowhere.store", "cannot read /nowhere.store"}};
+    Config c = config_default();
+    assert_int_equal(config_set(&c, "terrain.store", "/proc/self/exe", "test"), STATUS_OK);
+    assert_int_equal(config_check(&c), STATUS_OK);
+    log_set_sink(check_listen, NULL);
+    for (size_t k = 0; k < sizeof other / sizeof *other; k++) {
+        Config both = c;
+        assert_int_equal(config_set(&both, other[k][0], other[k][1], "test"), STATUS_OK);
+        assert_int_equal(config_check(&both), STATUS_BAD_VALUE);
+        if (!strstr(check_said, other[k][2])) fail_msg("said: %s", check_said);
+    }
+    log_set_sink(NULL, NULL);
+}
+
 static void where_it_comes_from_and_goes_to_is_not_hashed(void **state)
 {
     (void)state;
@@ -137,6 +161,7 @@ int main(void)
         cmocka_unit_test(the_canonical_text_names_every_change),
         cmocka_unit_test(what_was_given_is_known),
         cmocka_unit_test(ranges_of_several_keys_are_checked),
+        cmocka_unit_test(a_store_is_the_whole_ground),
         cmocka_unit_test(where_it_comes_from_and_goes_to_is_not_hashed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

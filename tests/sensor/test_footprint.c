@@ -21,7 +21,7 @@ static int lab_open(void **state)
     Elevation *elevation = &lab.landscape.elevation;
     const double half_m = 0.5 * (posts - 1) * spacing_m;
     if (elevation_level_create(elevation, 0, posts, posts, -half_m, -half_m, spacing_m, ground_m, 1) != STATUS_OK) return -1;
-    for (int j = 0; j < posts; j++) elevation->level[0].post[j * posts + 40] = 900;
+    for (int j = 0; j < posts; j++) elevation_set_post(&elevation->level[0], 40, j, 900);
     elevation->level_count = 1;
     elevation_build_pyramids(elevation);
     lab.world.landscape = &lab.landscape;

@@ -1,5 +1,5 @@
-/* Ground cover and texture of eight places at once: against a plain reading of what they are defined to be, one place
- * at a time in double, written here; against the paper statistics of value noise; and in whatever company. */
+/* Ground cover of eight places at once: against a plain reading of its definition, one place at a time in double, written
+ * here; and independent of the other places. */
 #include "tests/check.h"
 
 #include "terrain/landscape/landscape.h"
@@ -103,7 +103,6 @@ static SurfaceClass plain_surface(const Landscape *land, uint64_t seed, double x
 enum { places = 120000 };
 static double   x_m[places], y_m[places];
 static uint8_t  surface[places];
-static float    texture[places], footprint_m[places];
 static Landscape land;
 static uint64_t  cover_seed;
 
@@ -136,7 +135,6 @@ static void choose_places(void)
         const double   half_m = k % 2 ? 31000 : 2200;
         x_m[n] = half_m * (2 * random_uniform(11, 0, 0, k) - 1) + (n % 3 == 0 ? 0 : n % 24);
         y_m[n] = half_m * (2 * random_uniform(11, 1, 0, k) - 1);
-        footprint_m[n] = (float)(0.05 * pow(2000, random_uniform(11, 2, 0, (uint64_t)n)));
     }
     x_m[7] = NAN, y_m[9] = INFINITY, x_m[12] = 1e300;
 }
@@ -161,67 +159,29 @@ static void cover_is_what_it_is_defined_to_be(void **state)
           of_class[SURFACE_SCRUB] > 1000);
 }
 
-/* Of grass seen with pixels of 5.75 m two octaves are left, 0.05 strong. */
-static void texture_is_what_it_is_defined_to_be(void **state)
-{
-    (void)state;
-    double sum = 0, square = 0, worst = 0;
-    choose_places();
-    memset(surface, SURFACE_GRASS, sizeof surface);
-    for (int n = 0; n < places; n++) footprint_m[n] = 5.75f; /* a quarter of 23 m: that octave is whole, 7.5 m is gone */
-    landscape_textures(texture, &land, places, surface, x_m, y_m, footprint_m);
-    int count = 0;
-    for (int n = 13; n < places; n++) {
-        const double plain = 1 + (double)0.05f * (noise(cover_seed + 25, 23, x_m[n],
-                                                        y_m[n]) + noise(cover_seed + 26, 71, x_m[n], y_m[n]));
-        worst = fmax(worst, fabs((double)texture[n] - plain));
-        if (n % 3) continue; /* by themselves: independent */
-        sum += (double)texture[n] - 1;
-        square += ((double)texture[n] - 1) * ((double)texture[n] - 1);
-        count++;
-    }
-    print_message("worst %.1e; mean %.1e, variance %.4g\n", worst, sum / count, square / count);
-    CHECK(worst < 3e-7); /* two steps of float at 1 */
-    /* even corners of -1 .. 1 have variance 1/3; smoothstep weights keep (26/35)^2 of it, in each of two octaves */
-    const double variance = 2 * 0.05 * 0.05 / 3 * pow(26.0 / 35, 2);
-    CHECK_NEAR(sum / count, 0, 5 * sqrt(variance / count));
-    CHECK_NEAR(square / count, variance, 5 * variance * sqrt(2.0 / count));
-}
-
 static void company_changes_nothing(void **state)
 {
     (void)state;
     enum { some = 20000 };
     static uint8_t again[some];
-    static float   texture_again[some];
     choose_places();
     landscape_surfaces(surface, &land, places, x_m, y_m);
-    landscape_textures(texture, &land, places, surface, x_m, y_m, footprint_m);
-    for (int n = 0; n < some; n++) {
-        CHECK(landscape_surface(&land, x_m[n], y_m[n]) == surface[n]);
-        CHECK(landscape_texture(&land, (SurfaceClass)surface[n], x_m[n], y_m[n],
-                                (double)footprint_m[n]) == (double)texture[n]);
-    }
+    for (int n = 0; n < some; n++) CHECK(landscape_surface(&land, x_m[n], y_m[n]) == surface[n]);
     /* in another order, from another place in the eight */
     static double   back_x_m[some], back_y_m[some];
-    static float    back_footprint_m[some];
-    static uint8_t  back_surface[some];
     for (int n = 0; n < some - 3; n++) {
         const int from = some - 1 - n;
-        back_x_m[n] = x_m[from], back_y_m[n] = y_m[from], back_footprint_m[n] = footprint_m[from],
-            back_surface[n] = surface[from];
+        back_x_m[n] = x_m[from], back_y_m[n] = y_m[from];
     }
     landscape_surfaces(again, &land, some - 3, back_x_m, back_y_m);
-    landscape_textures(texture_again, &land, some - 3, back_surface, back_x_m, back_y_m, back_footprint_m);
     for (int n = 0; n < some - 3; n++)
-        CHECK(again[n] == surface[some - 1 - n] && texture_again[n] == texture[some - 1 - n]);
+        CHECK(again[n] == surface[some - 1 - n]);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cover_is_what_it_is_defined_to_be),
-        cmocka_unit_test(texture_is_what_it_is_defined_to_be),
         cmocka_unit_test(company_changes_nothing),
     };
     return cmocka_run_group_tests(tests, make_land, drop_land);

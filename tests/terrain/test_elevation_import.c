@@ -205,7 +205,7 @@ static void voids_are_filled_without_a_spike(void **state)
     for (int j = 0; j < level->ny; j++)
         for (int i = 0; i < level->nx; i++) {
             const double p_enu[3] = {level->x0_m + i * level->spacing_m, level->y0_m + j * level->spacing_m,
-                                     level->z0_m + level->step_m * level->post[(size_t)j * (size_t)level->nx + (size_t)i]};
+                                     elevation_post_m(level, i, j)};
             double   p_ecef[3];
             Geodetic place;
             ecef_from_enu(p_ecef, &frame, p_enu);
@@ -240,7 +240,7 @@ static void levels_meet_to_the_bit_and_reach_the_horizon(void **state)
         for (int j = 0; j < fine->ny; j++)
             for (int i = 0; i < fine->nx; i++) {
                 if (j > 0 && j < fine->ny - 1 && i > 0) i = fine->nx - 1;
-                const double z_m = fine->z0_m + fine->step_m * fine->post[(size_t)j * (size_t)fine->nx + (size_t)i];
+                const double z_m = elevation_post_m(fine, i, j);
                 CHECK(z_m == elevation_height(&around, fine->x0_m + i * fine->spacing_m, fine->y0_m + j * fine->spacing_m, NULL));
             }
     }

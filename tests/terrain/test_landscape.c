@@ -75,13 +75,12 @@ static void same_input_same_bits(void **state)
     for (int k = 0; k < 4; k++) {
         const ElevationLevel *p = &a.elevation.level[k], *q = &b.elevation.level[k];
         CHECK(p->nx == q->nx && p->ny == q->ny && p->z0_m == q->z0_m && p->step_m == q->step_m);
-        CHECK(memcmp(p->post, q->post, (size_t)p->nx * p->ny * sizeof *p->post) == 0);
+        CHECK(memcmp(p->stored, q->stored, elevation_level_stored(p) * sizeof *p->stored) == 0);
     }
     for (int n = 0; n < 2000; n++) {
         const double x = 3000 * random_uniform(1, 5, 0, n), y = 3000 * random_uniform(1, 6, 0, n);
         const SurfaceClass s = landscape_surface(&a, x, y);
         CHECK(s == landscape_surface(&b, x, y));
-        CHECK(landscape_texture(&a, s, x, y, 0.1) == landscape_texture(&b, s, x, y, 0.1));
     }
     landscape_destroy(&b);
 
@@ -120,7 +119,7 @@ static void posts_follow_the_curved_earth(void **state)
                 const int i = (int)(random_uniform(n, 1, (uint32_t)k, m) * level->nx);
                 const int j = (int)(random_uniform(n, 2, (uint32_t)k, m) * level->ny);
                 const double p_enu[3] = {level->x0_m + i * level->spacing_m, level->y0_m + j * level->spacing_m,
-                                         level->z0_m + level->step_m * level->post[(size_t)j * level->nx + i]};
+                                         elevation_post_m(level, i, j)};
                 double       p_ecef[3];
                 Geodetic     g;
                 ecef_from_enu(p_ecef, &frame, p_enu);
@@ -527,43 +526,6 @@ static void many_classes_near_any_place(void **state)
     }
 }
 
-/* Mean 1, within its bounds, gone where a pixel is too coarse for it, and smooth between. */
-static void texture_has_mean_one_and_fades(void **state)
-{
-    (void)state;
-    const LocalFrame      frame = frame_at(36, -123, 0);
-    const LandscapeConfig config = small_config(1);
-    Landscape             land;
-    CHECK(landscape_create(&land, &config, &frame, NULL, 0, NULL, 0) == STATUS_OK);
-    static const double footprint_m[] = {0, 0.05, 0.3, 1, 5, 20, 80};
-    for (int s = 1; s < SURFACE_COUNT; s++) {
-        double before = INFINITY;
-        for (int f = 0; f < 7; f++) {
-            enum { samples = 40000 };
-            double sum = 0, square = 0;
-            for (int n = 0; n < samples; n++) {
-                const double x = 9000 * (random_uniform(4, 0, 0, n) - 0.5),
-                             y = 9000 * (random_uniform(4, 1, 0, n) - 0.5);
-                const double t = landscape_texture(&land, (SurfaceClass)s, x, y, footprint_m[f]);
-                CHECK(t >= 0.6 && t <= 1.4);
-                sum += t;
-                square += (t - 1) * (t - 1);
-                /* no edge: a thousandth of the shortest wave that is left changes it by its steepest slope at most */
-                const double d = 1e-3 * fmax(0.11, 2 * footprint_m[f]);
-                CHECK_NEAR(landscape_texture(&land, (SurfaceClass)s, x + d, y, footprint_m[f]), t, 0.02);
-            }
-            CHECK_NEAR(sum / samples, 1, 0.005);
-            CHECK(square <= before);
-            before = square;
-        }
-        CHECK(before == 0);
-    }
-    CHECK(landscape_texture(&land, SURFACE_GRASS, NAN, 0, 1) == 1);
-    CHECK(landscape_texture(&land, SURFACE_NONE, 0, 0, 0) == 1);
-    CHECK(landscape_texture(&land, (SurfaceClass)77, 0, 0, 0) == 1);
-    landscape_destroy(&land);
-}
-
 static void bad_input_is_survived(void **state)
 {
     (void)state;
@@ -619,7 +581,6 @@ int main(void)
         cmocka_unit_test(an_exercise_in_the_air),
         cmocka_unit_test(reaches_the_horizon_and_no_further),
         cmocka_unit_test(many_classes_near_any_place),
-        cmocka_unit_test(texture_has_mean_one_and_fades),
         cmocka_unit_test(bad_input_is_survived),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -53,9 +53,14 @@ static int nlcd_codes(int column, int row) { return row < cells / 2 ? column < c
 static int fuel_codes(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 183 : 102 : column < cells / 2 ? 91 : 98; }
 static int foreign_codes(int column, int row) { (void)row; return column < cells / 2 ? 200 + column % 3 * 5 + 10 : 240; }
 static int grassland(int column, int row) { (void)column; (void)row; return 30; }
-static int west_bright(int column, int row) { (void)row; return column < cells / 2 ? 200 : 40; }
-static int north_bright(int column, int row) { (void)column; return row < cells / 2 ? 200 : 40; }
-static int chess(int column, int row) { return (column + row) & 1 ? 200 : 40; }
+static int west_bright(int column, int row) { (void)row; return column < cells / 2 ? 206 : 41; }
+static int north_bright(int column, int row) { (void)column; return row < cells / 2 ? 206 : 41; }
+/* Fields of one colour but the south-west's chess board, 40 m from the others: a block of pixels holds colours on one
+ * line. 154: the mean of the light of the chess board. */
+static int chess(int column, int row)
+{
+    return column >= cells / 2 - 4 || row < cells / 2 + 4 ? 154 : (column + row) & 1 ? 206 : 41;
+}
 
 static LocalFrame centre_frame(void)
 {
@@ -143,8 +148,8 @@ static void tables_can_be_named_and_their_faults_are_told(void **state)
     log_set_sink(NULL, NULL);
 }
 
-/* IEC 61966-2-1 by hand: 200/255 -> 0.577580, 40/255 -> 0.021219. */
-static const double bright = 0.577580, dark = 0.021219;
+/* IEC 61966-2-1 by hand: 206/255 -> 0.617207, 41/255 -> 0.022174: octets that five bits hold (photo.h). */
+static const double bright = 0.617207, dark = 0.022174;
 
 static void a_photograph_is_relative_to_its_class(void **state)
 {

@@ -51,8 +51,9 @@ static float height_over_float(const ElevationLevel *g, const float u[2], float 
     if (!(u[0] >= 0 && u[1] >= 0 && u[0] < g->nx - 1 && u[1] < g->ny - 1)) return NAN;
     const int       i = (int)u[0], j = (int)u[1];
     const float     a = u[0] - i, b = u[1] - j;
-    const uint16_t *post = g->post + (size_t)j * (size_t)g->nx + i;
-    const float     sw = post[0], se = post[1], nw = post[g->nx], ne = post[g->nx + 1];
+    int32_t         post[4];
+    elevation_cell(post, g, i, j);
+    const float sw = (float)post[0], se = (float)post[1], nw = (float)post[2], ne = (float)post[3];
     return z - ((float)g->z0_m + (float)g->step_m * (a >= b ? sw + a * (se - sw) + b * (ne - se)
                                                             : sw + a * (ne - nw) + b * (nw - sw)));
 }
@@ -103,8 +104,9 @@ static long double height_over(const ElevationLevel *g, const long double p[3])
     if (!(u >= 0 && v >= 0 && u < g->nx - 1 && v < g->ny - 1)) return NAN;
     const int         i = (int)u, j = (int)v;
     const long double a = u - i, b = v - j;
-    const uint16_t   *post = g->post + (size_t)j * (size_t)g->nx + i;
-    const long double sw = post[0], se = post[1], nw = post[g->nx], ne = post[g->nx + 1];
+    int32_t           post[4];
+    elevation_cell(post, g, i, j);
+    const long double sw = post[0], se = post[1], nw = post[2], ne = post[3];
     const long double posts = a >= b ? sw + a * (se - sw) + b * (ne - se) : sw + a * (ne - nw) + b * (nw - sw);
     return p[2] - ((long double)g->z0_m + (long double)g->step_m * posts);
 }

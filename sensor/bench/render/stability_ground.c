@@ -9,34 +9,52 @@
 
 #include <stdlib.h>
 
-enum { side = 33, crossings_most = 4 * side + 4, kinds = 10 };
+enum { side_most = 97, crossings_most = 6 * side_most + 8, kinds = 10 };
 
 typedef struct Field {
     Elevation elevation;
     Ground    ground;
-    int       shape;
+    int       shape, side; /* posts a side */
+    double    spacing_m;
 } Field;
 
-enum { shape_rough, shape_flat, shape_spikes, shape_cliffs, shape_plane, shapes };
+/* The last four: four tiles of different bases and shifts, of posts 0.1 m and 100 m apart; as rough as the tile's range
+ * allows, or with walls of 500 m from one post to the next, along the edges of tiles too. */
+enum { shape_rough, shape_flat, shape_spikes, shape_cliffs, shape_plane, shapes, shape_tiles = shapes,
+       shape_wide_tiles, shape_walls, shape_wide_walls, shapes_all };
 
-/* Spacings and steps are powers of two: posts are exact, and so are rays along them. */
+static int32_t tile_post(int shape, int i, int j, Dice *dice)
+{
+    const int tile = i / elevation_tile_cells + 2 * (j / elevation_tile_cells);
+    if (shape >= shape_walls) return 8192 + 256000 * ((i / 16 + j / 32) % 2) + (tile == 3 ? 4000 * ((i + j) % 5) : i);
+    return (int32_t)dice_uniform(dice, 0, 1 << (8 + 3 * tile)) + 100000 * tile;
+}
+
+/* Of one range, spacings and steps are powers of two: posts are exact, and so are rays along them. */
 static bool field_open(Field *f, int shape, double x0_m, double y0_m)
 {
-    Dice dice = {.stream = 100 + (uint32_t)shape};
-    *f = (Field){.shape = shape};
-    if (elevation_level_create(&f->elevation, 0, side, side, x0_m, y0_m, 4, -64, 0.03125) != STATUS_OK) return false;
-    uint16_t *post = f->elevation.level[0].post;
+    static int32_t post[side_most * side_most];
+    Dice           dice = {.stream = 100 + (uint32_t)shape};
+    const bool     tiles = shape >= shapes;
+    *f = (Field){.shape = shape, .side = tiles ? side_most : 33, .spacing_m = 4};
+    if (tiles) f->spacing_m = (shape - shapes) % 2 ? 100 : 0.1;
+    const int side = f->side;
+    if (elevation_level_create(&f->elevation, 0, side, side, x0_m, y0_m, f->spacing_m, -64, tiles ? 0x1p-9 : 0x1p-5) !=
+        STATUS_OK)
+        return false;
     for (int j = 0; j < side; j++)
         for (int i = 0; i < side; i++) {
-            uint16_t *p = &post[j * side + i];
+            int32_t *p = &post[j * side + i];
             switch (shape) {
-            case shape_rough:  *p = (uint16_t)dice_uniform(&dice, 2000, 2300); break;
+            case shape_rough:  *p = (int32_t)dice_uniform(&dice, 2000, 2300); break;
             case shape_flat:   *p = 2048; break;
             case shape_spikes: *p = (i % 5 == 2 && j % 5 == 2) ? (i + j) % 2 ? 65535 : 0 : 2048; break;
             case shape_cliffs: *p = (i / 4 + j / 6) % 2 ? 2048 : 40000; break;
-            default:           *p = (uint16_t)(2048 + 16 * i + 8 * j); break;
+            case shape_plane:  *p = 2048 + 16 * i + 8 * j; break;
+            default:           *p = tile_post(shape, i, j, &dice); break;
             }
         }
+    if (elevation_fill(&f->elevation.level[0], post) != STATUS_OK) return false;
     elevation_build_pyramids(&f->elevation);
     ground_prepare(&f->ground, &f->elevation);
     return true;
@@ -44,16 +62,16 @@ static bool field_open(Field *f, int shape, double x0_m, double y0_m)
 
 static double post_m(const Field *f, int i, int j)
 {
-    const ElevationLevel *e = &f->elevation.level[0];
-    return e->z0_m + e->step_m * e->post[j * side + i];
+    return elevation_post_m(&f->elevation.level[0], i, j);
 }
 
 /* A ray of one of ten degenerate kinds. */
 static void field_ray(double o[3], double d[3], const Field *f, Dice *dice, int kind)
 {
     const ElevationLevel *e = &f->elevation.level[0];
-    const int    i = (int)dice_uniform(dice, 1, side - 1), j = (int)dice_uniform(dice, 1, side - 1);
-    const double to[3] = {e->x0_m + 4 * i, e->y0_m + 4 * j, post_m(f, i, j)};
+    const double s = f->spacing_m;
+    const int    i = (int)dice_uniform(dice, 1, f->side - 1), j = (int)dice_uniform(dice, 1, f->side - 1);
+    const double to[3] = {e->x0_m + s * i, e->y0_m + s * j, post_m(f, i, j)};
     dice_direction(d, dice);
     for (int c = 0; c < 3; c++) o[c] = to[c];
     const double sign = dice_uniform(dice, 0, 1) < 0.5 ? -1 : 1;
@@ -62,7 +80,7 @@ static void field_ray(double o[3], double d[3], const Field *f, Dice *dice, int 
     case 0: /* down, anywhere */
         d[2] = -fabs(d[2]);
         v3_add_scaled(o, to, -dice_log(dice, 1, 5000), d);
-        o[0] += dice_uniform(dice, -4, 4);
+        o[0] += dice_uniform(dice, -s, s);
         break;
     case 1: /* exactly at a post */
         d[2] = -fabs(d[2]);
@@ -70,7 +88,7 @@ static void field_ray(double o[3], double d[3], const Field *f, Dice *dice, int 
         break;
     case 2: /* straight down on a post, a line, or a face */
         d[0] = d[1] = 0, d[2] = -1;
-        o[0] += i % 2 ? 0 : dice_uniform(dice, 0, 4), o[1] += j % 2 ? 0 : dice_uniform(dice, 0, 4), o[2] += 3000;
+        o[0] += i % 2 ? 0 : dice_uniform(dice, 0, s), o[1] += j % 2 ? 0 : dice_uniform(dice, 0, s), o[2] += 3000;
         break;
     case 3: /* straight up, from below and above */
         d[0] = d[1] = 0, d[2] = 1;
@@ -113,8 +131,10 @@ static int by_size(const void *a, const void *b)
 static long double clearance(const Field *f, const double o[3], const double d[3], long double t)
 {
     const ElevationLevel *e = &f->elevation.level[0];
-    const long double u = (o[0] - (long double)e->x0_m + t * d[0]) / 4,
-        v = (o[1] - (long double)e->y0_m + t * d[1]) / 4;
+    const long double s = f->spacing_m;
+    const int         side = f->side;
+    const long double u = (o[0] - (long double)e->x0_m + t * d[0]) / s;
+    const long double v = (o[1] - (long double)e->y0_m + t * d[1]) / s;
     int i = (int)floorl(u), j = (int)floorl(v);
     i = i < 0 ? 0 : i > side - 2 ? side - 2 : i;
     j = j < 0 ? 0 : j > side - 2 ? side - 2 : j;
@@ -127,18 +147,20 @@ typedef struct Judged {
     long double may_m, must_m; /* the first point where it may be met, and where it must; INFINITY: none */
 } Judged;
 
-/* On surfaces steeper than a few 1000:1 a rounding of the position is this much height; within plus and minus this
- * either result is correct. */
-static const long double hair_m = 1e-8L;
+/* On surfaces of 1000:1 a rounding of the position is this much height; within plus and minus this either result is
+ * correct. On the walls of 500 m between posts 0.1 m apart, 5000:1, a position of 5 km (4e-12 m) is twice as much. */
+static const long double hair_plain_m = 1e-8L, hair_walls_m = 2e-8L;
 
 static Judged judge(const Field *f, const double o[3], const double d[3])
 {
     const ElevationLevel *e = &f->elevation.level[0];
+    const long double s = f->spacing_m, hair_m = f->shape == shape_walls ? hair_walls_m : hair_plain_m;
+    const int         side = f->side;
     long double t[crossings_most + 2], in = 0, out = 1e7L;
     int         n = 0;
     Judged      judged = {INFINITY, INFINITY};
     for (int c = 0; c < 2; c++) { /* over the field */
-        const long double p = o[c] - (long double)(c ? e->y0_m : e->x0_m), last = 4 * (side - 1);
+        const long double p = o[c] - (long double)(c ? e->y0_m : e->x0_m), last = s * (side - 1);
         if (d[c] == 0) {
             if (p < 0 || p > last) return judged;
             continue;
@@ -150,9 +172,9 @@ static Judged judge(const Field *f, const double o[3], const double d[3])
     if (!(in < out)) return judged;
     t[n++] = in, t[n++] = out;
     for (int k = -side; k <= side; k++) {
-        const long double at[3] = {(e->x0_m + 4 * k - (long double)o[0]) / d[0],
-            (e->y0_m + 4 * k - (long double)o[1]) / d[1],
-                                   (4 * k - ((o[0] - (long double)e->x0_m) - (o[1] - (long double)e->y0_m))) /
+        const long double at[3] = {(e->x0_m + s * k - (long double)o[0]) / d[0],
+            (e->y0_m + s * k - (long double)o[1]) / d[1],
+                                   (s * k - ((o[0] - (long double)e->x0_m) - (o[1] - (long double)e->y0_m))) /
                                        ((long double)d[0] - d[1])};
         for (int c = 0; c < 3; c++)
             if (at[c] > in && at[c] < out && n < crossings_most) t[n++] = at[c];
@@ -177,11 +199,11 @@ static Judged judge(const Field *f, const double o[3], const double d[3])
 
 enum { count_missed, count_invented, count_flat };
 
-static double field(bool quick, int want)
+static double field(bool quick, int want, int from, int to)
 {
     Dice   dice = {.stream = 20};
     double missed = 0, invented = 0;
-    for (int shape = 0; shape < shapes; shape++) {
+    for (int shape = from; shape < to; shape++) {
         Field f;
         if (!field_open(&f, shape, -64, -64)) return INFINITY;
         for (int n = 0; n < (quick ? 3000 : 60000); n++) {
@@ -198,8 +220,19 @@ static double field(bool quick, int want)
     return want == count_missed ? missed : invented;
 }
 
-static double field_missed(void *user, bool quick) { (void)user; return field(quick, count_missed); }
-static double field_invented(void *user, bool quick) { (void)user; return field(quick, count_invented); }
+static double field_missed(void *user, bool quick) { (void)user; return field(quick, count_missed, 0, shapes); }
+static double field_invented(void *user, bool quick) { (void)user; return field(quick, count_invented, 0, shapes); }
+static double tiles_missed(void *user, bool quick)
+{
+    (void)user;
+    return field(quick, count_missed, shapes, shapes_all);
+}
+
+static double tiles_invented(void *user, bool quick)
+{
+    (void)user;
+    return field(quick, count_invented, shapes, shapes_all);
+}
 
 /* The same rays eight at a time and as a tile: number of different bits, cells and halves. */
 static double field_company(void *user, bool quick)
@@ -210,9 +243,9 @@ static double field_company(void *user, bool quick)
     Dice             dice = {.stream = 21};
     double           wrong = 0;
     (void)user;
-    for (int round = 0; round < (quick ? 2 : 20) * shapes; round++) {
+    for (int round = 0; round < (quick ? 2 : 20) * shapes_all; round++) {
         Field f;
-        if (!field_open(&f, round % shapes, -64, -64)) return INFINITY;
+        if (!field_open(&f, round % shapes_all, -64, -64)) return INFINITY;
         for (int n = 0; n < block; n++) {
             double from[3], way[3];
             field_ray(from, way, &f, &dice, n % kinds);
@@ -270,6 +303,7 @@ static double far_fields(void *user, bool quick)
 /* Two levels that meet exactly: down on posts and outline, up to the horizon's last line. Nothing falls through. */
 static double seams(void *user, bool quick)
 {
+    enum { side = 33 };
     Elevation e = {0};
     Ground    ground;
     Dice      dice = {.stream = 23};
@@ -281,7 +315,8 @@ static double seams(void *user, bool quick)
     for (int k = 0; k < 2; k++) /* one slope through both, so that the outline is on straight edges */
         for (int j = 0; j < side; j++)
             for (int i = 0; i < side; i++)
-                e.level[k].post[j * side + i] = (uint16_t)(8192 + (k ? 64 : 4) * (2 * i + j) - (k ? 3 * 1024 : 3 * 64));
+                elevation_set_post(&e.level[k], i, j,
+                                   8192 + (k ? 64 : 4) * (2 * i + j) - (k ? 3 * 1024 : 3 * 64));
     elevation_build_pyramids(&e);
     ground_prepare(&ground, &e);
     for (int n = quick ? 20000 : 200000; n > 0; n--) {
@@ -302,7 +337,10 @@ Status stability_ground(Bench *bench)
         {"ground: rough, flat, spikes, cliffs, on posts and lines: missed", field_missed, 0, "rays",
             "every post line in long double"},
         {"ground: the same: invented", field_invented, 0, "rays", "every post line in long double"},
-        {"ground: the same: by eights and by tiles", field_company, 0, "rays", "one by one, to the bit"},
+        {"ground: tiles of several shifts, walls of 500 m, posts of 0.1 and 100 m: missed", tiles_missed, 0, "rays",
+            "every post line in long double"},
+        {"ground: the same tiles: invented", tiles_invented, 0, "rays", "every post line in long double"},
+        {"ground: all of these: by eights and by tiles", field_company, 0, "rays", "one by one, to the bit"},
         {"ground: 200 km from the origin", far_fields, 1e-7, "m", "the same about the origin"},
         {"ground: along the seam of two levels", seams, 1e-9, "m", "one slope through both"},
     };

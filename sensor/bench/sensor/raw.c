@@ -317,7 +317,7 @@ static double walk(const Elevation *e, const double o[3], const double d[3])
     const ElevationLevel *level = &e->level[0];
     const double u0 = (o[0] - level->x0_m) / level->spacing_m, du = d[0] / level->spacing_m;
     const double v0 = (o[1] - level->y0_m) / level->spacing_m, dv = d[1] / level->spacing_m;
-    const double top_m = level->z0_m + level->step_m * level->pyramid[level->pyramid_count - 1][0];
+    const double top_m = level->z0_m + level->step_m * elevation_highest(level, level->pyramid_count - 1, 0, 0);
     double       t = o[2] > top_m && d[2] < 0 ? (top_m - o[2]) / d[2] : 0;
     double       above = INFINITY;
     for (;;) {

@@ -89,10 +89,11 @@ static Status make_ground(Speed *s)
 
     const ElevationLevel *level = &s->landscape.elevation.level[0];
     const size_t          posts = (size_t)level->nx * (size_t)level->ny;
-    uint16_t              low = 65535, high = 0;
-    for (size_t i = 0; i < posts; i++) {
-        low  = level->post[i] < low ? level->post[i] : low;
-        high = level->post[i] > high ? level->post[i] : high;
+    const size_t          stored = elevation_level_stored(level);
+    uint16_t              low = 65535, high = 0; /* base 0, shift 0 everywhere */
+    for (size_t i = 0; i < stored; i++) {
+        low  = level->stored[i] < low ? level->stored[i] : low;
+        high = level->stored[i] > high ? level->stored[i] : high;
     }
     snprintf(what, sizeof what, "%.0f M posts, heights %.0f m apart", 1e-6 * (double)posts,
              (high - low) * level->step_m);
@@ -108,7 +109,7 @@ static Status make_ground(Speed *s)
     row.unit        = "s";
     row.rate        = 1e-6 * (double)posts / times_s[1];
     row.rate_unit   = "M posts/s";
-    row.error       = fabs((double)level->pyramid[level->pyramid_count - 1][0] - high);
+    row.error       = fabs((double)elevation_highest(level, level->pyramid_count - 1, 0, 0) - high);
     row.error_limit = 0;
     row.error_unit  = "posts";
     row.against     = "top of the pyramid against the highest post";

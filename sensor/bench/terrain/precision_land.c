@@ -1,6 +1,7 @@
-/* sensor/bench/terrain/precision_land.c: the ground as posts, and its texture under a pixel. */
+/* sensor/bench/terrain/precision_land.c: the ground as posts, and the weakest octave of its detail. */
 #include "sensor/bench/terrain/rows.h"
 
+#include "terrain/landscape/detail.h"
 #include "terrain/landscape/quick_landscape.h"
 #include "sensor/bench/turn.h"
 
@@ -54,8 +55,7 @@ static Status thinned(Elevation *out, const ElevationLevel *from, int step)
     if (status != STATUS_OK) return status;
     for (int j = 0; j < ny; j++)
         for (int i = 0; i < nx; i++)
-            out->level[0].post[(size_t)j * (size_t)nx + (size_t)i] =
-                from->post[(size_t)j * step * (size_t)from->nx + (size_t)i * step];
+            elevation_set_post(&out->level[0], i, j, elevation_post(from, i * step, j * step));
     elevation_build_pyramids(out);
     return STATUS_OK;
 }
@@ -198,70 +198,155 @@ static void knob_posts(Bench *bench)
                                    "largest, double, hills of 80 m", 0.002}, work, point, settings);
 }
 
-/* ---- texture under a pixel ------------------------------------------------------------------------- */
+/* ---- posts of terrain from files -------------------------------------------------------------------- */
 
-enum { spots = 192, most_side = 48 };
+enum { mountain_posts = 513, mountain_asks = 4096 };
 
-typedef struct TextureSet {
-    const Landscape *land;
-    int              side; /* places a side of the footprint; 0: by its wavelengths */
-    double           x_m[spots], y_m[spots];
-    float            footprint_m[spots], out[spots];
-} TextureSet;
+typedef struct StoreSet {
+    Elevation    ground;
+    const float *narrow; /* or these */
+    double       at[mountain_asks][2], z_m[mountain_asks];
+} StoreSet;
 
-static void ask_textures(void *user)
+/* 1.4 km of relief over 2 km of posts 4 m apart; up to some 150 m in a tile of 256 m. */
+static double mountain_height(double i, double j)
 {
-    static double   x_m[most_side * most_side], y_m[most_side * most_side];
-    static float    none[most_side * most_side], fine[most_side * most_side];
-    static uint8_t  class[most_side * most_side];
-    TextureSet     *s = user;
-    memset(class, SURFACE_GRASS, sizeof class);
-    if (s->side < 2)
-        landscape_textures(s->out, s->land, spots, class, s->x_m, s->y_m, s->side == 0 ? s->footprint_m : none);
-    for (int i = 0; s->side > 1 && i < spots; i++) {
-        double sum = 0;
-        for (int k = 0; k < s->side * s->side; k++) {
-            x_m[k] = s->x_m[i] + (double)s->footprint_m[i] * ((k % s->side + 0.5) / s->side - 0.5);
-            y_m[k] = s->y_m[i] + (double)s->footprint_m[i] * ((k / s->side + 0.5) / s->side - 0.5);
-        }
-        landscape_textures(fine, s->land, s->side * s->side, class, x_m, y_m, none);
-        for (int k = 0; k < s->side * s->side; k++) sum += (double)fine[k];
-        s->out[i] = (float)(sum / (s->side * s->side));
-    }
-    bench_keep(s->out);
+    return 1500 + 600 * sin(i / 170 - 1.4) * cos(j / 240) + 60 * sin(i / 23.3 + 1) * sin(j / 31.9)
+        + 2 * cos(i / 3.3 - j / 4.1);
 }
 
-static void knob_texture(Bench *bench, const Landscape *land)
+static void ask_store(void *user)
 {
-    enum { settings = 5 };
-    static const char *const name[settings] =
-        {"unfiltered", "2 x 2 places", "4 x 4 places", "8 x 8 places", "wavelengths faded out"};
-    static const int  side[settings] = {1, 2, 4, 8, 0};
-    static TextureSet set[settings], fine;
-    BenchWork         work[settings];
-    BenchSetting        point[settings] = {0};
-    for (int k = -1; k < settings; k++) {
-        TextureSet *s = k < 0 ? &fine : &set[k];
-        s->land = land, s->side = k < 0 ? (bench_quick(bench) ? 24 : most_side) : side[k];
-        for (int i = 0; i < spots; i++) {
-            s->x_m[i] = 800 * (random_uniform(43, 0, 0, (uint64_t)i) - 0.5);
-            s->y_m[i] = 800 * (random_uniform(43, 1, 0, (uint64_t)i) - 0.5);
-            s->footprint_m[i] = (float)(0.1 * pow(40, random_uniform(43, 2, 0, (uint64_t)i)));
+    StoreSet *s = user;
+    for (int n = 0; n < mountain_asks; n++) {
+        if (!s->narrow) {
+            s->z_m[n] = elevation_height(&s->ground, s->at[n][0], s->at[n][1], NULL);
+            continue;
         }
-        ask_textures(s);
-        if (k < 0) continue;
-        double square = 0;
-        for (int i = 0; i < spots; i++) square += ((double)s->out[i] - (double)fine.out[i])
-            * ((double)s->out[i] - (double)fine.out[i]);
-        work[k]  = (BenchWork){ask_textures, s, spots};
-        point[k] = (BenchSetting){.setting = name[k], .error = 100 * sqrt(square / spots),
-                                .is_default = k == settings - 1};
+        const double x = 0.25 * s->at[n][0], y = 0.25 * s->at[n][1];
+        const int    i = (int)x, j = (int)y;
+        const float *z = s->narrow + j * mountain_posts + i;
+        const double u = x - i, v = y - j, sw = (double)z[0], se = (double)z[1], nw = (double)z[mountain_posts],
+                     ne = (double)z[mountain_posts + 1];
+        s->z_m[n] = u >= v ? sw + u * (se - sw) + v * (ne - se) : sw + u * (ne - nw) + v * (nw - sw);
     }
-    bench_tunable(bench, &(BenchTunable){"texture under a pixel", "terrain/landscape/texture.c",
-                                   "a pixel of 0.1 .. 4 m on grass", "%",
-                                   bench_quick(bench) ? "rms of brightness, 24 x 24 places"
-                                       : "rms of brightness, 48 x 48 places", 4},
-               work, point, settings);
+    bench_keep(s->z_m);
+}
+
+/* One range for all posts as before tiles, or a step that tiles shift as far as their own heights need. */
+static Status knob_store(Bench *bench)
+{
+    enum { settings = 6 };
+    static const char *const name[settings] = {"one range: 1 / 32 m", "tiles: 1 / 32 m", "tiles: 1 / 128 m",
+                                               "tiles: 1 / 512 m", "tiles: 1 / 2048 m", "floats"};
+    static const double step_m[settings] = {1 / 32.0, 1 / 32.0, 1 / 128.0, 1 / 512.0, 1 / 2048.0, 0};
+    static StoreSet     set[settings];
+    static float        narrow[mountain_posts * mountain_posts];
+    static int32_t      post[mountain_posts * mountain_posts];
+    BenchWork           work[settings];
+    BenchSetting        point[settings] = {0};
+    Status              status = STATUS_OK;
+    for (int k = 0; k < settings && status == STATUS_OK; k++) {
+        StoreSet *s = &set[k];
+        /* with one range, posts are from 0 on; else that of the origin is far below, so that tiles have bases */
+        const double z0_m = k == 0 ? 512 : -1024;
+        for (int n = 0; n < mountain_posts * mountain_posts; n++) {
+            const double z_m = mountain_height(n % mountain_posts, n / mountain_posts);
+            narrow[n] = (float)z_m;
+            if (step_m[k] > 0) post[n] = (int32_t)floor((z_m - z0_m) / step_m[k] + 0.5);
+        }
+        if (step_m[k] > 0) {
+            status = elevation_level_create(&s->ground, 0, mountain_posts, mountain_posts, 0, 0, 4, z0_m, step_m[k]);
+            if (status == STATUS_OK) status = elevation_fill(&s->ground.level[0], post);
+        } else {
+            s->narrow = narrow;
+        }
+        for (int n = 0; n < mountain_posts * mountain_posts && status == STATUS_OK; n++) {
+            const int    i = n % mountain_posts, j = n / mountain_posts;
+            const double held_m = s->narrow ? (double)narrow[n] : elevation_post_m(&s->ground.level[0], i, j);
+            bench_worst(&point[k].error, fabs(held_m - mountain_height(i, j)));
+        }
+        for (int n = 0; n < mountain_asks; n++)
+            for (int c = 0; c < 2; c++)
+                s->at[n][c] = 4 * (mountain_posts - 1.01) * random_uniform(44, (uint32_t)c, 0, (uint64_t)n);
+        work[k] = (BenchWork){ask_store, s, mountain_asks};
+        point[k].setting    = name[k];
+        point[k].is_default = k == 4;
+        point[k].bytes =
+            s->narrow ? (double)sizeof narrow : 2.0 * (double)elevation_level_stored(&s->ground.level[0]);
+    }
+    if (status == STATUS_OK)
+        bench_tunable(bench, &(BenchTunable){"posts of terrain from files", "terrain/landscape/levels_fine.c",
+                                       "a height between posts", "m", "largest, double, mountains of 1.4 km", 0.005},
+                   work, point, settings);
+    for (int k = 0; k < settings; k++) elevation_destroy(&set[k].ground);
+    return status;
+}
+
+/* ---- detail: weakest octave ------------------------------------------------------------------------ */
+
+enum { spots = 1024 };
+
+typedef struct DetailSet {
+    const Landscape   *land;
+    const DetailTable *table;
+    uint8_t            class[spots];
+    double             x_m[spots], y_m[spots];
+    float              across_m[spots], along_m[spots], albedo[spots], warmth_k[spots], slope_x[spots], slope_y[spots];
+} DetailSet;
+
+static void ask_details(void *user)
+{
+    DetailSet         *s = user;
+    const GroundDetail out = {.albedo = s->albedo, .warmth_k = s->warmth_k, .slope_x = s->slope_x, .slope_y =
+                              s->slope_y};
+    landscape_details(&out, s->table, s->land, spots, s->class, s->x_m, s->y_m,
+                      &(GroundFootprint){s->across_m, s->along_m});
+    bench_keep(s->albedo);
+}
+
+static double rms_percent(const float *a, const float *b)
+{
+    double square = 0;
+    for (int i = 0; i < spots; i++) square += ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]);
+    return 100 * sqrt(square / spots);
+}
+
+/* Rows of a picture: eight neighbours share their footprint. */
+static Status tunable_detail(Bench *bench, const Landscape *land)
+{
+    enum { settings = 6 };
+    static const char *const name[settings] = {"every octave", "0.001", "0.005", "0.02", "0.1", "none"};
+    static const double      cut_off[settings] = {0, 0.001, detail_cut_off, 0.02, 0.1, 2};
+    static DetailSet         set[settings];
+    DetailTable             *table[settings] = {NULL};
+    BenchWork                work[settings];
+    BenchSetting             point[settings] = {0};
+    char                     path[512];
+    Status status = etc_path(path, sizeof path, "ground_detail.csv") ? STATUS_OK : STATUS_BAD_VALUE;
+    for (int k = 0; k < settings && status == STATUS_OK; k++) {
+        DetailSet *s = &set[k];
+        status = detail_table_open(&table[k], path, cut_off[k]);
+        s->land = land, s->table = table[k];
+        for (int i = 0; i < spots; i++) {
+            const double wide_m = 0.03 * pow(200, random_uniform(43, 2, 0, (uint64_t)(i / 64)));
+            s->class[i]    = SURFACE_GRASS;
+            s->x_m[i]      = 800 * (random_uniform(43, 0, 0, (uint64_t)(i / 64)) - 0.5) + wide_m * (i % 64);
+            s->y_m[i]      = 800 * (random_uniform(43, 1, 0, (uint64_t)(i / 64)) - 0.5);
+            s->across_m[i] = (float)wide_m;
+            s->along_m[i]  = (float)(wide_m * (1 + 9 * random_uniform(43, 3, 0, (uint64_t)(i / 64))));
+        }
+        if (status == STATUS_OK) ask_details(s);
+        work[k]  = (BenchWork){ask_details, s, spots};
+        point[k] = (BenchSetting){.setting = name[k], .error = rms_percent(s->albedo, set[0].albedo),
+                                  .is_default = cut_off[k] == detail_cut_off};
+    }
+    if (status == STATUS_OK)
+        bench_tunable(bench, &(BenchTunable){"detail: weakest octave", "terrain/landscape/detail_table.c",
+                                       "a pixel of 0.03 .. 6 m on grass", "%", "rms of brightness, every octave", 2},
+                   work, point, settings);
+    for (int k = 0; k < settings; k++) detail_table_close(table[k]);
+    return status;
 }
 
 Status bench_precision_land(Bench *bench)
@@ -278,10 +363,10 @@ Status bench_precision_land(Bench *bench)
     if (status == STATUS_OK) status = landscape_create(&land, &config, &frame, NULL, 0, NULL, 0);
     if (status == STATUS_OK) {
         knob_posts(bench);
-        knob_texture(bench, &land);
-    } else {
-        log_error("bench: precision: ground: %s", status_name(status));
+        status = knob_store(bench);
+        if (status == STATUS_OK) status = tunable_detail(bench, &land);
     }
+    if (status != STATUS_OK) log_error("bench: precision: ground: %s", status_name(status));
     landscape_destroy(&land);
     return status;
 }

@@ -5,7 +5,7 @@
 
 const BenchSuite terrain_benches[] = {
     {.name = "precision", .help = "places, the geoid, the sun", .run = bench_precision_earth},
-    {.name = "precision", .help = "posts, textures", .run = bench_precision_land},
+    {.name = "precision", .help = "posts, detail", .run = bench_precision_land},
     {.name = "stability", .help = "places from pole to pole, frames, sun, geoid; grids with cliffs, spikes and voids",
      .run = terrain_bench_stability},
 };

@@ -7,5 +7,7 @@
 Status terrain_bench_stability(Bench *bench);
 /* sensor/bench/terrain/stability_ground.c: its second half. */
 Status terrain_bench_stability_ground(Bench *bench);
+/* sensor/bench/terrain/stability_import.c: its third part. */
+Status terrain_bench_stability_import(Bench *bench);
 
 #endif

@@ -1,0 +1,594 @@
+/* terrain/import/terrain_import.c: files to a terrain store: plan, the levels around, level 0 strip by strip with what
+ * covers it. */
+#include "terrain/import/terrain_import.h"
+
+#include "terrain/import/ground_rows.h"
+#include "terrain/import/surface_strip.h"
+#include "terrain/landscape/cover_table.h"
+
+#include <stdlib.h>
+
+enum { rows_plain = 512, rows_apart = 1024, most_sources = 8192, options_size = 8 * terrain_paths_size };
+
+static const char module[] = "terrain import";
+
+typedef struct Making {
+    const TerrainOptions *o;
+    Pool            *pool;
+    TerrainProgress *progress;
+    void            *user;
+    double           told_s;
+    LocalFrame       frame;
+    ElevationFiles   files[2];        /* terrain model, surface model */
+    ElevationStream *terrain, *surface, *first; /* first: whose levels are made */
+    RasterSet        cover, photo, canopy_height, canopy_cover;
+    CoverTable       table;
+    int              cover_band;
+    StorePlan        plan;
+    StoreSource     *source;
+    char            *options, notes[2048], datum[256], folder[terrain_path_size];
+    StoreWriter     *writer;
+    StreamLevel      level;
+    int              strip_rows;
+    long             kinds[3], quads; /* quads: four times buildings less courtyards */
+    uint8_t         *last_kind;       /* row of the strip before, for quads */
+    long             voids;
+    TerrainReport    r;
+} Making;
+
+/* False: stop. */
+static bool go_on(Making *m, const char *stage, double share, bool now)
+{
+    const double s = wall_clock_s();
+    if (!m->progress || (!now && s - m->told_s < 0.1)) return true;
+    m->told_s = s;
+    if (m->progress(m->user, stage, share)) return true;
+    m->r.stopped = true;
+    return false;
+}
+
+/* ---- plan ------------------------------------------------------------------------------------ */
+
+static Status open_set(RasterSet *out, const char *paths, const char *option, bool whole, const char *what)
+{
+    Status status = *paths ? raster_set_open(out, paths, option) : STATUS_OK;
+    for (int k = 0; status == STATUS_OK && whole && k < out->count; k++) {
+        if (out->raster[k].whole) continue;
+        log_error("%s: %s holds numbers with fractions, not %s; is it elevation?", option, out->raster[k].sheet[0].path,
+                  what);
+        status = STATUS_BAD_VALUE;
+    }
+    return status;
+}
+
+static Status open_sources(Making *m)
+{
+    const TerrainOptions *o = m->o;
+    Geodetic origin = {o->origin_deg[0] * rad_per_deg, o->origin_deg[1] * rad_per_deg, 0};
+    Status   status = STATUS_OK;
+    if (isnan(o->origin_deg[0])) status = elevation_middle(&origin, *o->surface ? o->surface : o->elevation);
+    if (status == STATUS_OK) status = local_frame_at(&m->frame, &origin);
+    if (status != STATUS_OK) return status;
+    for (int k = 0; k < 2; k++)
+        m->files[k] = (ElevationFiles){.paths = k ? o->surface : o->elevation, .geoid_path = o->geoid, .vertical = o->vertical,
+                                       .spacing_m = o->spacing_m, .horizon_m = 1000 * o->horizon_km,
+                                       .size_m = {1000 * o->size_km[0], 1000 * o->size_km[1]},
+                                       .keep_folder = m->folder};
+    if (*o->surface && status == STATUS_OK)
+        status = elevation_stream_open(&m->surface, &m->files[1], &m->frame, NULL, m->pool);
+    if (!go_on(m, "levels around", *o->surface ? 0.5 : 0, true)) return STATUS_IO;
+    if (*o->elevation && status == STATUS_OK)
+        status = elevation_stream_open(&m->terrain, &m->files[0], &m->frame, m->surface, m->pool);
+    m->first = m->surface ? m->surface : m->terrain;
+    if (status == STATUS_OK) status = open_set(&m->cover, o->cover, "terrain import: --cover", true, "classes");
+    if (status == STATUS_OK) status = open_set(&m->photo, o->photo, "terrain import: --photo", true, "a photograph");
+    for (int k = 0; status == STATUS_OK && k < m->photo.count; k++)
+        if (!m->photo.raster[k].bytes) {
+            log_error("terrain import: --photo: %s holds samples of more than 8 bits; gdal_translate -ot Byte -scale %s OUT.tif",
+                      m->photo.raster[k].sheet[0].path, m->photo.raster[k].sheet[0].path);
+            status = STATUS_BAD_VALUE;
+        }
+    if (status == STATUS_OK)
+        status = open_set(&m->canopy_height, o->canopy_height, "terrain import: --canopy-height", false, "");
+    if (status == STATUS_OK) status = open_set(&m->canopy_cover, o->canopy_cover, "terrain import: --canopy-cover", false, "");
+    return status;
+}
+
+/* Cells of a power of two times the posts' spacing, about as large as pixels, over level 0; or, with a set, only over its
+ * part of that, from whole nodes on. */
+static void plan_grid(StoreGrid *out, const Making *m, double posting_m, const RasterSet *set, int finest)
+{
+    const double s = m->level.spacing_m;
+    const int    p = (int)clamp(floor(log2(posting_m / s) + 0.5), finest, 6);
+    const double cell_m = s * exp2(p), x0_m = (m->level.i0 - 0.5) * s, y0_m = (m->level.j0 - 0.5) * s;
+    const int    nx = (int)ceil(m->level.nx * s / cell_m), ny = (int)ceil(m->level.ny * s / cell_m);
+    double       low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int k = 0; set && k < set->count; k++) {
+        double one_low[2], one_high[2];
+        raster_enu_box(one_low, one_high, &set->raster[k], &m->frame, 0);
+        for (int c = 0; c < 2; c++) {
+            low[c]  = fmin(low[c], one_low[c]);
+            high[c] = fmax(high[c], one_high[c]);
+        }
+    }
+    int i0 = 0, i1 = nx, j0 = 0, j1 = ny;
+    if (set && low[0] < high[0]) {
+        const double lean_m = 0.01 * (high[0] - low[0]) + 10 * cell_m; /* heights lean outwards */
+        i0 = (int)clamp(floor((low[0] - lean_m - x0_m) / cell_m / 64) * 64, 0, nx);
+        i1 = (int)clamp(ceil((high[0] + lean_m - x0_m) / cell_m), 0, nx);
+        j0 = (int)clamp(floor((low[1] - lean_m - y0_m) / cell_m / 64) * 64, 0, ny);
+        j1 = (int)clamp(ceil((high[1] + lean_m - y0_m) / cell_m), 0, ny);
+    }
+    if (i1 <= i0 || j1 <= j0) *out = (StoreGrid){0};
+    else *out = (StoreGrid){i1 - i0, j1 - j0, x0_m + i0 * cell_m, y0_m + j0 * cell_m, cell_m};
+}
+
+static double finest_m(const RasterSet *set)
+{
+    return set->count ? fmin(set->raster[0].posting_m[0], set->raster[0].posting_m[1]) : 0;
+}
+
+/* Over all that the cover files show, at eight times the cells, at most 2000 each way about the origin. */
+static void plan_wide(StoreGrid *out, const Making *m, double cell_m)
+{
+    enum { half = 1000 };
+    int a[2] = {half, half}, b[2] = {-half, -half};
+    for (int k = 0; k < m->cover.count; k++) {
+        double low[2], high[2];
+        raster_enu_box(low, high, &m->cover.raster[k], &m->frame, 0);
+        for (int c = 0; c < 2; c++) {
+            a[c] = (int)fmin(a[c], clamp(floor(low[c] / cell_m) - 1, -half, half));
+            b[c] = (int)fmax(b[c], clamp(ceil(high[c] / cell_m) + 1, -half, half));
+        }
+    }
+    *out = (StoreGrid){0};
+    if (b[0] > a[0] && b[1] > a[1]) *out = (StoreGrid){b[0] - a[0], b[1] - a[1], a[0] * cell_m, a[1] * cell_m, cell_m};
+}
+
+static Status list_sources(Making *m)
+{
+    const RasterSet *sets[] = {m->terrain ? elevation_stream_files(m->terrain) : NULL,
+                               m->surface ? elevation_stream_files(m->surface) : NULL, &m->cover, &m->photo,
+                               &m->canopy_height, &m->canopy_cover};
+    m->source = calloc(most_sources, sizeof *m->source);
+    if (!m->source) return STATUS_NO_MEMORY;
+    for (size_t s = 0; s < sizeof sets / sizeof *sets; s++)
+        for (int k = 0; sets[s] && k < sets[s]->count; k++)
+            for (int n = 0; n < sets[s]->raster[k].sheet_count; n++) {
+                if (m->plan.source_count == most_sources) {
+                    log_error("%s: more than %d files; gdalbuildvrt joins them", module, (int)most_sources);
+                    return STATUS_BAD_VALUE;
+                }
+                StoreSource *to = &m->source[m->plan.source_count++];
+                to->path = sets[s]->raster[k].sheet[n].path;
+                (void)store_source_look(to); /* one that is no file (GDAL's own names) keeps size 0 */
+            }
+    m->plan.source = m->source;
+    return STATUS_OK;
+}
+
+static Status plan(Making *m)
+{
+    StorePlan *p = &m->plan;
+    p->origin      = m->frame.origin;
+    p->level_count = elevation_stream_levels(m->first);
+    for (int k = 0; k < p->level_count; k++) {
+        StreamLevel l;
+        elevation_stream_level(&l, m->first, k);
+        p->level[k] = (StoreLevel){.nx = l.nx, .ny = l.ny, .x0_m = l.i0 * l.spacing_m, .y0_m = l.j0 * l.spacing_m,
+                                   .spacing_m = l.spacing_m, .seam_shift = -1};
+        if (k == 0) m->level = l;
+    }
+    m->strip_rows = m->surface ? rows_apart : rows_plain;
+    if (m->surface) plan_grid(&p->surface[0], m, m->level.spacing_m, NULL, 0);
+    else if (m->cover.count) plan_grid(&p->surface[0], m, finest_m(&m->cover), &m->cover, 0);
+    if (m->cover.count) plan_wide(&p->surface[1], m, 8 * fmax(p->surface[0].cell_m, finest_m(&m->cover)));
+    if (m->photo.count) plan_grid(&p->albedo, m, finest_m(&m->photo), &m->photo, -3);
+    if (m->photo.count && p->albedo.nx == 0) {
+        log_error("terrain import: --photo: %s does not reach the terrain; leave it out, or name one of the place",
+                  m->photo.raster[0].sheet[0].path);
+        return STATUS_BAD_VALUE;
+    }
+    if (m->surface) {
+        plan_grid(&p->canopy_height, m, 4, NULL, 0);
+        p->canopy_cover = p->canopy_height;
+    }
+    if (m->canopy_height.count) plan_grid(&p->canopy_height, m, fmax(finest_m(&m->canopy_height), 4), &m->canopy_height, 0);
+    if (m->canopy_cover.count) plan_grid(&p->canopy_cover, m, fmax(finest_m(&m->canopy_cover), 4), &m->canopy_cover, 0);
+    ElevationReport e;
+    Status status = elevation_stream_report(&e, m->first, NULL);
+    if (status == STATUS_OK) status = list_sources(m);
+    if (status != STATUS_OK) return status;
+    m->options = malloc(options_size);
+    if (!m->options) return STATUS_NO_MEMORY;
+    if (!terrain_options_text(m->options, options_size, m->o)) {
+        log_error("%s: the names of the files are too long to be recorded; name their folder instead", module);
+        return STATUS_BAD_VALUE;
+    }
+    p->posting_m = e.posting_m;
+    p->geoid_m   = e.geoid_m;
+    p->options   = m->options;
+    p->crs       = "east, north, up at the origin, WGS 84";
+    snprintf(m->datum, sizeof m->datum, "%s", e.ellipsoidal ? "files above the ellipsoid" : "files above the geoid (EGM96 unless --geoid), converted at each post");
+    p->vertical_datum = m->datum;
+    snprintf(m->notes, sizeof m->notes, "%s%s",
+             m->surface ? m->terrain ? "surface model taken apart with the terrain model beside it: bare ground, roofs as blocks, crowns listed"
+                                     : "surface model taken apart by its own shape: bare ground, roofs as blocks, crowns listed"
+                        : "terrain model as it is",
+             "; where files overlap the finest wins, of equals the one given first");
+    p->provenance = m->notes;
+    return STATUS_OK;
+}
+
+/* ---- what covers the ground ------------------------------------------------------------------ */
+
+static double ground_z(void *user, double x_m, double y_m)
+{
+    return elevation_stream_around(user, x_m, y_m);
+}
+
+static GroundView view_of(const Making *m, const char *key)
+{
+    return (GroundView){&m->frame, ground_z, m->first, m->pool, key};
+}
+
+/* Rows of a grid that lie beside rows row0 .. row0 + rows - 1 of level 0: each row once. */
+static bool rows_of(CellRows *out, int *first, const StoreGrid *g, const Making *m, int row0, int rows)
+{
+    if (g->nx == 0) return false;
+    const double y_m = (m->level.j0 - 0.5) * m->level.spacing_m, s = m->level.spacing_m;
+    const bool   last = row0 + rows == m->level.ny;
+    const double from = ceil((y_m + row0 * s - g->y0_m) / g->cell_m - 1e-6);
+    const double to = last ? g->ny : ceil((y_m + (row0 + rows) * s - g->y0_m) / g->cell_m - 1e-6);
+    const int    a = (int)clamp(from, 0, g->ny), b = (int)clamp(to, 0, g->ny);
+    if (b <= a) return false;
+    *out   = (CellRows){g->nx, b - a, g->x0_m, g->y0_m + a * g->cell_m, g->cell_m};
+    *first = a;
+    return true;
+}
+
+/* The wide window of classes comes first: its codes choose the table. */
+static Status make_wide(Making *m)
+{
+    const StoreGrid *g = &m->plan.surface[1];
+    if (g->nx == 0 && m->cover.count) {
+        log_error("terrain import: --cover: %s does not reach the terrain; leave it out, or name one of the place",
+                  m->cover.raster[0].sheet[0].path);
+        return STATUS_BAD_VALUE;
+    }
+    if (g->nx == 0) return STATUS_OK;
+    const Raster    *raster = &m->cover.raster[0];
+    const CellRows   cells = {g->nx, g->ny, g->x0_m, g->y0_m, g->cell_m};
+    const GroundView view = view_of(m, "terrain import: --cover");
+    const size_t     count = (size_t)g->nx * (size_t)g->ny;
+    uint8_t         *code = calloc(count, 1);
+    long             histogram[cover_codes_most] = {0};
+    m->cover_band = raster->sheet[0].band ? 0 : raster->bands >= 8 ? 4 : 1;
+    Status status = code ? ground_rows_codes(code, &m->cover, m->cover_band, &cells, &view) : STATUS_NO_MEMORY;
+    for (size_t n = 0; status == STATUS_OK && n < count; n++) histogram[code[n]]++;
+    if (status == STATUS_OK) status = cover_table_choose(&m->table, &m->r.cover.table, m->o->cover_table, histogram);
+    long known = 0;
+    for (size_t n = 0; status == STATUS_OK && n < count; n++) {
+        code[n] = m->table.surface[code[n]];
+        known += code[n] != SURFACE_NONE;
+    }
+    if (status == STATUS_OK && known == 0) {
+        log_error("terrain import: --cover: none of the codes of %s is in the table %s; give --cover-table", raster->sheet[0].path,
+                  m->r.cover.table);
+        status = STATUS_BAD_VALUE;
+    }
+    if (status == STATUS_OK) status = store_write_surface(m->writer, 1, g->ny, code);
+    m->r.cover.posting_m = finest_m(&m->cover);
+    m->r.cover.band      = raster->sheet[0].band ? raster->sheet[0].band : m->cover_band;
+    free(code);
+    return status;
+}
+
+/* Classes of a strip: the file's; built where a building stands; grass under crowns where no file says. */
+static Status make_surface(Making *m, int row0, int rows, const SurfaceStrip *strip)
+{
+    CellRows cells;
+    int      first;
+    if (!rows_of(&cells, &first, &m->plan.surface[0], m, row0, rows)) return STATUS_OK;
+    const size_t count = (size_t)cells.nx * (size_t)cells.rows;
+    uint8_t     *code = calloc(count, 1);
+    Status       status = code ? STATUS_OK : STATUS_NO_MEMORY;
+    if (status == STATUS_OK && m->cover.count) {
+        const GroundView view = view_of(m, "terrain import: --cover");
+        status = ground_rows_codes(code, &m->cover, m->cover_band, &cells, &view);
+        for (size_t n = 0; n < count; n++) {
+            m->r.cover.unknown += code[n] && !m->table.known[code[n]];
+            code[n] = m->table.surface[code[n]];
+        }
+    }
+    for (size_t n = 0; strip && status == STATUS_OK && n < count; n++) { /* cells and posts are one to one */
+        if (strip->kind[n] == CELL_BUILDING) code[n] = SURFACE_BUILT;
+        else if (strip->kind[n] == CELL_TREE && code[n] == SURFACE_NONE) code[n] = SURFACE_GRASS;
+    }
+    long of_class[256] = {0};
+    for (size_t n = 0; status == STATUS_OK && n < count; n++) of_class[code[n]]++;
+    for (int s = 1; s < SURFACE_COUNT; s++) m->r.cover.share[s] += (double)of_class[s]; /* made shares at the end */
+    if (status == STATUS_OK) status = store_write_surface(m->writer, 0, cells.rows, code);
+    free(code);
+    return status;
+}
+
+static Status make_albedo(Making *m, int row0, int rows)
+{
+    enum { some_rows = 512 }; /* where pixels are finer than posts */
+    CellRows all;
+    int      first;
+    if (!rows_of(&all, &first, &m->plan.albedo, m, row0, rows)) return STATUS_OK;
+    const GroundView view = view_of(m, "terrain import: --photo");
+    Status status = STATUS_OK;
+    for (int j = 0; j < all.rows && status == STATUS_OK; j += some_rows) {
+        CellRows cells = all;
+        cells.rows = all.rows - j < some_rows ? all.rows - j : some_rows;
+        cells.y0_m = all.y0_m + j * all.cell_m;
+        uint8_t *rgba = calloc((size_t)cells.nx * (size_t)cells.rows, 4);
+        status = rgba ? ground_rows_colours(rgba, &m->photo, &cells, &view) : STATUS_NO_MEMORY;
+        if (status == STATUS_OK) status = store_write_albedo(m->writer, cells.rows, rgba);
+        free(rgba);
+    }
+    return status;
+}
+
+/* ---- canopy ---------------------------------------------------------------------------------- */
+
+/* Whole numbers above 80 are no metres: LANDFIRE's are tenths of them. */
+static Status look_at_canopy(Making *m)
+{
+    const RasterSet *set = &m->canopy_height;
+    enum { rows = 64 };
+    if (set->count == 0) return STATUS_OK;
+    const Raster *raster = &set->raster[0];
+    const int     band = raster->sheet[0].band ? raster->sheet[0].band : 1;
+    float        *some = malloc((size_t)raster->width * sizeof *some), most = 0;
+    Status        status = some ? STATUS_OK : STATUS_NO_MEMORY;
+    for (int r = 0; r < rows && status == STATUS_OK; r++) {
+        status = raster_read(some, raster, band, 0, (int)((int64_t)r * raster->height / rows), raster->width, 1,
+                             "terrain import: --canopy-height");
+        for (int i = 0; i < raster->width && status == STATUS_OK; i++) most = some[i] > most ? some[i] : most;
+    }
+    free(some);
+    m->r.canopy_scale_m = raster->whole && most > 80 ? 0.1 : 1;
+    return status;
+}
+
+static Status canopy_of_file(Making *m, bool height, int row0, int rows)
+{
+    const RasterSet *set = height ? &m->canopy_height : &m->canopy_cover;
+    CellRows cells;
+    int      first;
+    if (!rows_of(&cells, &first, height ? &m->plan.canopy_height : &m->plan.canopy_cover, m, row0, rows)) return STATUS_OK;
+    const GroundView view = view_of(m, height ? "terrain import: --canopy-height" : "terrain import: --canopy-cover");
+    const size_t     count = (size_t)cells.nx * (size_t)cells.rows;
+    const double     scale = height ? m->r.canopy_scale_m / store_canopy_height_m : 0.01 / store_canopy_cover;
+    float           *value = malloc(count * sizeof *value);
+    uint8_t         *octet = malloc(count);
+    Status           status = value && octet ? STATUS_OK : STATUS_NO_MEMORY;
+    for (size_t n = 0; status == STATUS_OK && n < count; n++) value[n] = NAN;
+    if (status == STATUS_OK) status = ground_rows_numbers(value, set, 0, &cells, &view);
+    for (size_t n = 0; status == STATUS_OK && n < count; n++)
+        octet[n] = (uint8_t)(value[n] > 0 ? fmin(rint((double)value[n] * scale), height ? 255 : 100) : 0);
+    if (status == STATUS_OK)
+        status = (height ? store_write_canopy_height : store_write_canopy_cover)(m->writer, cells.rows, octet);
+    free(value);
+    free(octet);
+    return status;
+}
+
+/* Of the crowns that were found: highest, and share of the posts in each cell. */
+static Status canopy_of_strip(Making *m, bool height, int row0, int rows, const SurfaceStrip *strip)
+{
+    CellRows cells;
+    int      first;
+    const StoreGrid *g = height ? &m->plan.canopy_height : &m->plan.canopy_cover;
+    if (!rows_of(&cells, &first, g, m, row0, rows)) return STATUS_OK;
+    const int nx = m->level.nx, side = (int)lrint(g->cell_m / m->level.spacing_m);
+    uint8_t  *octet = calloc((size_t)cells.nx * (size_t)cells.rows, 1);
+    if (!octet) return STATUS_NO_MEMORY;
+    for (int j = 0; j < cells.rows; j++)
+        for (int i = 0; i < cells.nx; i++) {
+            double most_m = 0;
+            int    trees = 0, posts = 0;
+            for (int b = j * side; b < (j + 1) * side && b < rows; b++)
+                for (int a = i * side; a < (i + 1) * side && a < nx; a++) {
+                    const size_t at = (size_t)b * (size_t)nx + (size_t)a;
+                    posts++;
+                    trees += strip->kind[at] == CELL_TREE;
+                    most_m = fmax(most_m, (double)strip->canopy_m[at]);
+                }
+            octet[(size_t)j * (size_t)cells.nx + (size_t)i] =
+                (uint8_t)(height ? fmin(rint(most_m / store_canopy_height_m), 255) : rint(100.0 * trees / (posts + !posts)));
+        }
+    const Status status = (height ? store_write_canopy_height : store_write_canopy_cover)(m->writer, cells.rows, octet);
+    free(octet);
+    return status;
+}
+
+static Status make_canopy(Making *m, int row0, int rows, const SurfaceStrip *strip)
+{
+    Status status = STATUS_OK;
+    for (int height = 0; height < 2 && status == STATUS_OK; height++) {
+        if ((height ? &m->canopy_height : &m->canopy_cover)->count) status = canopy_of_file(m, height, row0, rows);
+        else if (strip) status = canopy_of_strip(m, height, row0, rows, strip);
+    }
+    return status;
+}
+
+/* ---- strips ---------------------------------------------------------------------------------- */
+
+/* Buildings less courtyards: the Euler number of their cells, four-connected, from the 2 x 2 squares of the picture with a
+ * rim of nothing (Gray 1971): once for every pair of neighbouring rows. */
+static void count_quads(Making *m, const uint8_t *south, const uint8_t *north)
+{
+    const int nx = m->level.nx;
+    for (int i = 0; i <= nx; i++) {
+        const int a = south && i > 0 && south[i - 1] == CELL_BUILDING, b = south && i < nx && south[i] == CELL_BUILDING;
+        const int c = north && i > 0 && north[i - 1] == CELL_BUILDING, d = north && i < nx && north[i] == CELL_BUILDING;
+        const int sum = a + b + c + d;
+        m->quads += sum == 1 ? 1 : sum == 3 ? -1 : sum == 2 && a == d ? 2 : 0;
+    }
+}
+
+static Status count_kinds(Making *m, int row0, int rows, const SurfaceStrip *strip)
+{
+    const size_t nx = (size_t)m->level.nx;
+    if (!m->last_kind) m->last_kind = calloc(nx, 1);
+    if (!m->last_kind) return STATUS_NO_MEMORY;
+    for (int r = 0; r < rows; r++) {
+        const uint8_t *row = strip->kind + (size_t)r * nx;
+        for (size_t i = 0; i < nx; i++) m->kinds[row[i] <= CELL_TREE ? row[i] : 0]++;
+        count_quads(m, r ? row - nx : m->last_kind, row);
+    }
+    memcpy(m->last_kind, strip->kind + (size_t)(rows - 1) * nx, nx);
+    if (row0 + rows == m->level.ny) count_quads(m, m->last_kind, NULL);
+    m->voids += strip->voids;
+    return STATUS_OK;
+}
+
+static Status make_strip(Making *m, int row0, int rows)
+{
+    const SurfaceSources from = {m->surface, m->terrain, m->photo.count ? &m->photo : NULL, &m->frame, m->pool};
+    SurfaceStrip strip = {0};
+    const double begun_s = wall_clock_s();
+    Status       status = STATUS_OK;
+    if (m->surface) {
+        status = surface_strip_make(&strip, &from, row0, rows);
+        if (status == STATUS_OK) status = count_kinds(m, row0, rows, &strip);
+    } else {
+        strip.h_m = malloc((size_t)rows * (size_t)m->level.nx * sizeof *strip.h_m);
+        status    = strip.h_m ? elevation_stream_heights(m->terrain, row0, rows, strip.h_m, NULL, true) : STATUS_NO_MEMORY;
+    }
+    if (status == STATUS_OK) status = elevation_stream_bend(m->first, row0, rows, strip.h_m);
+    const double posts_s = wall_clock_s();
+    if (status == STATUS_OK) status = store_write_posts(m->writer, 0, rows, strip.h_m);
+    free(strip.h_m);
+    strip.h_m = NULL;
+    const double written_s = wall_clock_s();
+    if (status == STATUS_OK) status = make_surface(m, row0, rows, m->surface ? &strip : NULL);
+    if (status == STATUS_OK) status = make_albedo(m, row0, rows);
+    if (status == STATUS_OK) status = make_canopy(m, row0, rows, m->surface ? &strip : NULL);
+    if (status == STATUS_OK && strip.crowns > 0) status = store_write_crowns(m->writer, strip.crowns, strip.crown);
+    m->r.seconds[1] += posts_s - begun_s;
+    m->r.seconds[3] += written_s - posts_s;
+    m->r.seconds[2] += wall_clock_s() - written_s;
+    surface_strip_free(&strip);
+    return status;
+}
+
+static Status make_levels(Making *m)
+{
+    Status status = STATUS_OK;
+    for (int k = m->plan.level_count - 1; k >= 1 && status == STATUS_OK; k--) {
+        StreamLevel l;
+        elevation_stream_level(&l, m->first, k);
+        status = store_write_posts(m->writer, k, l.ny, l.z_m);
+    }
+    if (status == STATUS_OK) status = look_at_canopy(m);
+    if (status == STATUS_OK) status = make_wide(m);
+    for (int row0 = 0; row0 < m->level.ny && status == STATUS_OK; row0 += m->strip_rows) {
+        if (!go_on(m, m->surface ? "taking apart" : "posts", (double)row0 / m->level.ny, false)) return STATUS_IO;
+        status = make_strip(m, row0, m->level.ny - row0 < m->strip_rows ? m->level.ny - row0 : m->strip_rows);
+    }
+    return status;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+static Status finish(Making *m, const char *path)
+{
+    StoreWriter *writer = m->writer;
+    TerrainStore store = {0};
+    const double begun_s = wall_clock_s();
+    m->writer = NULL;
+    if (!go_on(m, "finishing", 1, true)) {
+        store_writer_abandon(writer);
+        return STATUS_IO;
+    }
+    Status status = store_writer_finish(writer, (uint64_t)(m->quads > 0 ? m->quads / 4 : 0), &m->r.store);
+    m->r.seconds[3] += wall_clock_s() - begun_s;
+    if (status == STATUS_OK) status = store_open(&store, path);
+    if (status == STATUS_OK) status = elevation_stream_report(&m->r.elevation, m->first, m->surface ? NULL : &store.elevation);
+    if (m->surface) m->r.elevation.voids = m->voids;
+    store_close(&store);
+    double cells = 0, posts = 0;
+    for (int s = 1; s < SURFACE_COUNT; s++) cells += m->r.cover.share[s];
+    for (int s = 1; s < SURFACE_COUNT; s++) m->r.cover.share[s] /= cells > 0 ? cells : 1;
+    for (int k = 0; k < 3; k++) posts += (double)m->kinds[k];
+    for (int k = 0; k < 3; k++) m->r.kind_share[k] = (double)m->kinds[k] / (posts > 0 ? posts : 1);
+    m->r.apart  = m->surface != NULL;
+    m->r.beside = m->surface && m->terrain;
+    m->r.nx     = m->level.nx;
+    m->r.ny     = m->level.ny;
+    m->r.photo_posting_m = finest_m(&m->photo);
+    return status;
+}
+
+Status terrain_import(TerrainReport *out, const TerrainOptions *options, const char *path, Pool *pool,
+                      TerrainProgress *progress, void *user)
+{
+    Making *m = calloc(1, sizeof *m);
+    if (!m) return STATUS_NO_MEMORY;
+    m->o        = options;
+    m->pool     = pool;
+    m->progress = progress;
+    m->user     = user;
+    const char *slash = strrchr(path, '/');
+    snprintf(m->folder, sizeof m->folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
+    const double begun_s = wall_clock_s();
+    const char  *fault = terrain_options_fault(options);
+    Status       status = fault ? STATUS_BAD_VALUE : STATUS_OK;
+    if (fault) log_error("%s: %s", module, fault);
+    if (status == STATUS_OK && !go_on(m, "levels around", 0, true)) status = STATUS_IO;
+    if (status == STATUS_OK) status = open_sources(m);
+    if (status == STATUS_OK) status = plan(m);
+    if (status == STATUS_OK) status = store_writer_create(&m->writer, path, &m->plan, pool);
+    m->r.seconds[0] = wall_clock_s() - begun_s;
+    if (status == STATUS_OK) status = make_levels(m);
+    if (status == STATUS_OK) status = finish(m, path);
+    store_writer_abandon(m->writer);
+    *out = m->r;
+    elevation_stream_close(m->terrain);
+    elevation_stream_close(m->surface);
+    raster_set_close(&m->cover);
+    raster_set_close(&m->photo);
+    raster_set_close(&m->canopy_height);
+    raster_set_close(&m->canopy_cover);
+    free(m->source);
+    free(m->options);
+    free(m->last_kind);
+    free(m);
+    return status;
+}
+
+static bool tell(void *user, const char *stage, double share)
+{
+    char text[160];
+    if (wall_clock_s() - *(double *)user < 1) return true;
+    snprintf(text, sizeof text, "terrain: the store is made again: %s, %.0f %%", stage, 100 * share);
+    log_status(text);
+    return true;
+}
+
+Status terrain_store_rebuild(const char *path, const TerrainStore *old)
+{
+    TerrainOptions *o = malloc(sizeof *o);
+    TerrainReport   r;
+    Pool           *pool = NULL;
+    const char     *why = "its header cannot be read";
+    int             line = 0;
+    double          begun_s = wall_clock_s();
+    if (!o) return STATUS_NO_MEMORY;
+    Status status = old && old->options && terrain_options_parse(o, &why, &line, old->options) ? STATUS_OK : STATUS_BAD_VALUE;
+    if (status != STATUS_OK)
+        log_error("terrain.store: %s cannot be made again: line %d of its options: %s; run `pitviper terrain import` again",
+                  path, line, why);
+    if (status == STATUS_OK) status = pool_create(&pool, thread_processors());
+    if (status == STATUS_OK) status = terrain_import(&r, o, path, pool, tell, &begun_s);
+    log_status(NULL);
+    pool_destroy(pool);
+    free(o);
+    return status;
+}

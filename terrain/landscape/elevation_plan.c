@@ -1,0 +1,143 @@
+/* terrain/landscape/elevation_plan.c: which files there are, and the levels that show them. */
+#include "terrain/landscape/elevation_import_private.h"
+
+static const char key[] = "terrain.elevation";
+enum { outer_half_posts = 1024, last_half_posts = 2048 };
+
+Status elevation_import_open(Import *m)
+{
+    Status status = raster_set_open(&m->set, m->files->paths, key);
+    if (status != STATUS_OK) return status;
+    if (m->set.count > import_most_grids) {
+        log_error("%s: the files lie on %d different grids, more than %d; gdalbuildvrt joins them", key, m->set.count,
+                  (int)import_most_grids);
+        return STATUS_BAD_VALUE;
+    }
+    bool wants_geoid = false;
+    m->grids = m->set.count;
+    for (int k = 0; k < m->grids; k++) {
+        const Raster *raster = &m->set.raster[k];
+        Grid         *g = &m->grid[k];
+        g->raster      = raster;
+        g->units[0]    = raster->posting_m[0];
+        g->units[1]    = raster->posting_m[1];
+        g->ellipsoidal = raster->vertical != RASTER_VERTICAL_BY_CRS ? raster->vertical == RASTER_VERTICAL_ELLIPSOID
+                         : m->files->vertical == ELEVATION_BY_FILE  ? raster->ellipsoidal
+                                                                    : m->files->vertical == ELEVATION_ELLIPSOID;
+        wants_geoid |= !g->ellipsoidal;
+        /* into the coarser grid around: some of its posts */
+        g->short_m =
+            k + 1 < m->grids ? 8 * fmax(m->set.raster[k + 1].posting_m[0], m->set.raster[k + 1].posting_m[1]) : 0;
+        g->long_m  = 30000; /* until its edge has been seen */
+    }
+    return wants_geoid ? geoid_open(&m->geoid, m->files->geoid_path) : STATUS_OK;
+}
+
+static int round_out(double posts)
+{
+    return (int)(posts < 0 ? floor(posts / level_ratio) : ceil(posts / level_ratio)) * level_ratio;
+}
+
+/* How far a grid's nearest edge is from the origin: positive inside, negative outside; and the farthest. */
+static void grid_reach(double reach_m[2], const Raster *raster, const LocalFrame *frame)
+{
+    double x = frame->origin.lon_rad, y = frame->origin.lat_rad;
+    raster_px_from_earth(raster, 1, &x, &y);
+    const double west = (x - 0.5) * raster->posting_m[0], east = (raster->width - 0.5 - x) * raster->posting_m[0];
+    const double north = (y - 0.5) * raster->posting_m[1], south = (raster->height - 0.5 - y) * raster->posting_m[1];
+    const double nearest = fmin(fmin(west, east), fmin(north, south));
+    const double out_x = fmax(fmax(-west, -east), 0), out_y = fmax(fmax(-north, -south), 0);
+    reach_m[0] = out_x > 0 || out_y > 0 || !isfinite(nearest) ? -hypot(out_x, out_y) : nearest;
+    reach_m[1] = fmax(fmax(west, east), fmax(north, south));
+    if (!isfinite(x) || !isfinite(y)) reach_m[0] = -INFINITY;
+}
+
+Status elevation_import_choose(Import *m, ElevationReport *report)
+{
+    static const double nearest_m = 20000;
+    double best_m = -INFINITY;
+    m->main = -1;
+    report->reach_m[0] = -INFINITY;
+    report->reach_m[1] = 0;
+    for (int k = 0; k < m->grids; k++) {
+        double reach_m[2];
+        grid_reach(reach_m, m->grid[k].raster, m->frame);
+        if (m->main < 0 && reach_m[0] > 0) m->main = k;
+        best_m = fmax(best_m, reach_m[0]);
+        report->reach_m[0] = fmax(report->reach_m[0], reach_m[0]);
+        report->reach_m[1] = fmax(report->reach_m[1], reach_m[1]);
+    }
+    if (m->main >= 0) return STATUS_OK;
+    if (!(best_m > -nearest_m)) {
+        log_error("%s: the action is at %.4f, %.4f degrees, %.0f km from the nearest data; name sheets that hold it",
+                  key, m->frame->origin.lat_rad / rad_per_deg, m->frame->origin.lon_rad / rad_per_deg, -best_m * 1e-3);
+        return STATUS_BAD_VALUE;
+    }
+    for (int k = 0; k < m->grids; k++) {
+        double reach_m[2];
+        grid_reach(reach_m, m->grid[k].raster, m->frame);
+        if (reach_m[0] == best_m) m->main = k;
+    }
+    return STATUS_OK;
+}
+
+static void set_window(WorkLevel *level, double spacing_m, int i0, int i1, int j0, int j1)
+{
+    *level = (WorkLevel){.z = {spacing_m, i0, j0, i1 - i0 + 1, j1 - j0 + 1, NULL}, .hole_i1 = -1};
+}
+
+void elevation_import_plan(Import *m, int most_side)
+{
+    enum { least_ring = 2 * level_ratio, margin = 32 };
+    const Raster *raster = m->grid[m->main].raster;
+    double        s = m->files->spacing_m > 0 ? m->files->spacing_m : fmin(raster->posting_m[0], raster->posting_m[1]);
+    s = fmax(rint(s * 64) / 64, 0x1p-6); /* dyadic, so that every post's place is exact */
+
+    double low[2], high[2];
+    int    first[2], last[2];
+    raster_enu_box(low, high, raster, m->frame, 0.5);
+    for (int k = 0; k < m->grids; k++) { /* neighbours of about the same posting belong to it */
+        double other_low[2], other_high[2];
+        if (fmin(m->grid[k].units[0], m->grid[k].units[1]) > 2 * s || k == m->main) continue;
+        raster_enu_box(other_low, other_high, m->grid[k].raster, m->frame, 0.5);
+        for (int c = 0; c < 2; c++) {
+            low[c]  = fmin(low[c], other_low[c]);
+            high[c] = fmax(high[c], other_high[c]);
+        }
+    }
+    const int half = most_side / 2 / level_ratio * level_ratio - level_ratio;
+    for (int c = 0; c < 2; c++) {
+        if (m->files->size_m[c] > 0) { /* about the origin, whether there are data or not */
+            low[c]  = -0.5 * m->files->size_m[c] + margin * s;
+            high[c] = 0.5 * m->files->size_m[c] - margin * s;
+        }
+        const double a = fmin(low[c] / s, 0) - margin, b = fmax(high[c] / s, 0) + margin;
+        first[c] = round_out(fmax(a, -half));
+        last[c]  = round_out(fmin(b, half));
+    }
+    set_window(&m->level[0], s, first[0], last[0], first[1], last[1]);
+    m->level_count = 1;
+    while (m->level_count < elevation_max_levels) {
+        const WorkLevel *in = &m->level[m->level_count - 1];
+        const int i1 = in->z.i0 + in->z.nx - 1, j1 = in->z.j0 + in->z.ny - 1;
+        const double narrowest = fmin(fmin(-in->z.i0, i1), fmin(-in->z.j0, j1)) * s; /* data may be one long strip */
+        if (narrowest >= m->files->horizon_m && !(m->streamed && m->level_count == 1)) break;
+        s *= level_ratio;
+        const bool ends = m->level_count == elevation_max_levels - 1 || outer_half_posts * s >= m->files->horizon_m;
+        const int  wide = round_out(fmin(ends ? last_half_posts : outer_half_posts, m->files->horizon_m / s));
+        WorkLevel *level = &m->level[m->level_count++];
+        int w[4] = {-wide, wide, -wide, wide};
+        const int need[4] = {round_out(in->z.i0 / level_ratio - least_ring), round_out(i1 / level_ratio + least_ring),
+                             round_out(in->z.j0 / level_ratio - least_ring), round_out(j1 / level_ratio + least_ring)};
+        for (int e = 0; e < 4; e++)
+            if (e & 1 ? need[e] > w[e] : need[e] < w[e]) w[e] = need[e];
+        set_window(level, s, w[0], w[1], w[2], w[3]);
+        level->hole_i0 = in->z.i0 / level_ratio;
+        level->hole_i1 = i1 / level_ratio;
+        level->hole_j0 = in->z.j0 / level_ratio;
+        level->hole_j1 = j1 / level_ratio;
+        if (ends) break;
+    }
+    m->level[m->level_count - 1].outermost = true;
+    for (int k = 0; k < m->level_count; k++) m->spacing_m[k] = m->level[k].z.spacing_m;
+}

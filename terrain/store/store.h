@@ -1,0 +1,133 @@
+/* terrain/store/store.h: the terrain store: a disposable, versioned cache of terrain in one file, which is mapped
+ * read-only. The file's layout: terrain/store/store_format.h.
+ *
+ * Writer. Levels coarse before fine, the rows of everything from south to north. The whole file is reserved at the
+ * start, written under PATH.tmp, and renamed when it is complete: a full disk is an error before any work, and no half
+ * file is ever taken for whole. */
+#ifndef TERRAIN_STORE_STORE_H
+#define TERRAIN_STORE_STORE_H
+
+#include "terrain/landscape/ground_image.h"
+#include "terrain/landscape/landscape.h"
+#include "terrain/landscape/take_apart.h"
+
+/* ---- writer --------------------------------------------------------------------------------- */
+
+/* A raster in ENU, row 0 southernmost; nx 0: none. */
+typedef struct StoreGrid {
+    int    nx, ny;
+    double x0_m, y0_m, cell_m;    /* south-west corner of the first cell */
+} StoreGrid;
+
+typedef struct StoreLevel {
+    int    nx, ny;                /* posts; post (i, j) at (x0 + i spacing, y0 + j spacing) */
+    double x0_m, y0_m, spacing_m; /* spacings in the ratio of a power of two; the outline on cells of the next level */
+    double z0_m, step_m;          /* step: a power of two; z0: a multiple of 64, or one for all. step 0: chosen */
+    int    seam_shift;            /* edge posts are multiples of step << seam_shift; -1: chosen by the spacing */
+} StoreLevel;
+
+/* A file that the store was made from. */
+typedef struct StoreSource {
+    const char *path;
+    int64_t     octets, mtime_ns; /* as of when it was read; store_source_look fills them in */
+} StoreSource;
+
+typedef struct StorePlan {
+    Geodetic           origin;    /* of the local frame */
+    int                level_count; /* level 0 finest */
+    StoreLevel         level[elevation_max_levels];
+    StoreGrid          surface[cover_windows]; /* classes, as CoverGrid: 0 fine, 1 coarse and wide */
+    StoreGrid          albedo;    /* a photograph, linear light encoded as sRGB */
+    StoreGrid          canopy_height, canopy_cover;
+    double             posting_m; /* of the finest source, for reports */
+    double             geoid_m;   /* at the origin; 0 where heights were above the ellipsoid */
+    uint64_t           seed;      /* of surfaces where no file says: for the photograph's means */
+    int                source_count;
+    const StoreSource *source;    /* [source_count] */
+    const char        *options;   /* arguments of the import, a line each: what rebuilds the store */
+    const char        *crs, *vertical_datum, *provenance; /* notes, free text */
+} StorePlan;
+
+static const double store_canopy_height_m = 0.5; /* a canopy height's octet counts these */
+static const double store_canopy_cover = 0.01;   /* a canopy cover's octet, 0 .. 100, these */
+
+typedef struct StoreWriter StoreWriter;
+
+/* Creates PATH.tmp at its full size. The plan and its texts are copied; pool (NULL: one thread) is used by every call.
+ * Failures are logged; on failure *out is NULL. */
+Status store_writer_create(StoreWriter **out, const char *path, const StorePlan *plan, Pool *pool);
+/* The next `rows` rows of posts of a level, from the south: ENU z, [rows][nx], finite. Any number of rows at a time
+ * (whole rows of tiles, 64, are best). Level n + 1 must be complete. The outline of the level is replaced by the
+ * surface of the next one; the caller blends the posts near it (levels_join). */
+Status store_write_posts(StoreWriter *writer, int level, int rows, const float *z_m);
+/* The next rows of a window of classes: SurfaceClass, SURFACE_NONE where no file says. */
+Status store_write_surface(StoreWriter *writer, int window, int rows, const uint8_t *surface);
+/* The next rows of the photograph: [rows][nx][4], sRGB and coverage, 0 or 255. */
+Status store_write_albedo(StoreWriter *writer, int rows, const uint8_t *rgba);
+Status store_write_canopy_height(StoreWriter *writer, int rows, const uint8_t *height);
+Status store_write_canopy_cover(StoreWriter *writer, int rows, const uint8_t *cover);
+/* Appends crowns; x_m, y_m are ENU here. */
+Status store_write_crowns(StoreWriter *writer, int count, const Crown *crown);
+
+/* What the quantisation cost. */
+typedef struct StoreReport {
+    double   step_m[elevation_max_levels], worst_m[elevation_max_levels]; /* |stored - given|, the outlines left out */
+    uint64_t octets;
+    uint64_t crowns, buildings;
+} StoreReport;
+
+/* Everything must have been written. Measures the photograph's means, writes header and checksum, syncs and renames.
+ * The writer is freed in any case; on failure PATH.tmp is removed and PATH untouched. report may be NULL. */
+Status store_writer_finish(StoreWriter *writer, uint64_t buildings, StoreReport *report);
+/* Frees the writer and removes PATH.tmp; accepts NULL. */
+void   store_writer_abandon(StoreWriter *writer);
+
+/* Size and time of modification of source->path. False: it cannot be looked at. */
+bool store_source_look(StoreSource *source);
+
+/* ---- reader --------------------------------------------------------------------------------- */
+
+/* A mapped store; what it points to is valid until it is closed. */
+typedef struct TerrainStore {
+    const uint8_t *map;
+    size_t         octets;
+    void          *header;        /* a copy: its texts */
+    LocalFrame     frame;
+    uint64_t       content;       /* hash of everything in it but where its sources lay */
+    char           made[32];      /* UTC */
+    double         posting_m, geoid_m;
+    Elevation      elevation;     /* borrowed */
+    CoverGrid      surface[cover_windows];
+    Photo          photo;
+    StoreGrid      canopy_height_grid, canopy_cover_grid;
+    const uint8_t *canopy_height, *canopy_cover; /* NULL: none */
+    double         worst_m[elevation_max_levels]; /* largest error of a post's quantisation */
+    uint64_t       crown_count, building_count;
+    const Crown   *crown;
+    const char    *sources, *options, *crs, *vertical_datum, *provenance; /* sources: `octets mtime_ns path` a line */
+} TerrainStore;
+
+/* Opens, maps and checks the header: no page of data is touched. Failures are logged with the next step. A file cut
+ * while it is mapped ends the process (SIGBUS): replace a store by renaming, as the writer does. */
+Status store_open(TerrainStore *out, const char *path);
+void   store_close(TerrainStore *store);
+
+typedef enum StoreSources { STORE_FRESH, STORE_CHANGED, STORE_SOURCES_MISSING } StoreSources;
+/* Looks at the sources; CHANGED before MISSING. which: the first one that differs; "" for FRESH. */
+StoreSources store_sources(const TerrainStore *store, char *which, size_t which_size);
+
+/* The landscape of a store, which it keeps mapped until landscape_destroy. seed: of texture, and of surfaces that the
+ * store does not have. */
+Status landscape_open_store(Landscape *out, const char *path, uint64_t seed);
+
+enum { store_sections_most = 24 };
+typedef struct StorePart {
+    const char *name;
+    uint64_t    octets;
+} StorePart;
+/* Sections that are not empty, the header first; returns their count. */
+int    store_parts(StorePart out[store_sections_most], const TerrainStore *store);
+/* Whether the data still have the hash they were written with: reads all of it. */
+bool   store_verify(const TerrainStore *store, Pool *pool);
+
+#endif

@@ -1,0 +1,378 @@
+/* terrain/store/store_write.c: a terrain store written: the file at its full size, its rasters, and its end. */
+#include "terrain/store/store_write_private.h"
+
+#include "terrain/landscape/landscape_parts.h"
+#include "terrain/store/store_landscape_private.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+void store_run(Pool *pool, int count, PoolTask *task, void *user)
+{
+    if (pool && count > 1) pool_run(pool, count, task, user);
+    else
+        for (int k = 0; k < count; k++) task(user, 0, k);
+}
+
+bool store_source_look(StoreSource *source)
+{
+    struct stat about;
+    if (stat(source->path, &about) != 0) return false;
+    source->octets   = about.st_size;
+    source->mtime_ns = (int64_t)about.st_mtim.tv_sec * 1000000000 + about.st_mtim.tv_nsec;
+    return true;
+}
+
+/* A tile's shift takes what its relief needs: a finer step costs nothing. */
+static const double store_step_m = 0x1p-11;
+
+/* ---- the plan ------------------------------------------------------------------------------------ */
+
+/* Relief over one tile that the default of seam_shift holds: a mean slope of 56 degrees. */
+static int default_seam_shift(const StoreLevel *level)
+{
+    const double relief_m = 1.5 * elevation_tile_cells * level->spacing_m;
+    int          shift = 0;
+    while (shift < elevation_most_shift && ldexp(level->step_m, shift) * (65535 - 2 * elevation_base_unit) < relief_m)
+        shift++;
+    return shift;
+}
+
+static bool is_power_of_two(double x)
+{
+    int exponent;
+    return x > 0 && isfinite(x) && frexp(x, &exponent) == 0.5;
+}
+
+static const char *plan_fault(const StorePlan *plan, const StoreHeader *h)
+{
+    for (int n = 0; n < plan->level_count; n++) {
+        const double z0 = h->level[n].z0_m;
+        const bool   even = z0 == h->level[0].z0_m || z0 == 64 * rint(z0 / 64);
+        if (!is_power_of_two(h->level[n].step_m) || !even) return "steps or origins are not dyadic";
+        if (n > 0 && !is_power_of_two(rint(h->level[n].spacing_m / h->level[n - 1].spacing_m)))
+            return "the spacings of two levels are not in the ratio of a power of two";
+    }
+    return NULL;
+}
+
+/* A text of the header with its 0. */
+static void put_text(FILE *to, StoreHeader *h, StoreText text, const char *value)
+{
+    const char *it = value ? value : "";
+    fwrite(it, 1, strlen(it) + 1, to);
+    h->text[text] = (uint32_t)strlen(it) + 1;
+}
+
+static void put_sources(FILE *to, StoreHeader *h, const StorePlan *plan)
+{
+    const long from = ftell(to);
+    for (int k = 0; k < plan->source_count; k++)
+        fprintf(to, "%lld %lld %s\n", (long long)plan->source[k].octets, (long long)plan->source[k].mtime_ns,
+                plan->source[k].path);
+    fputc(0, to);
+    h->text[STORE_SOURCES] = (uint32_t)(ftell(to) - from);
+}
+
+/* The header as far as it is known, with its texts. */
+static Status make_header(StoreHeader **out, const StorePlan *plan)
+{
+    char  *octets = NULL;
+    size_t count = 0;
+    FILE  *to = open_memstream(&octets, &count);
+    if (!to) return STATUS_NO_MEMORY;
+    StoreHeader h = {.version = store_version, .classes = SURFACE_COUNT, .lat_rad = plan->origin.lat_rad,
+                     .lon_rad = plan->origin.lon_rad, .h_m = plan->origin.h_m, .posting_m = plan->posting_m,
+                     .geoid_m = plan->geoid_m, .level_count = plan->level_count, .albedo = plan->albedo,
+                     .canopy_height = plan->canopy_height, .canopy_cover = plan->canopy_cover};
+    memcpy(h.magic, store_magic, sizeof h.magic);
+    memcpy(h.surface, plan->surface, sizeof h.surface);
+    for (int n = 0; n < plan->level_count && n < elevation_max_levels; n++) {
+        const StoreLevel *l = &plan->level[n];
+        h.level[n] = (StoreHeaderLevel){.nx = l->nx, .ny = l->ny, .x0_m = l->x0_m, .y0_m = l->y0_m,
+                                        .spacing_m = l->spacing_m, .z0_m = l->z0_m,
+                                        .step_m = l->step_m > 0 ? l->step_m : store_step_m};
+    }
+    fwrite(&h, sizeof h, 1, to);
+    put_sources(to, &h, plan);
+    put_text(to, &h, STORE_OPTIONS, plan->options);
+    put_text(to, &h, STORE_CRS, plan->crs);
+    put_text(to, &h, STORE_DATUM, plan->vertical_datum);
+    put_text(to, &h, STORE_PROVENANCE, plan->provenance);
+    const long end = ftell(to), padded = (end + store_page - 1) / store_page * store_page;
+    for (long n = end; n < padded; n++) fputc(0, to);
+    h.header_octets = (uint64_t)padded;
+    const bool whole = !ferror(to);
+    if (fclose(to) != 0 || !whole) {
+        free(octets);
+        return STATUS_NO_MEMORY;
+    }
+    memcpy(octets, &h, sizeof h);
+    *out = (StoreHeader *)(void *)octets;
+    return STATUS_OK;
+}
+
+/* ---- the file ------------------------------------------------------------------------------------ */
+
+static Status io_fault(const StoreWriter *w, const char *what)
+{
+    log_error("store: cannot %s %s: %s%s", what, w->part, strerror(errno),
+              errno == ENOSPC ? "; free some space, or name a file on another disk" : "");
+    return STATUS_IO;
+}
+
+/* Locked while it is written: of two writers of one store the second stops. */
+static Status open_part(StoreWriter *w)
+{
+    w->file = open(w->part, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (w->file < 0) return io_fault(w, "create");
+    struct stat opened, there;
+    if (flock(w->file, LOCK_EX | LOCK_NB) != 0 || fstat(w->file, &opened) != 0 || stat(w->part, &there) != 0 ||
+        opened.st_ino != there.st_ino) {
+        log_error("store: %s is being written by another process; wait until it is done", w->path);
+        close(w->file);
+        w->file = -1;
+        return STATUS_IO;
+    }
+    const uint64_t octets = w->header->file_octets;
+    if (ftruncate(w->file, 0) != 0) return io_fault(w, "write");
+    const int full = posix_fallocate(w->file, 0, (off_t)octets); /* a full disk is found here, not by SIGBUS */
+    if (full != 0) {
+        errno = full;
+        return io_fault(w, "reserve the space of");
+    }
+    void *map = mmap(NULL, octets, PROT_READ | PROT_WRITE, MAP_SHARED, w->file, 0);
+    if (map == MAP_FAILED) return io_fault(w, "map");
+    w->map        = map;
+    w->map_octets = w->end = octets;
+    return STATUS_OK;
+}
+
+/* Where everything will be: the levels and the photograph in the map. */
+static Status begin(StoreWriter *w, const StorePlan *plan)
+{
+    TerrainStore at;
+    store_attach(&at, w->header, w->map);
+    w->elevation = at.elevation;
+    w->photo     = at.photo;
+    Status status = STATUS_OK;
+    for (int n = 0; n < w->elevation.level_count && status == STATUS_OK; n++) {
+        StoreLevel level = plan->level[n];
+        level.step_m = w->header->level[n].step_m;
+        status = store_posts_begin(w, n, level.seam_shift >= 0 ? level.seam_shift : default_seam_shift(&level));
+    }
+    return status == STATUS_OK ? store_albedo_begin(w) : status;
+}
+
+Status store_writer_create(StoreWriter **out, const char *path, const StorePlan *plan, Pool *pool)
+{
+    *out = NULL;
+    StoreWriter *w = calloc(1, sizeof *w);
+    const char  *why = NULL;
+    if (!w) return STATUS_NO_MEMORY;
+    w->file = -1;
+    w->pool = pool;
+    w->seed = plan->seed;
+    const bool named = asprintf(&w->part, "%s.tmp", path) > 0 && (w->path = strdup(path)) != NULL;
+    Status     status = named ? make_header(&w->header, plan) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) {
+        why = plan_fault(plan, w->header);
+        if (!why && !store_layout(w->header)) why = "its sizes are out of range";
+        w->header->checksum = store_checksum(w->header);
+        if (!why) store_header_check(&why, w->header, (size_t)w->header->header_octets, w->header->file_octets);
+        status = why ? STATUS_BAD_VALUE : STATUS_OK;
+        if (why) log_error("store: %s cannot be written: %s", path, why);
+    }
+    if (status == STATUS_OK) status = open_part(w);
+    if (status == STATUS_OK) status = begin(w, plan);
+    if (status == STATUS_OK) *out = w;
+    else store_writer_abandon(w);
+    return status;
+}
+
+static void free_writer(StoreWriter *w)
+{
+    store_posts_end(w);
+    store_albedo_end(w);
+    if (w->map) munmap(w->map, w->map_octets);
+    if (w->file >= 0) close(w->file);
+    free(w->header);
+    free(w->part);
+    free(w->path);
+    free(w);
+}
+
+void store_writer_abandon(StoreWriter *w)
+{
+    if (!w) return;
+    if (w->file >= 0) unlink(w->part);
+    free_writer(w);
+}
+
+/* ---- rasters ---------------------------------------------------------------------------------------- */
+
+/* The next rows of a raster of octets, none above `most`. */
+static Status write_rows(StoreWriter *w, const StoreGrid *grid, int section, int *done, int rows, const uint8_t *value,
+                         int most, const char *what)
+{
+    const size_t count = (size_t)(rows > 0 ? rows : 0) * (size_t)grid->nx;
+    unsigned     bad = 0;
+    if (rows < 0 || rows > grid->ny - *done) {
+        log_error("store: %s: too many rows of the %s", w->path, what);
+        return STATUS_BAD_VALUE;
+    }
+    for (size_t n = 0; n < count; n++) bad |= value[n] > most;
+    if (bad) {
+        log_error("store: %s: a value of the %s is above %d", w->path, what, most);
+        return STATUS_BAD_VALUE;
+    }
+    memcpy(w->map + w->header->section[section].offset + (size_t)*done * (size_t)grid->nx, value, count);
+    *done += rows;
+    return STATUS_OK;
+}
+
+Status store_write_surface(StoreWriter *w, int window, int rows, const uint8_t *surface)
+{
+    if (window < 0 || window >= cover_windows) return STATUS_BAD_VALUE;
+    return write_rows(w, &w->header->surface[window], STORE_SURFACE + window, &w->surface_rows[window], rows, surface,
+                      SURFACE_COUNT - 1, "classes");
+}
+
+Status store_write_canopy_height(StoreWriter *w, int rows, const uint8_t *height)
+{
+    return write_rows(w, &w->header->canopy_height, STORE_CANOPY_HEIGHT, &w->canopy_height_rows, rows, height, 255,
+                      "canopy height");
+}
+
+Status store_write_canopy_cover(StoreWriter *w, int rows, const uint8_t *cover)
+{
+    return write_rows(w, &w->header->canopy_cover, STORE_CANOPY_COVER, &w->canopy_cover_rows, rows, cover, 100,
+                      "canopy cover");
+}
+
+Status store_write_crowns(StoreWriter *w, int count, const Crown *crown)
+{
+    const uint8_t *at = (const uint8_t *)crown;
+    size_t         left = (size_t)(count > 0 ? count : 0) * sizeof *crown;
+    w->crowns += (uint64_t)(count > 0 ? count : 0);
+    while (left > 0) {
+        const ssize_t put = pwrite(w->file, at, left, (off_t)w->end);
+        if (put < 0 && errno == EINTR) continue;
+        if (put <= 0) return io_fault(w, "write");
+        at += put;
+        left -= (size_t)put;
+        w->end += (uint64_t)put;
+    }
+    return STATUS_OK;
+}
+
+/* ---- the end ---------------------------------------------------------------------------------------- */
+
+static const char *missing(const StoreWriter *w)
+{
+    const StoreHeader *h = w->header;
+    for (int n = 0; n < h->level_count; n++)
+        if (w->posts[n].done < h->level[n].ny) return "posts";
+    for (int n = 0; n < cover_windows; n++)
+        if (w->surface_rows[n] < h->surface[n].ny) return "classes";
+    if (w->photo.mips && w->mip[0].done < w->photo.ny[0]) return "the photograph";
+    if (w->canopy_height_rows < h->canopy_height.ny) return "canopy heights";
+    return w->canopy_cover_rows < h->canopy_cover.ny ? "canopy covers" : NULL;
+}
+
+/* The file at its final length, mapped whole. */
+static Status extend(StoreWriter *w)
+{
+    w->header->crown_count = w->crowns;
+    if (!store_layout(w->header)) return STATUS_BAD_VALUE;
+    const uint64_t octets = w->header->file_octets;
+    if (ftruncate(w->file, (off_t)octets) != 0) return io_fault(w, "write");
+    munmap(w->map, w->map_octets);
+    void *map = mmap(NULL, octets, PROT_READ | PROT_WRITE, MAP_SHARED, w->file, 0);
+    w->map = map == MAP_FAILED ? NULL : map;
+    if (!w->map) return io_fault(w, "map");
+    w->map_octets = octets;
+    return STATUS_OK;
+}
+
+/* The means of the photograph over each class, from the store's own landscape. */
+static Status measure_photo(StoreWriter *w)
+{
+    TerrainStore store;
+    store_attach(&store, w->header, w->map);
+    const Geodetic origin = {w->header->lat_rad, w->header->lon_rad, w->header->h_m};
+    Status         status = local_frame_at(&store.frame, &origin);
+    if (status != STATUS_OK || store.photo.mips == 0) return status;
+    Landscape landscape;
+    status = store_landscape(&landscape, &store, w->seed, NULL);
+    if (status != STATUS_OK) return status;
+    landscape_photo_means(w->header->mean, &landscape); /* the first of store_classes rows */
+    landscape_destroy(&landscape);
+    return STATUS_OK;
+}
+
+static void date(char out[32])
+{
+    const time_t now = time(NULL);
+    struct tm    utc;
+    gmtime_r(&now, &utc);
+    strftime(out, 32, "%Y-%m-%dT%H:%M:%SZ", &utc);
+}
+
+/* The folder too, so that the new name survives a loss of power. */
+static void sync_folder(const char *path)
+{
+    char *folder = strdup(path), *slash = folder ? strrchr(folder, '/') : NULL;
+    if (slash) slash[slash == folder] = 0;
+    const int fd = folder ? open(slash ? folder : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+    if (fd >= 0) {
+        fsync(fd); /* advisory: the file itself is safe */
+        close(fd);
+    }
+    free(folder);
+}
+
+static Status seal(StoreWriter *w)
+{
+    StoreHeader *h = w->header;
+    h->content = store_content(h, w->map, w->pool);
+    date(h->made);
+    h->checksum = store_checksum(h);
+    memcpy(w->map, h, (size_t)h->header_octets);
+    if (msync(w->map, w->map_octets, MS_SYNC) != 0 || fsync(w->file) != 0) return io_fault(w, "write");
+    if (rename(w->part, w->path) != 0) {
+        log_error("store: cannot rename %s to %s: %s", w->part, w->path, strerror(errno));
+        return STATUS_IO;
+    }
+    sync_folder(w->path);
+    return STATUS_OK;
+}
+
+Status store_writer_finish(StoreWriter *w, uint64_t buildings, StoreReport *report)
+{
+    const char *lacks = missing(w);
+    if (lacks) log_error("store: %s: not all %s were written", w->path, lacks);
+    w->header->building_count = buildings;
+    Status status = lacks ? STATUS_BAD_VALUE : extend(w);
+    if (status == STATUS_OK) status = measure_photo(w);
+    if (status == STATUS_OK) status = seal(w);
+    if (status != STATUS_OK) {
+        store_writer_abandon(w);
+        return status;
+    }
+    if (report) {
+        *report = (StoreReport){.octets = w->header->file_octets, .crowns = w->crowns, .buildings = buildings};
+        for (int n = 0; n < w->header->level_count; n++) {
+            report->step_m[n]  = w->header->level[n].step_m;
+            report->worst_m[n] = w->header->level[n].worst_m;
+        }
+    }
+    free_writer(w);
+    return STATUS_OK;
+}

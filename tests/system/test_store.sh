@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# A node on a terrain store: what it says, the same bits for any threads and from a frame file; stores that are damaged,
+# moved, stale or contradicted by other settings; terrain info and its pictures.
+. "$(dirname "$0")/common.sh"
+data=${PITVIPER_DATA:-../shared/data}/terrain/autzen
+[ -r "$data/autzen_dtm_1m.tif" ] || { echo "skipped: no reference data at $data (set PITVIPER_DATA)"; exit 77; }
+
+# sources of its own, to be changed and removed
+for name in dtm cover rgb; do cp "$data/autzen_${name}_1m.tif" "$tmp/$name.tif"; done
+store=$tmp/a.store
+run terrain import "$tmp/dtm.tif" --cover "$tmp/cover.tif" --photo "$tmp/rgb.tif" --size 0.5x0.5 --horizon 2 -o "$store"
+check "a store" [ "$code" = 0 ]
+exercise demo "$tmp/demo.pcap" place.lat_deg=44.0565 place.lon_deg=-123.0690 place.height_m=106
+few=(--rate 0.2 --size 48x32 --no-png --set "terrain.store=$store")
+
+replay "$tmp/demo.pcap" "$tmp/one" "${few[@]}" --threads 1 --save-frame 1
+check "a replay" [ "$code" = 0 ]
+for line in 'terrain store a\.store, 1 m posts shown at 1 m over 0\.5' 'cover: 1 m classes' 'photograph: 1 m' \
+    'are set onto the ground'; do
+    check "it says: $line" said "$line"
+done
+
+# a frame file refers to the store
+frame=$tmp/one/frame_000001.pvf
+check "a frame file is small" [ "$(stat -c %s "$frame")" -lt 100000 ]
+run frame "$frame" --threads 3
+check "the frame alone: same bits" [ "$code" = 0 ]
+check "the frame alone: of the store" said 'terrain store .*a\.store'
+mv "$store" "$tmp/b.store"
+run frame "$frame"
+check "its store moved" [ "$code" = 1 ]
+check "is said, and what to do" complained 'was made over the terrain store .*a\.store; put it back'
+
+# a store of other content under that name
+run terrain import "$tmp/dtm.tif" --size 0.05x0.05 --horizon 1 -o "$store"
+run frame "$frame"
+check "another store under its name" complained 'not the one that the frame was made over'
+mv "$tmp/b.store" "$store"
+
+# changed sources: made again; missing ones: used as it is
+touch "$tmp/cover.tif"
+replay "$tmp/demo.pcap" "$tmp/three" "${few[@]}" --threads 3 --no-skip
+check "a changed source is said" said 'cover\.tif has changed since .* it is made again'
+check "and gives the same bits, on 3 threads without skips too" same_hashes "$tmp/one" "$tmp/three"
+rm "$tmp/cover.tif"
+replay "$tmp/demo.pcap" "$tmp/four" "${few[@]}" --from -1
+check "a missing source is said" said 'used as it is: .*cover\.tif'
+
+# terrain info
+run terrain info "$store" --out "$tmp/pictures" --verify
+check "info" [ "$code" = 0 ]
+for line in 'level 0: 5[0-9][0-9] x 5[0-9][0-9] posts 1 m apart' 'posts, level 0 +[0-9]+ octets' 'grass [0-9.]+ %' \
+    'cover\.tif is not here' 'verified' 'crowns: 0; buildings: 0'; do
+    check "info says: $line" said "$line"
+done
+for picture in hillshade classes; do
+    check "$picture.png" [ "$(head -c 4 "$tmp/pictures/$picture.png" | tail -c 3)" = PNG ]
+done
+
+# refused
+printf 'x' | dd of="$store" bs=1 seek=100000 conv=notrunc status=none
+run terrain info "$store" --verify
+check "damaged data are found by --verify" [ "$code" = 1 ]
+check "and said" complained 'damaged.*terrain import'
+printf 'x' | dd of="$store" bs=1 seek=40 conv=notrunc status=none
+replay "$tmp/demo.pcap" "$tmp/none" "${few[@]}"
+check "a damaged header ends it" [ "$code" = 1 ]
+check "with the next step" complained 'cannot be used: its header is damaged.*terrain import'
+printf 'terrain:\n  store: %s\n' "$store" >"$tmp/store.yaml"
+run check "$tmp/store.yaml"
+check "check finds it too" complained 'terrain\.store'
+finish

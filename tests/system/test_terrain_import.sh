@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# `pitviper terrain import` as a user runs it: a store from small sheets made here, from the samples where there are some; a
+# wrong command line, a missing file, Ctrl-C. labels: small
+. "$(dirname "$0")/common.sh"
+
+# sheet NAME COLUMNS ROWS WEST SOUTH STEP AWK-EXPRESSION: a grid of degrees as ASCII
+sheet() {
+    { printf 'ncols %d\nnrows %d\nxllcorner %s\nyllcorner %s\ncellsize %s\nNODATA_value -9999\n' "${@:2:5}"
+      awk -v nx="$2" -v ny="$3" "BEGIN { for (j = 0; j < ny; j++) { for (i = 0; i < nx; i++) printf \"%.3f \", $7; print \"\" } }"
+    } >"$tmp/$1.asc"
+    echo 'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]' \
+        >"$tmp/$1.prj"
+}
+sheet west 90 120 11 46 1e-5 '200 + 5 * sin(i / 9) + j / 50'
+sheet east 90 120 11.0009 46 1e-5 '(i - 40) ^ 2 + (j - 50) ^ 2 < 200 ? -9999 : 201 + j / 50'
+few=(--horizon 2 --threads 2)
+
+run terrain import "$tmp/west.asc" "$tmp/east.asc" -o "$tmp/a.store" "${few[@]}"
+check "two sheets: exit code" [ $code = 0 ]
+check "two sheets: posts and files" said 'M posts, .* from 2 files'
+check "two sheets: error against the files" said 'resampling: .*rms'
+check "two sheets: the hole is counted" said 'voids: [1-9][0-9]* posts filled'
+check "two sheets: quiet on standard error" [ ! -s "$tmp/stderr" ]
+run terrain info "$tmp/a.store"
+check "info reads it" [ $code = 0 ]
+check "info names the sources" said 'west\.asc'
+
+run terrain import "$tmp/west.asc" -o "$tmp/a.store" "${few[@]}"
+check "an existing store is not replaced" [ $code != 0 ]
+check "and says how" complained 'overwrite'
+cp "$tmp/a.store" "$tmp/kept"
+run -q terrain import "$tmp/west.asc" "$tmp/east.asc" -o "$tmp/b.store" "${few[@]}" --threads 1
+check "quiet: nothing said" [ ! -s "$tmp/stdout" ]
+content() { "$pitviper" terrain info "$1" | grep -oE 'content [0-9a-f]+'; }
+check "one thread: the same content" [ "$(content "$tmp/a.store")" = "$(content "$tmp/b.store")" ]
+
+echo cut >"$tmp/bad.tif"
+while read -r named arguments; do
+    # shellcheck disable=SC2086
+    run terrain import $arguments --overwrite
+    check "import $arguments: exit code" [ $code != 0 ]
+    check "import $arguments: names $named" complained "$named"
+done <<BAD
+STORE $tmp/west.asc
+elevation -o $tmp/x.store
+nowhere.tif $tmp/nowhere.tif -o $tmp/x.store
+gdalinfo $tmp/bad.tif -o $tmp/x.store
+size $tmp/west.asc -o $tmp/x.store --size 12
+origin $tmp/west.asc -o $tmp/x.store --origin 91,0
+spacing $tmp/west.asc -o $tmp/x.store --spacing 0
+vertical $tmp/west.asc -o $tmp/x.store --vertical sea
+threads $tmp/west.asc -o $tmp/x.store --threads 0
+nearest $tmp/west.asc -o $tmp/x.store --origin 10,10
+elevation $tmp/west.asc -o $tmp/x.store --cover $tmp/west.asc
+frob $tmp/west.asc -o $tmp/x.store --frob
+BAD
+check "nothing is left of what failed" [ -z "$(ls "$tmp" | grep '^x\.store')" ]
+run terrain frobnicate
+check "an unknown action is named" complained frobnicate
+run terrain import --help
+for option in --surface --cover --cover-table --photo --canopy-height --canopy-cover --vertical --geoid --origin --size --spacing \
+              --horizon --out --overwrite --threads; do
+    check "terrain --help names $option" grep -q -- "$option" "$tmp/stdout"
+done
+
+# Ctrl-C: what was there stays, and no half file
+"$pitviper" terrain import "$tmp/west.asc" -o "$tmp/a.store" --overwrite --spacing 0.06 --size 0.25x0.25 --horizon 2 --threads 1 >"$tmp/stdout" 2>"$tmp/stderr" &
+pid=$!
+while kill -0 $pid 2>/dev/null && [ -z "$(ls "$tmp" | grep '\.tmp$')" ]; do sleep 0.02; done
+kill -INT $pid 2>/dev/null
+wait $pid
+code=$?
+if [ $code = 0 ]; then echo "skipped: it had ended before Ctrl-C"; else
+    check "Ctrl-C: exit code 130, not $code" [ $code = 130 ]
+    check "Ctrl-C: said" complained 'stopped'
+    check "Ctrl-C: the store is as it was" cmp -s "$tmp/a.store" "$tmp/kept"
+fi
+check "Ctrl-C: no half file" [ -z "$(ls "$tmp" | grep '\.tmp$')" ]
+
+# the samples
+data=${PITVIPER_DATA:-../shared/data}/terrain
+if [ -f "$data/autzen/autzen_dtm_1m.tif" ]; then
+    run terrain import "$data/autzen/autzen_dtm_1m.tif" --cover "$data/autzen/autzen_cover_1m.tif" --photo \
+        "$data/autzen/autzen_rgb_1m.tif" -o "$tmp/autzen.store" --size 0.4x0.4 --horizon 2
+    check "autzen" [ $code = 0 ]
+    check "autzen: classes and photograph" said 'photograph: pixels 1 m'
+    run terrain import "$data/srtm3/N49W123.hgt" "$data/srtm3/N49W124.hgt" -o "$tmp/srtm.store" --origin 49.5,-123 --size 8x8 --horizon 10
+    check "two SRTM tiles" said 'from 2 files of posts'
+    run terrain import "$data/bitterroot/example_lcp.tif" --cover "$data/bitterroot/example_lcp.tif" --canopy-height \
+        "$data/bitterroot/example_lcp.tif:6" --canopy-cover "$data/bitterroot/example_lcp.tif:5" -o "$tmp/lcp.store" --size 5x5 --horizon 5
+    check "bitterroot: the table is recognised" said 'table fbfm40'
+    check "bitterroot: canopies in tenths of a metre" said 'canopy height: numbers of 0\.1 m'
+    run terrain import "$data/bigtujunga/bigtujunga.tif" -o "$tmp/big.store" --size 5x5 --horizon 5
+    check "bigtujunga" [ $code = 0 ]
+else
+    echo "skipped: no samples at $data (set PITVIPER_DATA)"
+fi
+finish

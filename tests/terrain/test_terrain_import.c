@@ -1,0 +1,360 @@
+/* tests/terrain/test_terrain_import.c: files to a terrain store: the posts of the path in memory, in strips of any height
+ * and on any number of threads; holes, overlapping sheets and datums; options as a text; stopped and made again. */
+#include "tests/check.h"
+
+#include "terrain/earth/geoid.h"
+#include "terrain/import/terrain_import.h"
+#include "terrain/landscape/elevation_stream.h"
+
+#include <sys/stat.h>
+
+static char folder[temp_path_size];
+
+/* An ESRI grid of floats in degrees, with its coordinate system. */
+typedef struct Grid {
+    const char *name;
+    int         nx, ny;
+    double      west_deg, south_deg, step_deg;
+    float     (*z)(int i, int j);
+} Grid;
+
+static void path_of(char out[temp_name_size], const char *name) { snprintf(out, temp_name_size, "%s/%s", folder, name); }
+
+static void write_grid(char out[temp_name_size], const Grid *g)
+{
+    char path[temp_name_size], name[64];
+    for (int part = 0; part < 3; part++) {
+        snprintf(name, sizeof name, "%s.%s", g->name, part == 0 ? "hdr" : part == 1 ? "prj" : "flt");
+        path_of(path, name);
+        FILE *file = fopen(path, "wb");
+        CHECK(file != NULL);
+        if (part == 0)
+            fprintf(file, "ncols %d\nnrows %d\nxllcorner %.10f\nyllcorner %.10f\ncellsize %.10f\nNODATA_value -9999\n"
+                    "byteorder lsbfirst\n", g->nx, g->ny, g->west_deg, g->south_deg, g->step_deg);
+        else if (part == 1)
+            fputs("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
+                  "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]\n", file);
+        else
+            for (int n = 0; n < g->nx * g->ny; n++) {
+                const float z = g->z(n % g->nx, n / g->nx);
+                CHECK(fwrite(&z, sizeof z, 1, file) == 1);
+            }
+        CHECK(fclose(file) == 0);
+    }
+    snprintf(name, sizeof name, "%s.flt", g->name);
+    path_of(out, name);
+}
+
+static float hills(int i, int j) { return (float)(300 + 20 * sin(0.03 * i) * cos(0.02 * j) + 2 * sin(0.7 * i + 0.4 * j)); }
+static float with_holes(int i, int j) { return (i / 40 + j / 30) % 4 == 0 ? -9999 : hills(i, j); }
+static float higher(int i, int j) { return hills(i, j) + 25; }
+static float flat(int i, int j) { return (float)(100 + 0 * i * j); }
+static float codes(int i, int j) { return (float)(j < 125 ? 10 : 60 + 0 * i); }
+
+static const Grid ground = {"hills", 260, 250, 11, 46, 1e-5, hills};
+
+static LocalFrame frame_of(const Grid *g)
+{
+    LocalFrame     frame;
+    const Geodetic middle = {(g->south_deg + 0.5 * g->ny * g->step_deg) * rad_per_deg,
+                             (g->west_deg + 0.5 * g->nx * g->step_deg) * rad_per_deg, 0};
+    assert_int_equal(local_frame_at(&frame, &middle), STATUS_OK);
+    return frame;
+}
+
+static TerrainOptions options_of(const char *elevation)
+{
+    TerrainOptions o;
+    const char    *why;
+    terrain_options_default(&o);
+    CHECK(terrain_options_set(&o, &why, "elevation", elevation) && terrain_options_set(&o, &why, "horizon", "2") &&
+          terrain_options_set(&o, &why, "vertical", "ellipsoid"));
+    return o;
+}
+
+/* ---- the same posts -------------------------------------------------------------------------- */
+
+static void heights_of(float *h_m, const ElevationFiles *files, const LocalFrame *frame, int rows, Pool *pool,
+                       StreamLevel *level)
+{
+    ElevationStream *stream = NULL;
+    assert_int_equal(elevation_stream_open(&stream, files, frame, NULL, pool), STATUS_OK);
+    elevation_stream_level(level, stream, 0);
+    for (int row0 = 0; row0 < level->ny; row0 += rows) {
+        const int here = level->ny - row0 < rows ? level->ny - row0 : rows;
+        float    *to = h_m + (size_t)row0 * (size_t)level->nx;
+        assert_int_equal(elevation_stream_heights(stream, row0, here, to, NULL, true), STATUS_OK);
+        assert_int_equal(elevation_stream_bend(stream, row0, here, to), STATUS_OK);
+    }
+    elevation_stream_close(stream);
+}
+
+static void strips_and_threads_give_the_same_posts(void **state)
+{
+    (void)state;
+    enum { most = 700 * 700 };
+    char             path[temp_name_size];
+    const LocalFrame frame = frame_of(&ground);
+    float           *whole = malloc(most * sizeof *whole), *part = malloc(most * sizeof *part);
+    StreamLevel      level, again;
+    Pool            *pool;
+    assert_int_equal(pool_create(&pool, 3), STATUS_OK);
+    write_grid(path, &ground);
+    const ElevationFiles files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_GEOID, .horizon_m = 2000};
+    heights_of(whole, &files, &frame, 10000, NULL, &level);
+    CHECK(level.nx * level.ny <= most && level.ny > 200);
+    const size_t size = (size_t)level.nx * (size_t)level.ny * sizeof *whole;
+    static const int rows[] = {1, 37, 64, 128};
+    for (size_t k = 1; k < sizeof rows / sizeof *rows; k++) {
+        heights_of(part, &files, &frame, rows[k], k & 1 ? pool : NULL, &again);
+        CHECK(memcmp(whole, part, size) == 0);
+    }
+    pool_destroy(pool);
+    free(whole);
+    free(part);
+}
+
+/* The store and the terrain in memory: to half a quantum of each. */
+static void the_store_has_the_posts_of_the_path_in_memory(void **state)
+{
+    (void)state;
+    char             path[temp_name_size], out[temp_name_size];
+    Elevation        memory = {0};
+    ElevationReport  report;
+    TerrainReport    r;
+    TerrainStore     store;
+    write_grid(path, &ground);
+    path_of(out, "ground.store");
+    const TerrainOptions o = options_of(path);
+    const ElevationFiles files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_ELLIPSOID, .horizon_m = 2000};
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(store_open(&store, out), STATUS_OK);
+    assert_int_equal(elevation_import(&memory, &report, &files, &store.frame, NULL, 0), STATUS_OK);
+    CHECK(memory.level_count == store.elevation.level_count);
+    const ElevationLevel *a = &memory.level[0], *b = &store.elevation.level[0];
+    CHECK(a->nx == b->nx && a->ny == b->ny && a->spacing_m == b->spacing_m && a->x0_m == b->x0_m && a->y0_m == b->y0_m);
+    /* 2^-8 m in memory, what the report says in the store */
+    const double most_m = 0.5 * 0x1p-8 + r.store.worst_m[0] + 1e-6;
+    double       worst_m = 0;
+    for (double y_m = b->y0_m + b->spacing_m; y_m < b->y0_m + (b->ny - 1) * b->spacing_m; y_m += b->spacing_m)
+        for (double x_m = b->x0_m + b->spacing_m; x_m < b->x0_m + (b->nx - 1) * b->spacing_m; x_m += b->spacing_m)
+            worst_m = fmax(worst_m, fabs(elevation_height(&memory, x_m, y_m, NULL) -
+                                         elevation_height(&store.elevation, x_m, y_m, NULL)));
+    print_message("largest difference %.5f m, allowed %.5f\n", worst_m, most_m);
+    CHECK(worst_m <= most_m);
+    CHECK_NEAR(r.elevation.error_rms_m, report.error_rms_m, 1e-3);
+    CHECK(r.elevation.places > 20000 && r.elevation.voids == 0);
+    elevation_destroy(&memory);
+    store_close(&store);
+}
+
+/* ---- many files ------------------------------------------------------------------------------ */
+
+static double stored_h_m(const TerrainStore *store, double lat_deg, double lon_deg)
+{
+    const Geodetic at = {lat_deg * rad_per_deg, lon_deg * rad_per_deg, 0};
+    double         p_ecef[3], p_enu[3];
+    Geodetic       place;
+    assert_int_equal(ecef_from_geodetic(p_ecef, NULL, &at), STATUS_OK);
+    enu_from_ecef(p_enu, &store->frame, p_ecef);
+    p_enu[2] = elevation_height(&store->elevation, p_enu[0], p_enu[1], NULL);
+    ecef_from_enu(p_ecef, &store->frame, p_enu);
+    assert_int_equal(geodetic_from_ecef(&place, p_ecef), STATUS_OK);
+    return place.h_m;
+}
+
+static void first_given_wins_and_each_has_its_datum(void **state)
+{
+    (void)state;
+    char          one[temp_name_size], two[temp_name_size], list[3 * temp_name_size], out[temp_name_size];
+    /* half a pixel off: another grid of the same posting */
+    const Grid    other = {"higher", 260, 250, 11 + 0.5e-5, 46 + 0.5e-5, 1e-5, higher};
+    TerrainReport r;
+    TerrainStore  store;
+    Geoid         geoid = {0};
+    write_grid(one, &ground);
+    write_grid(two, &other);
+    path_of(out, "two.store");
+    assert_int_equal(geoid_open(&geoid, ""), STATUS_OK);
+    const double n_m = geoid_height_m(&geoid, 46.0012 * rad_per_deg, 11.0012 * rad_per_deg);
+    double       h_m[3];
+    for (int k = 0; k < 3; k++) {
+        if (k == 2) snprintf(list, sizeof list, "%s@geoid,%s@ellipsoid", one, two);
+        else snprintf(list, sizeof list, "%s,%s", k ? two : one, k ? one : two);
+        const TerrainOptions o = options_of(list);
+        assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+        CHECK(r.elevation.grids == 2 && r.elevation.sheets == 2);
+        assert_int_equal(store_open(&store, out), STATUS_OK);
+        h_m[k] = stored_h_m(&store, 46.0012, 11.0012);
+        store_close(&store);
+    }
+    CHECK_NEAR(h_m[1] - h_m[0], 25, 2); /* 25 m higher, on pixels half a post off */
+    CHECK_NEAR(h_m[2] - h_m[0], n_m, 0.01);
+    geoid_close(&geoid);
+}
+
+static void holes_are_filled_and_counted(void **state)
+{
+    (void)state;
+    char          path[temp_name_size], out[temp_name_size];
+    const Grid    g = {"holes", 260, 250, 11, 46, 1e-5, with_holes};
+    TerrainReport r;
+    TerrainStore  store;
+    write_grid(path, &g);
+    path_of(out, "holes.store");
+    const TerrainOptions o = options_of(path);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    /* a quarter of 260 x 250 pixels of a hundred-thousandth of a degree */
+    const double pixel_m2 = 1.1117 * 1.1134 * cos(46 * rad_per_deg), post_m2 = r.elevation.spacing_m * r.elevation.spacing_m;
+    CHECK_NEAR((double)r.elevation.voids * post_m2 / pixel_m2, 0.25 * 260 * 250, 0.02 * 260 * 250);
+    assert_int_equal(store_open(&store, out), STATUS_OK);
+    for (int k = 0; k < 200; k++) {
+        const double h_m = stored_h_m(&store, 46.0002 + 0.9e-5 * k, 11.0003 + 0.9e-5 * k);
+        CHECK(h_m > 270 && h_m < 330); /* within what is around */
+    }
+    store_close(&store);
+}
+
+static void classes_are_where_the_file_has_them(void **state)
+{
+    (void)state;
+    char          path[temp_name_size], cover[temp_name_size], out[temp_name_size], code[2 * temp_name_size];
+    const char   *why;
+    TerrainReport r;
+    TerrainStore  store;
+    write_grid(path, &ground);
+    const Grid    g = {"cover", 260, 250, 11, 46, 1e-5, codes};
+    write_grid(cover, &g);
+    /* of whole numbers: the same as a VRT of octets */
+    path_of(code, "cover.vrt");
+    FILE *vrt = fopen(code, "w");
+    CHECK(vrt != NULL);
+    fprintf(vrt, "<VRTDataset rasterXSize=\"260\" rasterYSize=\"250\"><SRS>EPSG:4326</SRS><GeoTransform>11, 1e-5, 0, %.10f, 0, "
+            "-1e-5</GeoTransform><VRTRasterBand dataType=\"Byte\" band=\"1\"><SimpleSource><SourceFilename>%s"
+            "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>", 46 + 250e-5, cover);
+    CHECK(fclose(vrt) == 0);
+    path_of(out, "cover.store");
+    TerrainOptions o = options_of(path);
+    CHECK(terrain_options_set(&o, &why, "cover", code) && terrain_options_set(&o, &why, "cover-table", "worldcover"));
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(store_open(&store, out), STATUS_OK);
+    CHECK(cover_grid_at(store.surface, 5, 20) == SURFACE_FOREST_BROADLEAF);
+    CHECK(cover_grid_at(store.surface, 5, -20) == SURFACE_BARE_SOIL);
+    CHECK(cover_grid_at(store.surface, 5, 1e5) == SURFACE_NONE);
+    CHECK_NEAR(r.cover.share[SURFACE_FOREST_BROADLEAF], 0.5, 0.02);
+    store_close(&store);
+}
+
+/* ---- options, stopping, making again --------------------------------------------------------- */
+
+static void options_are_a_text_and_back(void **state)
+{
+    (void)state;
+    static char    text[8 * terrain_paths_size], second[8 * terrain_paths_size];
+    TerrainOptions o, back;
+    const char    *why;
+    int            line;
+    static const char *const given[][2] = {{"surface", "/a/b c.tif@ellipsoid"}, {"elevation", "/x.tif"}, {"elevation", "/y.tif:3"},
+                                           {"cover-table", "nlcd"}, {"vertical", "geoid"}, {"origin", "0,0"},
+                                           {"size", "12x16"}, {"spacing", "0.1"}, {"horizon", "30"}};
+    terrain_options_default(&o);
+    for (size_t k = 0; k < sizeof given / sizeof *given; k++)
+        CHECK(terrain_options_set(&o, &why, given[k][0], given[k][1]));
+    assert_string_equal(o.elevation, "/x.tif,/y.tif:3");
+    CHECK(terrain_options_text(text, sizeof text, &o) && terrain_options_parse(&back, &why, &line, text));
+    CHECK(terrain_options_text(second, sizeof second, &back));
+    assert_string_equal(text, second);
+    CHECK(back.origin_deg[0] == 0 && back.size_km[1] == 16 && back.spacing_m == 0.1);
+    static const char *const wrong[][2] = {{"size", "12"}, {"size", "0x4"}, {"size", "nanx4"}, {"origin", "91,0"}, {"origin", "1"},
+                                           {"spacing", "0"}, {"spacing", "1e9"}, {"vertical", "sea"}, {"horizon", "inf"},
+                                           {"colour", "red"}, {"cover", ""}, {"cover", "a\nb"}};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) CHECK(!terrain_options_set(&o, &why, wrong[k][0], wrong[k][1]));
+    CHECK(!terrain_options_parse(&back, &why, &line, "elevation /x.tif\nsize 1\n") && line == 2);
+    CHECK(!terrain_options_parse(&back, &why, &line, "size 1x1\n"));
+}
+
+static bool stop_soon(void *user, const char *stage, double share)
+{
+    (void)stage;
+    (void)share;
+    return ++*(int *)user < 3;
+}
+
+static void stopped_or_refused_it_leaves_nothing(void **state)
+{
+    (void)state;
+    char          path[temp_name_size], out[temp_name_size], part[temp_name_size + 8];
+    TerrainReport r;
+    struct stat   about;
+    int           calls = 0;
+    write_grid(path, &ground);
+    path_of(out, "stopped.store");
+    snprintf(part, sizeof part, "%s.tmp", out);
+    TerrainOptions o = options_of(path);
+    CHECK(terrain_import(&r, &o, out, NULL, stop_soon, &calls) != STATUS_OK && r.stopped);
+    CHECK(stat(out, &about) != 0 && stat(part, &about) != 0);
+    log_set_sink(check_listen, NULL);
+    o = options_of("/nowhere.tif");
+    CHECK(terrain_import(&r, &o, out, NULL, NULL, NULL) != STATUS_OK && strstr(check_said, "/nowhere.tif"));
+    log_set_sink(NULL, NULL);
+    CHECK(stat(out, &about) != 0 && stat(part, &about) != 0);
+}
+
+static void a_store_is_made_again_from_its_header(void **state)
+{
+    (void)state;
+    char          path[temp_name_size], out[temp_name_size], which[512];
+    TerrainReport r;
+    TerrainStore  store;
+    const Grid    other = {"again", 260, 250, 11, 46, 1e-5, flat};
+    Grid          first = ground;
+    first.name = "again";
+    write_grid(path, &first);
+    path_of(out, "again.store");
+    const TerrainOptions o = options_of(path);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(store_open(&store, out), STATUS_OK);
+    const uint64_t was = store.content;
+    CHECK(store_sources(&store, which, sizeof which) == STORE_FRESH);
+    assert_int_equal(terrain_store_rebuild(out, &store), STATUS_OK);
+    store_close(&store);
+    assert_int_equal(store_open(&store, out), STATUS_OK);
+    CHECK(store.content == was); /* the same, on other threads */
+    write_grid(path, &other);
+    CHECK(store_sources(&store, which, sizeof which) == STORE_CHANGED && strstr(which, "again"));
+    assert_int_equal(terrain_store_rebuild(out, &store), STATUS_OK);
+    store_close(&store);
+    assert_int_equal(store_open(&store, out), STATUS_OK);
+    CHECK(store_sources(&store, which, sizeof which) == STORE_FRESH);
+    CHECK_NEAR(stored_h_m(&store, 46.0012, 11.0012), 100, 0.01);
+    store_close(&store);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    return temp_folder(folder) ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    char command[temp_name_size + 16];
+    (void)state;
+    snprintf(command, sizeof command, "rm -r '%s'", folder);
+    return system(command);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(strips_and_threads_give_the_same_posts),
+        cmocka_unit_test(the_store_has_the_posts_of_the_path_in_memory),
+        cmocka_unit_test(first_given_wins_and_each_has_its_datum),
+        cmocka_unit_test(holes_are_filled_and_counted),
+        cmocka_unit_test(classes_are_where_the_file_has_them),
+        cmocka_unit_test(options_are_a_text_and_back),
+        cmocka_unit_test(stopped_or_refused_it_leaves_nothing),
+        cmocka_unit_test(a_store_is_made_again_from_its_header),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
