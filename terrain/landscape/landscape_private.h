@@ -233,4 +233,17 @@ double landscape_treeline_m(double lat_rad);
 void cover_measure_photo(Landscape *landscape);
 void cover_free(Cover *cover);   /* accepts NULL */
 
+/* ---- ways --------------------------------------------------------------------------------- */
+
+/* What ways are laid out on. */
+typedef struct WaysGround {
+    const Elevation *elevation;
+    const Coast     *coast;
+    uint64_t         seed;
+    int              fix_count;
+    const GroundFix *fix;
+} WaysGround;
+
+Status ways_create(struct Ways **out, const WaysGround *ground);
+
 #endif

@@ -55,16 +55,6 @@ typedef struct Ways {
     int32_t    *road_vertex;        /* [cy][cx] a segment of a road in this cell, -1: none */
 } Ways;
 
-/* What ways are laid out on. */
-typedef struct WaysGround {
-    const Elevation *elevation;
-    const Coast     *coast;
-    uint64_t         seed;
-    int              fix_count;
-    const GroundFix *fix;
-} WaysGround;
-
-Status ways_create(Ways **out, const WaysGround *ground);
 void   ways_free(Ways *ways); /* accepts NULL */
 
 Status ways_lay_streams(Ways *ways, const WaysGround *ground);
