@@ -13,7 +13,7 @@ static F32x8 fade(double wavelength_m, F32x8 footprint_m)
 }
 
 /* Rows of the fields that eight places lie in, along directions of their own; a smooth wave of mean 0. */
-static F32x8 rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const double y_m[8], double apart_m,
+static F32x8 rows_of(uint64_t seed, const double x_m[8], const double y_m[8], double apart_m,
                      unsigned lanes)
 {
     double i[8], j[8];
@@ -25,7 +25,7 @@ static F32x8 rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const
     for (unsigned left = lanes, same; left; left &= ~same) {
         same = plot_cell_lanes(i, j, left);
         const int       first = __builtin_ctz(left);
-        const PlotCell *cell = plot_cell_at(cells, seed, (int64_t)i[first], (int64_t)j[first]);
+        const PlotCell *cell = plot_cell_at(seed, (int64_t)i[first], (int64_t)j[first]);
         I32x8        site;
         (void)plot_nearest(&site, cell, x, y);
         const F32x8 mask = f32x8_mask(same);
@@ -59,9 +59,7 @@ void texture_rows(float *albedo, const Landscape *landscape, int count, const ui
         double       apart_m;
     } rows[] = {{SURFACE_CROP, 0.75}, {SURFACE_PLOUGHED, 1.1}};
     const Cover *cover = landscape->cover;
-    PlotCells    cells;
     if (!cover) return;
-    for (int k = 0; k < plot_cells_kept; k++) cells.cell[k].known = false;
     for (int first = 0; first < count; first += 8) {
         double    x[8] = {0}, y[8] = {0};
         float     footprint[8] = {0}, factor[8] = {0}, cell_m[8];
@@ -81,7 +79,7 @@ void texture_rows(float *albedo, const Landscape *landscape, int count, const ui
             const F32x8 photo_m = f32x8_load(cell_m); /* which has the rows itself from two of its pixels on */
             share = f32x8_and_not(share, f32x8_and(f32x8_greater(photo_m, f32x8_set(0)),
                                                    f32x8_less(photo_m, f32x8_set(rows[r].apart_m / 2))));
-            const F32x8 wave = rows_of(&cells, cover->seed, x, y, rows[r].apart_m, lanes);
+            const F32x8 wave = rows_of(cover->seed, x, y, rows[r].apart_m, lanes);
             f32x8_store(factor, f32x8_load(factor) * f32x8_fma(f32x8_set(0.08) * share, wave, f32x8_set(1)));
             for (int k = 0; k < some; k++)
                 if (lanes >> k & 1) albedo[first + k] = factor[k];

@@ -196,13 +196,16 @@ I32x8 ways_cells(const Ways *ways, const double x_m[8], const double y_m[8])
 
 F32x8 ways_wet(const Ways *ways, const double x_m[8], const double y_m[8])
 {
-    float at[2][8];
-    for (int k = 0; k < 8; k++) { /* held at the rim */
-        at[0][k] = (float)clamp((x_m[k] - ways->x0_m) / ways->coarse_m, 0, ways->cx - 1.001);
-        at[1][k] = (float)clamp((y_m[k] - ways->y0_m) / ways->coarse_m, 0, ways->cy - 1.001);
-        if (!(x_m[k] + y_m[k] < INFINITY)) at[0][k] = at[1][k] = 0;
-    }
-    const F32x8 x = f32x8_load(at[0]), y = f32x8_load(at[1]), fx = f32x8_floor(x), fy = f32x8_floor(y);
+    double        at[2][8];
+    const double *from[2] = {x_m, y_m};
+    const double  corner_m[2] = {ways->x0_m, ways->y0_m}, most[2] = {ways->cx - 1.001, ways->cy - 1.001};
+    const F64x4   per_m = f64x4_set(1 / ways->coarse_m);
+    for (int axis = 0; axis < 2; axis++)
+        for (int k = 0; k < 8; k += 4) { /* held at the rim; NaN: there */
+            const F64x4 g = (f64x4_loadu(from[axis] + k) - f64x4_set(corner_m[axis])) * per_m;
+            f64x4_storeu(at[axis] + k, f64x4_min(f64x4_max(g, f64x4_set(0)), f64x4_set(most[axis])));
+        }
+    const F32x8 x = f32x8_of_doubles(at[0]), y = f32x8_of_doubles(at[1]), fx = f32x8_floor(x), fy = f32x8_floor(y);
     const I32x8 cell = i32x8_add(i32x8_mul(i32x8_truncate(fy), i32x8_set(ways->cx)), i32x8_truncate(fx));
     const I32x8 corners = _mm256_i32gather_epi32((const int *)(const void *)ways->wet, cell, 4);
     F32x8       v[4];

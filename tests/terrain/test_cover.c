@@ -91,7 +91,7 @@ static double wander_at(uint64_t seed, double x_m, double y_m)
 /* Beyond the finest level, where there are neither ways nor hollows. */
 static SurfaceClass plain_surface(const Landscape *land, uint64_t seed, double x_m, double y_m)
 {
-    static const double arm_m = 10, cell_m = 160, bend_wave_m[] = {2300, 330, 90}, bend_m[] = {260, 26, 5};
+    static const double arm_m = 10, cell_m = 160, bend_wave_m[] = {2300, 330}, bend_m[] = {260, 28};
     const Elevation    *e = &land->elevation;
     if (!isfinite(elevation_height(e, x_m, y_m, NULL))) return SURFACE_NONE;
     const double dx = elevation_height(e, x_m + arm_m, y_m, NULL) - elevation_height(e, x_m - arm_m, y_m, NULL);
