@@ -112,7 +112,7 @@ static inline F32x8 noise_pair_eight(F32x8 *second, uint64_t seed, double wavele
 /* ---- fields ------------------------------------------------------------------------------- */
 
 static const double plot_m = 160;
-enum { plot_sites = 9, plot_cells_kept = 32 };
+enum { plot_sites = 9, plot_cells_kept = 128 };
 
 /* One cell of the grid of fields, and the nine sites a place in it can belong to. From the cell's south-west corner. */
 typedef struct PlotCell {

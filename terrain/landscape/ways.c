@@ -221,7 +221,7 @@ static double beyond_edge(double *across_m, double *along_m, const WaySegment *s
 {
     const double px = x_m - (double)s->x_m, py = y_m - (double)s->y_m;
     const double dx = (double)s->dx, dy = (double)s->dy, t = clamp(px * dx + py * dy, 0, (double)s->length_m);
-    const double side = dx * py - dy * px, away = hypot(px - t * dx, py - t * dy);
+    const double side = dx * py - dy * px, away = sqrt((px - t * dx) * (px - t * dx) + (py - t * dy) * (py - t * dy));
     *across_m = side < 0 ? -away : away;
     *along_m = t;
     return away - ((double)s->half_m + (double)s->widens * t);
@@ -374,7 +374,7 @@ Status ways_create(Ways **out, const WaysGround *ground)
     if (status == STATUS_OK) status = ways_lay_streams(ways, ground);
     if (status == STATUS_OK) status = ways_lay_roads(ways, ground);
     if (status == STATUS_OK) status = make_index(ways);
-    near_grid_destroy(&ways->clear_near);
+    near_grid_destroy(&ways->clear_near), near_grid_destroy(&ways->stream_near);
     free(ways->height), free(ways->flow), free(ways->road_vertex);
     ways->height = ways->flow = NULL;
     ways->road_vertex = NULL;
@@ -386,7 +386,7 @@ Status ways_create(Ways **out, const WaysGround *ground)
 void ways_free(Ways *ways)
 {
     if (!ways) return;
-    near_grid_destroy(&ways->clear_near);
+    near_grid_destroy(&ways->clear_near), near_grid_destroy(&ways->stream_near);
     free(ways->start), free(ways->item), free(ways->segment), free(ways->pond), free(ways->plot), free(ways->clear);
     free(ways->wet), free(ways->height), free(ways->flow), free(ways->road_vertex);
     free(ways);

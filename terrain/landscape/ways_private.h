@@ -44,6 +44,7 @@ typedef struct Ways {
     HousePlot  *plot;
     ClearPlace *clear;
     NearGrid    clear_near;         /* of the clear places, while ways are laid */
+    NearGrid    stream_near;        /* of the starts of streams' segments, while roads are laid */
     double      village[ways_most_villages][2];
     /* coarse grid: how wet (hollows, valleys) or worn (crests) the ground is, -127 .. 127: the four corners of a cell */
     double      coarse_m;
