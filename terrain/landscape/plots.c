@@ -83,3 +83,23 @@ PlotBorder plot_border(const PlotCell *cell, uint64_t seed, int site, int other,
     return (PlotBorder){.away_m = 0.5 * more / apart_m, .first = cell->id[site] < cell->id[other],
                         .track = one != two ? v < 0.7 : u < 0.05, .hedge = u > 0.66};
 }
+
+double plot_track(double across[2], const PlotCell *cell, uint64_t seed, float x_m, float y_m)
+{
+    double least = INFINITY, near_least = INFINITY;
+    int    site = 0;
+    for (int n = 0; n < plot_sites; n++) {
+        const double dx = (double)(x_m - cell->x_m[n]), dy = (double)(y_m - cell->y_m[n]), near = dx * dx + dy * dy;
+        if (near < near_least) near_least = near, site = n;
+    }
+    for (int n = 0; n < plot_sites; n++) {
+        if (cell->field[n] == cell->field[site]) continue;
+        const PlotBorder border = plot_border(cell, seed, site, n, x_m, y_m);
+        if (!border.track || border.away_m >= least) continue;
+        const double dx = (double)(cell->x_m[n] - cell->x_m[site]), dy = (double)(cell->y_m[n] - cell->y_m[site]);
+        const double apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3);
+        least = border.away_m;
+        across[0] = -dx / apart_m, across[1] = -dy / apart_m;
+    }
+    return least;
+}

@@ -2,6 +2,7 @@
  *
  * ways.c          the index, the nearest way, the class of a place
  * ways_streams.c  streams, ponds and gullies; how wet and how worn the ground is
+ * ways_detail.c   wheel paths, ruts, rows
  * ways_roads.c    villages, roads between them, lanes, plots, tracks of columns */
 #ifndef TERRAIN_LANDSCAPE_WAYS_PRIVATE_H
 #define TERRAIN_LANDSCAPE_WAYS_PRIVATE_H
