@@ -135,8 +135,8 @@ typedef struct PlotBorder {
 
 PlotBorder plot_border(const PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m);
 
-/* Distance of a place in a cell from the nearest track between fields, and the unit vector away from it; INFINITY: none. */
-double plot_track(double across[2], const PlotCell *cell, uint64_t seed, float x_m, float y_m);
+/* The nearest border about a place, the unit vector away from it on the bent plane, and a number of its two fields. */
+bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m);
 
 /* The fields are laid out on a plane that is bent over tens of metres: where eight places are on it. */
 static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8], const double y_m[8])

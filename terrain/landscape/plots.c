@@ -84,22 +84,31 @@ PlotBorder plot_border(const PlotCell *cell, uint64_t seed, int site, int other,
                         .track = one != two ? v < 0.7 : u < 0.05, .hedge = u > 0.66};
 }
 
-double plot_track(double across[2], const PlotCell *cell, uint64_t seed, float x_m, float y_m)
+bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m)
 {
-    double least = INFINITY, near_least = INFINITY;
+    double x[8], y[8], bent_x[8], bent_y[8], i[8], j[8], near_least = INFINITY;
+    float  from_x[8], from_y[8];
+    F32x8  in_x, in_y;
     int    site = 0;
+    for (int k = 0; k < 8; k++) x[k] = x_m, y[k] = y_m;
+    plot_bend(bent_x, bent_y, seed, x, y);
+    plot_cells_of(i, j, &in_x, &in_y, bent_x, bent_y);
+    f32x8_store(from_x, in_x), f32x8_store(from_y, in_y);
+    const PlotCell *cell = plot_cell_at(seed, (int64_t)i[0], (int64_t)j[0]);
     for (int n = 0; n < plot_sites; n++) {
-        const double dx = (double)(x_m - cell->x_m[n]), dy = (double)(y_m - cell->y_m[n]), near = dx * dx + dy * dy;
-        if (near < near_least) near_least = near, site = n;
+        const double dx = (double)(from_x[0] - cell->x_m[n]), dy = (double)(from_y[0] - cell->y_m[n]);
+        if (dx * dx + dy * dy < near_least) near_least = dx * dx + dy * dy, site = n;
     }
+    out->away_m = INFINITY;
     for (int n = 0; n < plot_sites; n++) {
         if (cell->field[n] == cell->field[site]) continue;
-        const PlotBorder border = plot_border(cell, seed, site, n, x_m, y_m);
-        if (!border.track || border.away_m >= least) continue;
+        const PlotBorder border = plot_border(cell, seed, site, n, from_x[0], from_y[0]);
+        if (border.away_m >= out->away_m) continue;
         const double dx = (double)(cell->x_m[n] - cell->x_m[site]), dy = (double)(cell->y_m[n] - cell->y_m[site]);
         const double apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3);
-        least = border.away_m;
-        across[0] = -dx / apart_m, across[1] = -dy / apart_m;
+        *out = border;
+        away_from[0] = -dx / apart_m, away_from[1] = -dy / apart_m;
+        *fields = cell->id[n] ^ cell->id[site];
     }
-    return least;
+    return out->away_m < INFINITY;
 }

@@ -70,14 +70,10 @@ static Added section(const Strip *strip, int strips, double half_m, double acros
 /* Tracks between fields have no segments of their own. */
 static bool field_track(double *away_m, double across[2], uint64_t seed, double x_m, double y_m)
 {
-    double x[8], y[8], bent_x[8], bent_y[8], i[8], j[8];
-    float  in_x[8], in_y[8];
-    F32x8  from_x, from_y;
-    for (int k = 0; k < 8; k++) x[k] = x_m, y[k] = y_m;
-    plot_bend(bent_x, bent_y, seed, x, y);
-    plot_cells_of(i, j, &from_x, &from_y, bent_x, bent_y);
-    f32x8_store(in_x, from_x), f32x8_store(in_y, from_y);
-    *away_m = plot_track(across, plot_cell_at(seed, (int64_t)i[0], (int64_t)j[0]), seed, in_x[0], in_y[0]);
+    PlotBorder border;
+    uint64_t   fields;
+    if (!plot_border_about(&border, across, &fields, seed, x_m, y_m) || !border.track) return false;
+    *away_m = border.away_m;
     return *away_m < 2.5;
 }
 

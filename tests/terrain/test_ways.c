@@ -2,6 +2,7 @@
  * them lies under a reported vehicle, and plots keep off the roads. */
 #include "tests/check.h"
 
+#include "terrain/landscape/hedges.h"
 #include "terrain/landscape/ways.h"
 
 enum { most = 20000 };
@@ -92,6 +93,35 @@ static void roads_join_the_villages(void **state)
     }
 }
 
+/* Hedgerows: strips of scrub between other classes, none across a way or within a vehicle's reach. */
+static void hedges_stand_on_borders(const Landscape *land, const GroundFix *fix, int fixes)
+{
+    const double half[2][2] = {{-1200, -1200}, {1200, 0}}, rest[2][2] = {{-1200, 0}, {1200, 1200}};
+    HedgePlace  *hedge, *more;
+    int          count, others, narrow = 0, of_height[3] = {0};
+    CHECK(landscape_hedges(&hedge, &count, land, half[0], half[1], 8) == STATUS_OK);
+    CHECK(landscape_hedges(&more, &others, land, rest[0], rest[1], 8) == STATUS_OK);
+    CHECK(count > 200 && others > 200);
+    for (int n = 0; n < count; n++) {
+        const HedgePlace *h = &hedge[n];
+        WayPlace          way;
+        int               open = 0;
+        of_height[h->height]++;
+        for (int k = 0; k < 16; k++) /* 7 m off, most is of other classes */
+            open += landscape_surface(land, h->x_m + 7 * cos(k * pi_rad / 8), h->y_m + 7 * sin(k * pi_rad / 8)) !=
+                    SURFACE_SCRUB;
+        narrow += open >= 8;
+        CHECK(!landscape_way(&way, land, h->x_m, h->y_m) || fabs(way.across_m) > way.half_m ||
+              way.kind > WAY_TRACK);
+        for (int k = 0; k < fixes; k++)
+            CHECK(hypot(fix[k].p_enu[0] - h->x_m, fix[k].p_enu[1] - h->y_m) > 6.9); /* 8 less the border's wander */
+    }
+    print_message("%d and %d places of hedges, %d on strips, %d cut, %d shrubs, %d trees\n", count, others, narrow,
+                  of_height[0], of_height[1], of_height[2]);
+    CHECK(narrow > count * 7 / 10 && of_height[0] && of_height[1] && of_height[2]);
+    free(hedge), free(more);
+}
+
 static void vehicles_stand_in_the_open(void **state)
 {
     (void)state;
@@ -116,6 +146,7 @@ static void vehicles_stand_in_the_open(void **state)
             CHECK(s != SURFACE_ROAD && s != SURFACE_WETLAND && s != SURFACE_NONE);
             tracks += n >= 100 && s == SURFACE_TRACK;
         }
+        hedges_stand_on_borders(&land, fix, fixes);
         print_message("seed %d: %d of 300 on tracks, worst fix %.4f m\n", (int)seed, tracks, land.fit_worst_m);
         CHECK(tracks > 200);
         landscape_destroy(&land);
