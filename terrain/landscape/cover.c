@@ -216,7 +216,8 @@ static void invented_surfaces(int32_t surface[8], const Cover *cover, const doub
     F32x8       grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, zero), wild) - f32x8_set(0.88);
     F32x8       stony = f32x8_fma(f32x8_set(-0.3), wet, wild) - f32x8_set(1.24);
     stony = f32x8_fma(f32x8_set(0.12), f32x8_clamp(slope * f32x8_set(5), 0, 1), stony);
-    F32x8       marsh = f32x8_fma(f32x8_set(0.3), middle, wet) - f32x8_set(0.72);
+    F32x8       marsh = f32x8_fma(f32x8_set(0.35), middle, wet) - f32x8_set(0.92);
+    marsh = f32x8_fma(f32x8_set(0.22), patch, marsh);
     const F32x8 dry_from = f32x8_set(-0.1), soil_from = f32x8_set(-0.16);
 
     double   i[8], j[8], bent_x[8], bent_y[8];

@@ -135,10 +135,20 @@ typedef struct PlotBorder {
 
 PlotBorder plot_border(const PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m);
 
-/* The nearest border about a place, the unit vector away from it on the bent plane, and a number of its two fields. */
+/* The nearest border about a place, the unit vector away from it, but for the bend, and a number of its two fields. */
 bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m);
 
-/* The fields are laid out on a plane that is bent over tens of metres: where eight places are on it. */
+/* Cosine and sine of the angle by which a seed turns its fields from north. */
+static inline void plot_turn(double *cosine, double *sine, uint64_t seed)
+{
+    static const double of[8][2] = {{3 / 5.0, 4 / 5.0},     {5 / 13.0, 12 / 13.0},  {8 / 17.0, 15 / 17.0},
+                                    {20 / 29.0, 21 / 29.0}, {12 / 37.0, 35 / 37.0}, {9 / 41.0, 40 / 41.0},
+                                    {28 / 53.0, 45 / 53.0}, {33 / 65.0, 56 / 65.0}};
+    const uint64_t      h = landscape_hash(seed + 25, 0, 0), swap = h >> 60 & 1;
+    *cosine = of[h >> 61][swap], *sine = of[h >> 61][1 - swap];
+}
+
+/* The fields are laid out on a plane that is turned, and bent over hundreds of metres: where eight places are on it. */
 static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8], const double y_m[8])
 {
     static const double wave_m[] = {2300, 330}, away_m[] = {260, 28};
@@ -151,7 +161,12 @@ static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, 
         dy = f32x8_fma(f32x8_set(away_m[n]), wave_y, dy);
     }
     f32x8_store(by_x, dx), f32x8_store(by_y, dy);
-    for (int k = 0; k < 8; k++) bent_x[k] = x_m[k] + (double)by_x[k], bent_y[k] = y_m[k] + (double)by_y[k];
+    double c, t;
+    plot_turn(&c, &t, seed);
+    for (int k = 0; k < 8; k++) {
+        bent_x[k] = c * x_m[k] - t * y_m[k] + (double)by_x[k];
+        bent_y[k] = t * x_m[k] + c * y_m[k] + (double)by_y[k];
+    }
 }
 
 /* Valid until the thread's next call. */

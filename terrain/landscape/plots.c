@@ -86,7 +86,7 @@ PlotBorder plot_border(const PlotCell *cell, uint64_t seed, int site, int other,
 
 bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m)
 {
-    double x[8], y[8], bent_x[8], bent_y[8], i[8], j[8], near_least = INFINITY;
+    double x[8], y[8], bent_x[8], bent_y[8], i[8], j[8], near_least = INFINITY, c, t;
     float  from_x[8], from_y[8];
     F32x8  in_x, in_y;
     int    site = 0;
@@ -99,6 +99,7 @@ bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, u
         const double dx = (double)(from_x[0] - cell->x_m[n]), dy = (double)(from_y[0] - cell->y_m[n]);
         if (dx * dx + dy * dy < near_least) near_least = dx * dx + dy * dy, site = n;
     }
+    plot_turn(&c, &t, seed);
     out->away_m = INFINITY;
     for (int n = 0; n < plot_sites; n++) {
         if (cell->field[n] == cell->field[site]) continue;
@@ -107,7 +108,7 @@ bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, u
         const double dx = (double)(cell->x_m[n] - cell->x_m[site]), dy = (double)(cell->y_m[n] - cell->y_m[site]);
         const double apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3);
         *out = border;
-        away_from[0] = -dx / apart_m, away_from[1] = -dy / apart_m;
+        away_from[0] = -(c * dx + t * dy) / apart_m, away_from[1] = (t * dx - c * dy) / apart_m;
         *fields = cell->id[n] ^ cell->id[site];
     }
     return out->away_m < INFINITY;

@@ -207,11 +207,13 @@ F32x8 ways_wet(const Ways *ways, const double x_m[8], const double y_m[8])
         }
     const F32x8 x = f32x8_of_doubles(at[0]), y = f32x8_of_doubles(at[1]), fx = f32x8_floor(x), fy = f32x8_floor(y);
     const I32x8 cell = i32x8_add(i32x8_mul(i32x8_truncate(fy), i32x8_set(ways->cx)), i32x8_truncate(fx));
+    const F32x8 u = (x - fx) * (x - fx) * (f32x8_set(3) - f32x8_set(2) * (x - fx));
+    const F32x8 v = (y - fy) * (y - fy) * (f32x8_set(3) - f32x8_set(2) * (y - fy));
     const I32x8 corners = _mm256_i32gather_epi32((const int *)(const void *)ways->wet, cell, 4);
-    F32x8       v[4];
+    F32x8       w[4];
     for (int c = 0; c < 4; c++)
-        v[c] = f32x8_of_ints(i32x8_and(i32x8_shift_right(corners, 8 * c), i32x8_set(255))) - f32x8_set(128);
-    return f32x8_lerp(f32x8_lerp(v[0], v[1], x - fx), f32x8_lerp(v[2], v[3], x - fx), y - fy) * f32x8_set(1 / 127.0);
+        w[c] = f32x8_of_ints(i32x8_and(i32x8_shift_right(corners, 8 * c), i32x8_set(255))) - f32x8_set(128);
+    return f32x8_lerp(f32x8_lerp(w[0], w[1], u), f32x8_lerp(w[2], w[3], u), v) * f32x8_set(1 / 127.0);
 }
 
 /* ---- nearest ---------------------------------------------------------------------------------- */

@@ -99,13 +99,18 @@ static SurfaceClass plain_surface(const Landscape *land, uint64_t seed, double x
     const double steep = sqrt(dx * dx + dy * dy) / (2 * arm_m);
     const double slope = fmax((isfinite(steep) ? steep : 0) - sqrt(x_m * x_m + y_m * y_m) / 6371e3, 0);
     const double middle = noise(seed + 11, 83, x_m, y_m), wander = wander_at(seed, x_m, y_m);
-    const double wild = noise(seed + 10, 310, x_m, y_m) + 0.5 * middle + 0.14 * noise(seed + 12, 17, x_m, y_m) +
+    const double patch = noise(seed + 12, 17, x_m, y_m);
+    const double wild = noise(seed + 10, 310, x_m, y_m) + 0.5 * middle + 0.14 * patch +
                         4 * slope;
     const double grown = wild - 0.88 + 0.02 * wander;
     const double stony = wild - 1.24 + 0.12 * fmin(slope / 0.2, 1) + 0.02 * wander;
     if (stony > 0) return SURFACE_ROCK;
 
-    double bent_x = x_m, bent_y = y_m;
+    static const double turn[8][2] = {{3, 4}, {5, 12}, {8, 15}, {20, 21}, {12, 35}, {9, 40}, {28, 45}, {33, 56}};
+    const uint64_t      h_turn = mixed(seed + 25, 0, 0);
+    const double        angle = atan2(turn[h_turn >> 61][1], turn[h_turn >> 61][0]);
+    const double        c = h_turn >> 60 & 1 ? sin(angle) : cos(angle), t = h_turn >> 60 & 1 ? cos(angle) : sin(angle);
+    double              bent_x = c * x_m - t * y_m, bent_y = t * x_m + c * y_m;
     for (size_t n = 0; n < sizeof bend_m / sizeof *bend_m; n++) {
         bent_x += bend_m[n] * noise(seed + 26 + n, bend_wave_m[n], x_m, y_m);
         bent_y += bend_m[n] * second_noise(seed + 26 + n, bend_wave_m[n], x_m, y_m);
@@ -141,7 +146,7 @@ static SurfaceClass plain_surface(const Landscape *land, uint64_t seed, double x
     if (hedge && (track ? away_m > 2 && edge_m < 3.6 : edge_m < 1.5)) return SURFACE_SCRUB;
     if (track && edge_m < 2.7) return SURFACE_GRASS;
     if (grown > 0) return SURFACE_SCRUB;
-    if (0.3 * middle - 0.72 + 0.02 * wander > 0) return SURFACE_WETLAND;
+    if (0.35 * middle + 0.22 * patch - 0.92 + 0.02 * wander > 0) return SURFACE_WETLAND;
     if (grown > -0.1) return SURFACE_DRY_GRASS;
     const int own = here_m < 0 ? other : best;
     return crop(seed, id[own], ci + own % 3 - 1, cj + own / 3 - 1);
