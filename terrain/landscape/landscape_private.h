@@ -10,8 +10,9 @@
  * nearest_fix.c      spatial index of points
  * plots.c            synthetic fields
  * ways.c             roads, streams, villages: terrain/landscape/ways.h
+ * hedges.c           places of hedgerows
  * cover.c            land cover: tracks, hedges, woods; land cover from files
- * texture.c          rows of fields; brightness from photographs
+ * texture.c          brightness from photographs
  * detail.c           noise of the ground; detail_table.c: its statistics */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
