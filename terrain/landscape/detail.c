@@ -5,7 +5,7 @@
  * at lattice points and between them; each lattice is turned by its own angle, so that none shows as a grid. Every
  * lattice point has two uncorrelated values: one is of the albedo and the height, and what of temperature and
  * backscatter does not follow the albedo is of the other. */
-#include "terrain/landscape/detail_private.h"
+#include "terrain/landscape/detail.h"
 #include "terrain/landscape/landscape_eight_private.h"
 #include "terrain/landscape/ways.h"
 

@@ -247,4 +247,10 @@ typedef struct WaysGround {
 
 Status ways_create(struct Ways **out, const WaysGround *ground);
 
+/* ---- photograph ---------------------------------------------------------------------------- */
+
+/* Side of the photograph's pixels at each place, 0: no photograph there (terrain/landscape/texture.c). */
+void texture_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
+                         unsigned lanes);
+
 #endif

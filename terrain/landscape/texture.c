@@ -1,6 +1,5 @@
 /* terrain/landscape/texture.c: brightness of the ground relative to the mean of its class, from the
  * photograph. */
-#include "terrain/landscape/detail_private.h"
 #include "terrain/landscape/landscape_private.h"
 
 /* ---- photograph ----------------------------------------------------------------------------- */

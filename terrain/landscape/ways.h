@@ -6,7 +6,7 @@
 #ifndef TERRAIN_LANDSCAPE_WAYS_H
 #define TERRAIN_LANDSCAPE_WAYS_H
 
-#include "terrain/landscape/detail.h"
+#include "terrain/landscape/ground_detail.h"
 
 typedef enum WayKind { WAY_NONE, WAY_ROAD, WAY_LANE, WAY_TRACK, WAY_STREAM, WAY_GULLY, WAY_KINDS } WayKind;
 

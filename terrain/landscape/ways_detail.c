@@ -1,6 +1,6 @@
 /* terrain/landscape/ways_detail.c: what lies along ways and fields: wheel paths and worn edges of roads, ruts and the
  * grassy middle of tracks, rows of crops and furrows. Estimates, all of them. */
-#include "terrain/landscape/detail_private.h"
+#include "terrain/landscape/detail_table.h"
 #include "terrain/landscape/ways_private.h"
 
 /* What a detail adds: to the factors' 1, and to the rest. */
