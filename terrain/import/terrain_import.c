@@ -572,7 +572,7 @@ static bool tell(void *user, const char *stage, double share)
     return true;
 }
 
-Status terrain_store_rebuild(const char *path, const TerrainStore *old)
+Status terrain_store_rebuild(const char *path, const char *options)
 {
     TerrainOptions *o = malloc(sizeof *o);
     TerrainReport   r;
@@ -581,7 +581,7 @@ Status terrain_store_rebuild(const char *path, const TerrainStore *old)
     int             line = 0;
     double          begun_s = wall_clock_s();
     if (!o) return STATUS_NO_MEMORY;
-    Status status = old && old->options && terrain_options_parse(o, &why, &line, old->options) ? STATUS_OK : STATUS_BAD_VALUE;
+    Status status = options && terrain_options_parse(o, &why, &line, options) ? STATUS_OK : STATUS_BAD_VALUE;
     if (status != STATUS_OK)
         log_error("terrain.store: %s cannot be made again: line %d of its options: %s; run `pitviper terrain import` again",
                   path, line, why);

@@ -28,7 +28,7 @@ typedef struct TerrainReport {
  * by a whole store. */
 Status terrain_import(TerrainReport *out, const TerrainOptions *options, const char *path, Pool *pool,
                       TerrainProgress *progress, void *user);
-/* Makes a store again with the options that its header has, on all processors. old: as it was opened. */
-Status terrain_store_rebuild(const char *path, const TerrainStore *old);
+/* Makes a store again with the options that it has, on all processors. options: as TerrainStore or store_recall has them. */
+Status terrain_store_rebuild(const char *path, const char *options);
 
 #endif

@@ -316,13 +316,13 @@ static void a_store_is_made_again_from_its_header(void **state)
     assert_int_equal(store_open(&store, out), STATUS_OK);
     const uint64_t was = store.content;
     CHECK(store_sources(&store, which, sizeof which) == STORE_FRESH);
-    assert_int_equal(terrain_store_rebuild(out, &store), STATUS_OK);
+    assert_int_equal(terrain_store_rebuild(out, store.options), STATUS_OK);
     store_close(&store);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     CHECK(store.content == was); /* the same, on other threads */
     write_grid(path, &other);
     CHECK(store_sources(&store, which, sizeof which) == STORE_CHANGED && strstr(which, "again"));
-    assert_int_equal(terrain_store_rebuild(out, &store), STATUS_OK);
+    assert_int_equal(terrain_store_rebuild(out, store.options), STATUS_OK);
     store_close(&store);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     CHECK(store_sources(&store, which, sizeof which) == STORE_FRESH);
