@@ -2,6 +2,7 @@
  * covers it. */
 #include "terrain/import/terrain_import.h"
 
+#include "terrain/import/building_count.h"
 #include "terrain/import/ground_rows.h"
 #include "terrain/import/surface_strip.h"
 #include "terrain/landscape/cover_table.h"
@@ -30,8 +31,8 @@ typedef struct Making {
     StoreWriter     *writer;
     StreamLevel      level;
     int              strip_rows;
-    long             kinds[3], quads; /* quads: four times buildings less courtyards */
-    uint8_t         *last_kind;       /* row of the strip before, for quads */
+    long             kinds[3];
+    BuildingCount    buildings;
     long             voids;
     TerrainReport    r;
 } Making;
@@ -419,33 +420,17 @@ static Status make_canopy(Making *m, int row0, int rows, const SurfaceStrip *str
 
 /* ---- strips ---------------------------------------------------------------------------------- */
 
-/* Buildings less courtyards: the Euler number of their cells, four-connected, from the 2 x 2 squares of the picture with a
- * rim of nothing (Gray 1971): once for every pair of neighbouring rows. */
-static void count_quads(Making *m, const uint8_t *south, const uint8_t *north)
-{
-    const int nx = m->level.nx;
-    for (int i = 0; i <= nx; i++) {
-        const int a = south && i > 0 && south[i - 1] == CELL_BUILDING, b = south && i < nx && south[i] == CELL_BUILDING;
-        const int c = north && i > 0 && north[i - 1] == CELL_BUILDING, d = north && i < nx && north[i] == CELL_BUILDING;
-        const int sum = a + b + c + d;
-        m->quads += sum == 1 ? 1 : sum == 3 ? -1 : sum == 2 && a == d ? 2 : 0;
-    }
-}
-
-static Status count_kinds(Making *m, int row0, int rows, const SurfaceStrip *strip)
+static Status count_kinds(Making *m, int rows, const SurfaceStrip *strip)
 {
     const size_t nx = (size_t)m->level.nx;
-    if (!m->last_kind) m->last_kind = calloc(nx, 1);
-    if (!m->last_kind) return STATUS_NO_MEMORY;
-    for (int r = 0; r < rows; r++) {
+    Status       status = STATUS_OK;
+    for (int r = 0; r < rows && status == STATUS_OK; r++) {
         const uint8_t *row = strip->kind + (size_t)r * nx;
         for (size_t i = 0; i < nx; i++) m->kinds[row[i] <= CELL_TREE ? row[i] : 0]++;
-        count_quads(m, r ? row - nx : m->last_kind, row);
+        status = building_count_row(&m->buildings, m->level.nx, row);
     }
-    memcpy(m->last_kind, strip->kind + (size_t)(rows - 1) * nx, nx);
-    if (row0 + rows == m->level.ny) count_quads(m, m->last_kind, NULL);
     m->voids += strip->voids;
-    return STATUS_OK;
+    return status;
 }
 
 static Status make_strip(Making *m, int row0, int rows)
@@ -456,7 +441,7 @@ static Status make_strip(Making *m, int row0, int rows)
     Status       status = STATUS_OK;
     if (m->surface) {
         status = surface_strip_make(&strip, &from, row0, rows);
-        if (status == STATUS_OK) status = count_kinds(m, row0, rows, &strip);
+        if (status == STATUS_OK) status = count_kinds(m, rows, &strip);
     } else {
         strip.h_m = malloc((size_t)rows * (size_t)m->level.nx * sizeof *strip.h_m);
         status    = strip.h_m ? elevation_stream_heights(m->terrain, row0, rows, strip.h_m, NULL, true) : STATUS_NO_MEMORY;
@@ -507,7 +492,7 @@ static Status finish(Making *m, const char *path)
         store_writer_abandon(writer);
         return STATUS_IO;
     }
-    Status status = store_writer_finish(writer, (uint64_t)(m->quads > 0 ? m->quads / 4 : 0), &m->r.store);
+    Status status = store_writer_finish(writer, (uint64_t)m->buildings.count, &m->r.store);
     m->r.seconds[3] += wall_clock_s() - begun_s;
     if (status == STATUS_OK) status = store_open(&store, path);
     if (status == STATUS_OK) status = elevation_stream_report(&m->r.elevation, m->first, m->surface ? NULL : &store.elevation);
@@ -558,7 +543,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     raster_set_close(&m->canopy_cover);
     free(m->source);
     free(m->options);
-    free(m->last_kind);
+    building_count_free(&m->buildings);
     free(m);
     return status;
 }

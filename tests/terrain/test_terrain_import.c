@@ -3,6 +3,7 @@
 #include "tests/check.h"
 
 #include "terrain/earth/geoid.h"
+#include "terrain/import/building_count.h"
 #include "terrain/import/terrain_import.h"
 #include "terrain/landscape/elevation_stream.h"
 
@@ -245,6 +246,87 @@ static void classes_are_where_the_file_has_them(void **state)
     store_close(&store);
 }
 
+/* ---- surface models -------------------------------------------------------------------------- */
+
+static const int tree[3][2] = {{150, 50}, {50, 150}, {160, 165}};
+
+static bool in_house(int i, int j) { return i >= 40 && i < 65 && j >= 40 && j < 60; }
+static bool in_court(int i, int j) { return i >= 113 && i < 128 && j >= 113 && j < 128; }
+static bool in_yard_house(int i, int j) { return i >= 100 && i < 141 && j >= 100 && j < 141 && !in_court(i, j); }
+static float slope(int i, int j) { return (float)(200 + 0.02 * i + 0.01 * j); }
+
+/* Two houses, one about a courtyard, and three trees; row 0 northernmost. */
+static float town(int i, int j)
+{
+    double above_m = in_house(i, j) ? 8 : in_yard_house(i, j) ? 11 : 0;
+    for (int k = 0; k < 3; k++) {
+        const double away_m = hypot(i - tree[k][0], j - tree[k][1]);
+        const double rough_m = 0.8 * random_uniform(7, 1, (uint32_t)i, (uint64_t)j);
+        if (away_m < 5) above_m = 12 - 0.4 * away_m * away_m - rough_m;
+    }
+    return (float)((double)slope(i, j) + above_m);
+}
+
+static void houses_and_trees_are_taken_off_a_surface_model(void **state)
+{
+    (void)state;
+    char          path[temp_name_size], out[temp_name_size];
+    const char   *why;
+    TerrainReport r;
+    TerrainStore  store;
+    const double  pixel_deg = 0.9e-5, west_deg = 11, south_deg = 0.001; /* of a metre at the equator */
+    const Grid    g = {"town", 200, 200, west_deg, south_deg, pixel_deg, town};
+    write_grid(path, &g);
+    path_of(out, "town.store");
+    TerrainOptions o;
+    terrain_options_default(&o);
+    CHECK(terrain_options_set(&o, &why, "surface", path) && terrain_options_set(&o, &why, "horizon", "1") &&
+          terrain_options_set(&o, &why, "vertical", "ellipsoid") && terrain_options_set(&o, &why, "spacing", "1"));
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(store_open(&store, out), STATUS_OK);
+    CHECK(r.apart && !r.beside);
+    print_message("%d buildings, %d crowns\n", (int)store.building_count, (int)store.crown_count);
+    CHECK(store.building_count == 2);
+    int crowns = 0; /* a house's corner may leave a crown of one cell */
+    for (int n = 0; n < (int)store.crown_count; n++) crowns += store.crown[n].radius_m > 1;
+    CHECK(crowns == 3);
+    static const int place[][2] = {{52, 50}, {105, 120}, {120, 120}, {80, 80}, {150, 50}, {160, 165}};
+    static const double above_m[] = {8, 11, 0, 0, 0, 0};
+    for (int k = 0; k < 6; k++) {
+        const int    i = place[k][0], j = place[k][1];
+        const double h_m = stored_h_m(&store, south_deg + (199.5 - j) * pixel_deg, west_deg + (i + 0.5) * pixel_deg);
+        CHECK_NEAR(h_m, (double)slope(i, j) + above_m[k], 0.3);
+        /* the frame's origin is the middle of the file */
+        const uint8_t surface = (uint8_t)cover_grid_at(store.surface, i - 99.5, 99.5 - j);
+        CHECK((surface == SURFACE_BUILT) == (k < 2));
+    }
+    for (int k = 0; k < 3; k++) {
+        double nearest_m = INFINITY;
+        for (int n = 0; n < (int)store.crown_count; n++) {
+            const Crown *c = &store.crown[n];
+            nearest_m = fmin(nearest_m, hypot((double)c->x_m - (tree[k][0] - 99.5), (double)c->y_m - (99.5 - tree[k][1])));
+            CHECK(c->radius_m < 1 || (c->height_m > 10 && c->height_m < 13 && c->radius_m > 3 && c->radius_m < 6));
+        }
+        CHECK(nearest_m < 2);
+    }
+    store_close(&store);
+}
+
+static void buildings_are_counted_over_rows(void **state)
+{
+    (void)state;
+    /* a ring about a cell, two arms that meet in the last row but one, cells that touch at a corner */
+    static const char *const rows[] = {"###..#.#.#", "#.#..#.#..", "###..#.#..", ".....###..", "#.......##"};
+    BuildingCount b = {0};
+    for (int j = 0; j < 5; j++) {
+        uint8_t kind[10];
+        for (int i = 0; i < 10; i++) kind[i] = rows[j][i] == '#' ? CELL_BUILDING : i & 1 ? CELL_TREE : CELL_BARE;
+        assert_int_equal(building_count_row(&b, 10, kind), STATUS_OK);
+    }
+    assert_int_equal(b.count, 5);
+    building_count_free(&b);
+}
+
 /* ---- options, stopping, making again --------------------------------------------------------- */
 
 static void options_are_a_text_and_back(void **state)
@@ -360,6 +442,8 @@ int main(void)
         cmocka_unit_test(first_given_wins_and_each_has_its_datum),
         cmocka_unit_test(holes_are_filled_and_counted),
         cmocka_unit_test(classes_are_where_the_file_has_them),
+        cmocka_unit_test(houses_and_trees_are_taken_off_a_surface_model),
+        cmocka_unit_test(buildings_are_counted_over_rows),
         cmocka_unit_test(options_are_a_text_and_back),
         cmocka_unit_test(stopped_or_refused_it_leaves_nothing),
         cmocka_unit_test(a_store_is_made_again_from_its_header),
