@@ -160,7 +160,7 @@ static Status read_models(Work *w, const SurfaceSources *from)
         status = elevation_stream_heights(from->bare, w->r0, rows, w->bare_m, w->of_file, false);
         memcpy(w->plain_m, w->bare_m, posts * sizeof *w->plain_m);
         for (size_t n = 0; n < posts; n++)
-            if (w->of_file[n] != 1) w->bare_m[n] = NAN;
+            if (w->of_file[n] != 1 && w->of_file[n] != 3) w->bare_m[n] = NAN;
     }
     if (status == STATUS_OK)
         status = elevation_stream_heights(from->surface, w->r0, rows, w->surface_m, w->of_file, false);
@@ -168,8 +168,10 @@ static Status read_models(Work *w, const SurfaceSources *from)
     if (!from->bare) memcpy(w->plain_m, w->surface_m, posts * sizeof *w->plain_m);
     const size_t first = (size_t)(w->row0 - w->r0) * (size_t)w->level.nx, end = first + (size_t)w->rows * (size_t)w->level.nx;
     for (size_t n = 0; n < posts; n++) {
-        if (w->of_file[n] != 1) w->surface_m[n] = NAN;
-        if (w->of_file[n] == 2 && n >= first && n < end) w->out->voids++;
+        if (w->of_file[n] != 1 && w->of_file[n] != 3) w->surface_m[n] = NAN;
+        if (n < first || n >= end) continue;
+        w->out->voids += w->of_file[n] == 2;
+        w->out->voids_coarser += w->of_file[n] == 3;
     }
     measure_away(w);
     return STATUS_OK;

@@ -33,7 +33,7 @@ typedef struct Making {
     int              strip_rows;
     long             kinds[3];
     BuildingCount    buildings;
-    long             voids;
+    long             voids, voids_coarser;
     TerrainReport    r;
 } Making;
 
@@ -430,6 +430,7 @@ static Status count_kinds(Making *m, int rows, const SurfaceStrip *strip)
         status = building_count_row(&m->buildings, m->level.nx, row);
     }
     m->voids += strip->voids;
+    m->voids_coarser += strip->voids_coarser;
     return status;
 }
 
@@ -496,7 +497,7 @@ static Status finish(Making *m, const char *path)
     m->r.seconds[3] += wall_clock_s() - begun_s;
     if (status == STATUS_OK) status = store_open(&store, path);
     if (status == STATUS_OK) status = elevation_stream_report(&m->r.elevation, m->first, m->surface ? NULL : &store.elevation);
-    if (m->surface) m->r.elevation.voids = m->voids;
+    if (m->surface) m->r.elevation.voids = m->voids, m->r.elevation.voids_coarser = m->voids_coarser;
     store_close(&store);
     double cells = 0, posts = 0;
     for (int s = 1; s < SURFACE_COUNT; s++) cells += m->r.cover.share[s];

@@ -151,6 +151,22 @@ static bool grid_at(double *h_m, double *out_m, const Grid *g, const Patch *patc
     return true;
 }
 
+/* Inside a hole of grid `at` the next coarser grid that holds the place, and inside a hole of that the next again; where
+ * there is none, what the hole was filled with. */
+static double coarser_in_holes(const Import *m, const View *view, int at, double filled_m, const double *x,
+                               const double *y, double n_m)
+{
+    double sum = 0, left = 1, h_m = filled_m, out_m = 0;
+    for (int k = at; k < m->grids; k++) {
+        if (k > at && (!grid_at(&h_m, &out_m, &m->grid[k], &view->patch[k], x[k], y[k], n_m) || out_m > 0)) continue;
+        const double inside = patch_hole(&view->patch[k], x[k], y[k]);
+        if (!(inside > 0)) return sum + left * h_m;
+        sum += left * (1 - inside) * h_m;
+        left *= inside;
+    }
+    return sum + left * filled_m;
+}
+
 /* All grids together: the finest that holds the place, led over to by finer ones near by; between and beyond all of
  * them the edges, the nearest first, and farther out the plain. */
 static double composed(const Import *m, const View *view, const double *x, const double *y, double n_m)
@@ -162,6 +178,7 @@ static double composed(const Import *m, const View *view, const double *x, const
         else if (out_m[at] == 0) break;
     }
     if (at < m->grids) {
+        if (view->patch[at].share) h_m[at] = coarser_in_holes(m, view, at, h_m[at], x, y, n_m);
         for (int k = 0; k < at; k++) {
             if (!(out_m[k] < m->grid[k].short_m)) continue;
             const double share = 1 - smooth_step(0, m->grid[k].short_m, out_m[k]);

@@ -49,6 +49,11 @@ static void write_grid(char out[temp_name_size], const Grid *g)
 static float hills(int i, int j) { return (float)(300 + 20 * sin(0.03 * i) * cos(0.02 * j) + 2 * sin(0.7 * i + 0.4 * j)); }
 static float with_holes(int i, int j) { return (i / 40 + j / 30) % 4 == 0 ? -9999 : hills(i, j); }
 static float higher(int i, int j) { return hills(i, j) + 25; }
+static float higher_coarse(int i, int j)
+{
+    const double x = 4 * i + 1.5, y = 4 * j + 1.5;
+    return (float)(325 + 20 * sin(0.03 * x) * cos(0.02 * y) + 2 * sin(0.7 * x + 0.4 * y));
+}
 static float flat(int i, int j) { return (float)(100 + 0 * i * j); }
 static float codes(int i, int j) { return (float)(j < 125 ? 10 : 60 + 0 * i); }
 
@@ -73,6 +78,15 @@ static TerrainOptions options_of(const char *elevation)
     return o;
 }
 
+/* Posts 2 m apart: sooner done. */
+static TerrainOptions coarse_options_of(const char *elevation)
+{
+    TerrainOptions o = options_of(elevation);
+    const char    *why;
+    CHECK(terrain_options_set(&o, &why, "spacing", "2"));
+    return o;
+}
+
 /* ---- the same posts -------------------------------------------------------------------------- */
 
 static void heights_of(float *h_m, const ElevationFiles *files, const LocalFrame *frame, int rows, Pool *pool,
@@ -94,13 +108,17 @@ static void strips_and_threads_give_the_same_posts(void **state)
 {
     (void)state;
     enum { most = 700 * 700 };
-    char             path[temp_name_size];
+    char             path[2 * temp_name_size], coarse[temp_name_size];
     const LocalFrame frame = frame_of(&ground);
     float           *whole = malloc(most * sizeof *whole), *part = malloc(most * sizeof *part);
     StreamLevel      level, again;
     Pool            *pool;
     assert_int_equal(pool_create(&pool, 3), STATUS_OK);
-    write_grid(path, &ground);
+    /* with holes, which a coarser file fills */
+    const Grid g = {"holes", 260, 250, 11, 46, 1e-5, with_holes}, c = {"coarse", 65, 63, 11, 46, 4e-5, higher_coarse};
+    write_grid(path, &g);
+    write_grid(coarse, &c);
+    snprintf(path + strlen(path), sizeof path - strlen(path), ",%s", coarse);
     const ElevationFiles files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_GEOID, .horizon_m = 1000};
     heights_of(whole, &files, &frame, 10000, NULL, &level);
     CHECK(level.nx * level.ny <= most && level.ny > 200);
@@ -182,7 +200,7 @@ static void first_given_wins_and_each_has_its_datum(void **state)
     for (int k = 0; k < 3; k++) {
         if (k == 2) snprintf(list, sizeof list, "%s@geoid,%s@ellipsoid", one, two);
         else snprintf(list, sizeof list, "%s,%s", k ? two : one, k ? one : two);
-        const TerrainOptions o = options_of(list);
+        const TerrainOptions o = coarse_options_of(list);
         assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
         CHECK(r.elevation.grids == 2 && r.elevation.sheets == 2);
         assert_int_equal(store_open(&store, out), STATUS_OK);
@@ -214,6 +232,38 @@ static void holes_are_filled_and_counted(void **state)
         CHECK(h_m > 270 && h_m < 330); /* within what is around */
     }
     store_close(&store);
+}
+
+/* Deep in a hole of 40 x 30 pixels the coarser file's ground, 25 m higher; led over to from the rim, without a step; what the fine
+ * file has stays. */
+static void holes_are_filled_from_coarser_files_first(void **state)
+{
+    (void)state;
+    char          fine[temp_name_size], coarse[temp_name_size], list[2 * temp_name_size], out[temp_name_size];
+    const Grid    g = {"holes", 260, 250, 11, 46, 1e-5, with_holes}, c = {"coarse", 65, 63, 11, 46, 4e-5, higher_coarse};
+    TerrainReport r;
+    TerrainStore  store;
+    write_grid(fine, &g);
+    write_grid(coarse, &c);
+    snprintf(list, sizeof list, "%s,%s", fine, coarse);
+    path_of(out, "coarser.store");
+    const TerrainOptions o = options_of(list);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(store_open(&store, out), STATUS_OK);
+    double last_m = 0, worst_m = 0, deep_m = 0, steep_m = 0;
+    for (int i = 5; i < 250; i++) { /* along row 135: holes are pixels 0 .. 39 and 160 .. 199 */
+        const double h_m = stored_h_m(&store, 46 + (249.5 - 135) * 1e-5, 11 + (i + 0.5) * 1e-5) - (double)hills(i, 135);
+        const bool   hole = with_holes(i, 135) < 0;
+        if (!hole && with_holes(i - 2, 135) > 0 && with_holes(i + 2, 135) > 0) worst_m = fmax(worst_m, fabs(h_m));
+        if (i >= 175 && i <= 185) deep_m = fmax(deep_m, fabs(h_m - 25));
+        if (i > 5) steep_m = fmax(steep_m, fabs(h_m - last_m));
+        last_m = h_m;
+    }
+    store_close(&store);
+    print_message("off %.2f m outside, %.2f deep inside, %.2f from pixel to pixel; %ld + %ld posts\n", worst_m, deep_m, steep_m,
+                  r.elevation.voids, r.elevation.voids_coarser);
+    CHECK(worst_m < 1 && deep_m < 3 && steep_m < 8);
+    CHECK(r.elevation.voids > 0 && r.elevation.voids_coarser > r.elevation.voids / 4);
 }
 
 static void classes_are_where_the_file_has_them(void **state)
@@ -401,7 +451,7 @@ static void a_store_is_made_again_from_its_header(void **state)
     first.name = "again";
     write_grid(path, &first);
     path_of(out, "again.store");
-    const TerrainOptions o = options_of(path);
+    const TerrainOptions o = coarse_options_of(path);
     assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     const uint64_t was = store.content;
@@ -441,6 +491,7 @@ int main(void)
         cmocka_unit_test(the_store_has_the_posts_of_the_path_in_memory),
         cmocka_unit_test(first_given_wins_and_each_has_its_datum),
         cmocka_unit_test(holes_are_filled_and_counted),
+        cmocka_unit_test(holes_are_filled_from_coarser_files_first),
         cmocka_unit_test(classes_are_where_the_file_has_them),
         cmocka_unit_test(houses_and_trees_are_taken_off_a_surface_model),
         cmocka_unit_test(buildings_are_counted_over_rows),
