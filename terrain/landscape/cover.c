@@ -1,7 +1,8 @@
 /* terrain/landscape/cover.c: land cover. Synthetic: irregular fields, tracks and hedges between some of them, scrub and
- * rock on steep or uncultivated ground. Real: the land cover files, else the same in the lowlands and woods on the
- * slopes. Pure functions of the position, eight positions at once. */
-#include "terrain/landscape/landscape_eight_private.h"
+ * rock on steep or uncultivated ground, wet grass in hollows; over them roads, streams and
+ * villages (ways.c). Real: the land cover files, else the same in the lowlands and woods on the slopes. Pure functions
+ * of the position, eight positions at once. */
+#include "terrain/landscape/ways_private.h"
 
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -139,30 +140,38 @@ static F32x8 slopes_of_terrain(const Elevation *elevation, const double x_m[8], 
     return f32x8_max(slopes_about(elevation, x_m, y_m, lanes) - lean, f32x8_set(0));
 }
 
+/* ---- borders that wander ---------------------------------------------------------------------- */
+
+/* -1 .. 1 over wavelengths of some metres down to 0.1 m: only places whose class it can change need it. */
+static F32x8 wander_eight(uint64_t seed, const double x_m[8], const double y_m[8])
+{
+    static const double wave_m[] = {2.7, 1.2, 0.53, 0.24, 0.11}, share[] = {0.42, 0.26, 0.16, 0.10, 0.06};
+    F32x8               sum = f32x8_set(0);
+    for (int n = 0; n < 5; n++)
+        sum = f32x8_fma(f32x8_set(share[n]), noise_eight(seed + 30 + (uint64_t)n, wave_m[n], x_m, y_m), sum);
+    return sum;
+}
+
 /* ---- synthetic cover ------------------------------------------------------------------------ */
 
-static const double track_half_m = 2, hedge_half_m = 1.5;
+static const double track_half_m = 2, hedge_half_m = 1.5, hedge_beyond_m = 3.6, border_wander_m = 0.6;
 
-/* Cover on the border of two fields, at a position near one; SURFACE_NONE: nothing. */
-static SurfaceClass border_surface(const PlotCell *cell, uint64_t seed, int site, float x_m, float y_m, bool scrubby)
+/* Cover on the border of two fields, at a position near one; SURFACE_NONE: nothing of its own. crop: of the field that
+ * the position is in once the border has wandered. */
+static SurfaceClass border_surface(int32_t *crop, const PlotCell *cell, uint64_t seed, int site, float x_m, float y_m,
+                                   float wander)
 {
-    double       near[plot_sites], border_m = INFINITY;
-    uint64_t     border = 0;
-    for (int n = 0; n < plot_sites; n++) {
-        const double dx = (double)(x_m - cell->x_m[n]), dy = (double)(y_m - cell->y_m[n]);
-        near[n] = dx * dx + dy * dy;
-    }
-    for (int n = 0; n < plot_sites; n++) {
-        if (cell->field[n] == cell->field[site]) continue;
-        /* distance to the perpendicular bisector */
-        const double dx = (double)(cell->x_m[n] - cell->x_m[site]), dy = (double)(cell->y_m[n] - cell->y_m[site]);
-        const double apart_m = sqrt(dx * dx + dy * dy), here_m = 0.5 * (near[n] - near[site]) / fmax(apart_m, 1e-3);
-        if (here_m >= border_m) continue;
-        border_m = here_m;
-        border = landscape_hash(seed + 6, (int64_t)(cell->id[n] ^ cell->id[site]), 0);
-    }
-    if (border_m < track_half_m && unit_from_hash(border) < 0.24) return SURFACE_TRACK;
-    if (scrubby || (border_m < hedge_half_m && unit_from_hash(border) > 0.66)) return SURFACE_SCRUB;
+    PlotBorder border;
+    *crop = cell->crop[site];
+    if (!plot_border(&border, cell, seed, site, x_m, y_m)) return SURFACE_NONE;
+    const double off_m = border_wander_m * (double)wander;
+    double       here_m = border.away_m + (border.first ? off_m : -off_m);
+    if (here_m < 0) *crop = cell->crop[border.other], here_m = -here_m;
+    const double edge_m = 0.5 * off_m; /* edges wander less */
+    if (border.track && here_m + edge_m < track_half_m) return SURFACE_TRACK;
+    if (border.hedge && border.track && here_m > track_half_m && here_m + edge_m < hedge_beyond_m) return SURFACE_SCRUB;
+    if (border.hedge && !border.track && here_m + edge_m < hedge_half_m) return SURFACE_SCRUB;
+    if (border.track && here_m + edge_m < track_half_m + 0.7) return SURFACE_GRASS;
     return SURFACE_NONE;
 }
 
@@ -171,7 +180,9 @@ static unsigned near_border(const PlotCell *cell, F32x8 x, F32x8 y, I32x8 site, 
 {
     const F32x8    own_x = f32x8_gather(cell->x_m, site), own_y = f32x8_gather(cell->y_m, site);
     const I32x8 own = plot_look(cell->field, site);
-    const F32x8    reach = f32x8_set(track_half_m * track_half_m * 1.01); /* squared: no root; margin for rounding */
+    /* squared: no root; margin for rounding */
+    const double   reach_m = hedge_beyond_m + border_wander_m;
+    const F32x8    reach = f32x8_set(reach_m * reach_m * 1.01);
     F32x8          near = f32x8_set(0);
     for (int n = 0; n < plot_sites; n++) {
         const F32x8 sx = f32x8_set((double)cell->x_m[n]), sy = f32x8_set((double)cell->y_m[n]);
@@ -186,48 +197,92 @@ static unsigned near_border(const PlotCell *cell, F32x8 x, F32x8 y, I32x8 site, 
 static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells *cells, const double x_m[8],
                               const double y_m[8], F32x8 slope, unsigned lanes)
 {
-    const uint64_t seed = cover->seed;
-    /* wild patches, wider where it is steep; rock shows through in their hearts */
-    F32x8 wild = noise_eight(seed + 10, 310, x_m, y_m);
-    wild = f32x8_fma(f32x8_set(0.5), noise_eight(seed + 11, 83, x_m, y_m), wild);
-    wild = f32x8_fma(f32x8_set(0.2), noise_eight(seed + 12, 17, x_m, y_m), wild);
+    static const double wild_wander = 0.02; /* some metres of the patches' borders */
+    const uint64_t      seed = cover->seed;
+    const F32x8         zero = f32x8_set(0), step = f32x8_set(wild_wander);
+    /* wild patches, wider where it is steep; rock shows through in their hearts and on worn crests, scrub and wet
+     * grass grow in hollows */
+    const F32x8 middle = noise_eight(seed + 11, 83, x_m, y_m), patch = noise_eight(seed + 12, 17, x_m, y_m);
+    const F32x8 wet = cover->ways ? ways_wet(cover->ways, x_m, y_m) : zero;
+    F32x8       wild = noise_eight(seed + 10, 310, x_m, y_m);
+    wild = f32x8_fma(f32x8_set(0.5), middle, wild);
+    wild = f32x8_fma(f32x8_set(0.14), patch, wild);
     wild = f32x8_fma(f32x8_set(4), slope, wild);
-    const F32x8 rock = f32x8_greater(wild, f32x8_set(1.24) - f32x8_set(0.12) * f32x8_clamp(slope * f32x8_set(5), 0, 1));
-    const F32x8    scrub = f32x8_greater(wild, f32x8_set(0.88)), dry = f32x8_greater(wild, f32x8_set(0.78));
-    const unsigned is_rock = f32x8_bits(rock), is_scrub = f32x8_bits(scrub);
+    F32x8       grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, zero), wild) - f32x8_set(0.88);
+    F32x8       stony = f32x8_fma(f32x8_set(-0.3), wet, wild) - f32x8_set(1.24);
+    stony = f32x8_fma(f32x8_set(0.12), f32x8_clamp(slope * f32x8_set(5), 0, 1), stony);
+    F32x8       marsh = f32x8_fma(f32x8_set(0.3), middle, wet) - f32x8_set(0.72);
+    const F32x8 dry_from = f32x8_set(-0.1), soil_from = f32x8_set(-0.16);
 
-    double   i[8], j[8];
-    float    in_x[8], in_y[8];
-    int32_t  site_of[8];
+    double   i[8], j[8], bent_x[8], bent_y[8];
+    float    in_x[8], in_y[8], wander_of[8], patch_of[8];
+    int32_t  site_of[8], found[8], cell_of[8];
     F32x8    x, y;
-    I32x8 class = i32x8_set(SURFACE_NONE);
-    plot_cells_of(i, j, &x, &y, x_m, y_m);
-    SurfaceClass on_border[8];
-    unsigned     bordered = 0;
+    I32x8    class = i32x8_set(SURFACE_NONE), sites = i32x8_set(0);
+    unsigned near = 0, touched = 0;
+    plot_bend(bent_x, bent_y, seed, x_m, y_m);
+    plot_cells_of(i, j, &x, &y, bent_x, bent_y);
     for (unsigned left = lanes, same; left; left &= ~same) {
         same = plot_cell_lanes(i, j, left);
         const int       first = __builtin_ctz(left);
         const PlotCell *cell = plot_cell_at(cells, seed, (int64_t)i[first], (int64_t)j[first]);
-        I32x8        site;
-        const F32x8     least = plot_nearest(&site, cell, x, y);
-        class = i32x8_select(f32x8_mask(same), plot_look(cell->crop, site), class);
-        unsigned near = near_border(cell, x, y, site, least) & same & ~is_rock;
-        if (!near) continue;
-        i32x8_store(site_of, site);
-        f32x8_store(in_x, x), f32x8_store(in_y, y);
-        for (; near; near &= near - 1) {
-            const int k = __builtin_ctz(near);
-            on_border[k] = border_surface(cell, seed, site_of[k], in_x[k], in_y[k], is_scrub >> k & 1);
-            if (on_border[k] != SURFACE_NONE) bordered |= 1u << k;
-        }
+        I32x8           site;
+        const F32x8     least = plot_nearest(&site, cell, x, y), here = f32x8_mask(same);
+        class = i32x8_select(here, plot_look(cell->crop, site), class);
+        sites = i32x8_select(here, site, sites);
+        near |= near_border(cell, x, y, site, least) & same;
     }
-    class = i32x8_select(dry, i32x8_set(SURFACE_DRY_GRASS), class);
-    class = i32x8_select(scrub, i32x8_set(SURFACE_SCRUB), class);
+    if (cover->ways) {
+        const I32x8 touches = ways_cells(cover->ways, x_m, y_m);
+        touched = f32x8_bits(i32x8_greater(touches, i32x8_set(-1))) & lanes;
+        if (touched) i32x8_store(cell_of, touches);
+    }
+
+    /* the finest wander, where it matters */
+    F32x8 close = f32x8_less(f32x8_abs(grown), step);
+    close = f32x8_or(close, f32x8_less(f32x8_abs(grown - dry_from), step));
+    close = f32x8_or(close, f32x8_less(f32x8_abs(stony), step));
+    close = f32x8_or(close, f32x8_less(f32x8_abs(stony - soil_from), step));
+    close = f32x8_or(close, f32x8_less(f32x8_abs(marsh), step));
+    const unsigned wanders = (f32x8_bits(close) | near | touched) & lanes;
+    if (wanders) {
+        const F32x8 wander = f32x8_and(wander_eight(seed, x_m, y_m), f32x8_mask(wanders));
+        grown = f32x8_fma(step, wander, grown);
+        stony = f32x8_fma(step, wander, stony);
+        marsh = f32x8_fma(step, wander, marsh);
+        f32x8_store(wander_of, wander);
+    }
+    const F32x8 rock = f32x8_greater(stony, zero);
+    if (near & ~f32x8_bits(rock)) {
+        i32x8_store(site_of, sites);
+        i32x8_store(found, class);
+        f32x8_store(in_x, x), f32x8_store(in_y, y);
+    }
+    SurfaceClass on_border[8];
+    unsigned     bordered = 0;
+    for (unsigned left = near & ~f32x8_bits(rock); left; left &= left - 1) {
+        const int       k = __builtin_ctz(left);
+        const PlotCell *cell = plot_cell_at(cells, seed, (int64_t)i[k], (int64_t)j[k]);
+        on_border[k] = border_surface(&found[k], cell, seed, site_of[k], in_x[k], in_y[k], wander_of[k]);
+        if (on_border[k] != SURFACE_NONE) bordered |= 1u << k;
+    }
+    if (near & ~f32x8_bits(rock)) class = i32x8_load(found);
+
+    class = i32x8_select(f32x8_greater(grown, dry_from), i32x8_set(SURFACE_DRY_GRASS), class);
+    class = i32x8_select(f32x8_greater(marsh, zero), i32x8_set(SURFACE_WETLAND), class);
+    class = i32x8_select(f32x8_greater(grown, zero), i32x8_set(SURFACE_SCRUB), class);
+    const F32x8 worn = f32x8_less(wet, f32x8_set(-0.2));
+    class = i32x8_select(f32x8_and(worn, f32x8_greater(stony, soil_from)), i32x8_set(SURFACE_BARE_SOIL), class);
     class = i32x8_select(rock, i32x8_set(SURFACE_ROCK), class);
-    int32_t found[8];
     i32x8_store(found, class);
     for (; bordered; bordered &= bordered - 1)
         found[__builtin_ctz(bordered)] = (int32_t)on_border[__builtin_ctz(bordered)];
+    if (touched) f32x8_store(patch_of, patch);
+    for (; touched; touched &= touched - 1) {
+        const int k = __builtin_ctz(touched);
+        found[k] = (int32_t)ways_surface(cover->ways, cell_of[k], x_m[k], y_m[k], (SurfaceClass)found[k], wander_of[k],
+                                         patch_of[k]);
+    }
     for (int k = 0; k < 8; k++)
         if (lanes >> k & 1) surface[k] = found[k];
 }
@@ -257,25 +312,41 @@ static SurfaceClass unmapped_surface(const Cover *cover, double x_m, double y_m,
     return SURFACE_NONE;
 }
 
-/* Land cover from the files; fills those lanes and returns the others. */
+/* Land cover from the files; fills those lanes and returns the others. Borders wander by up to half a cell, over
+ * wavelengths from a cell down to 0.1 m: real borders have no steps of a cell. Places all of whose corners within reach
+ * are of one class need none of it. */
 static unsigned mapped_surfaces(int32_t surface[8], const Cover *cover, const double x_m[8], const double y_m[8],
                                 unsigned lanes)
 {
+    enum { most_octaves = 9 };
     if (!cover->grid[0].surface && !cover->grid[1].surface) return lanes;
-    /* borders of coarse cells wander by half a cell, as real borders have no steps of 30 m */
-    const double cell_m = cover->grid[0].cell_m, away_m = cell_m >= 5 ? 0.5 * cell_m : 0;
-    F32x8        dx = f32x8_set(0), dy = f32x8_set(0);
-    for (int octave = 0; away_m > 0 && octave < 3; octave++) {
-        const double wave_m = cell_m * exp2(-octave);
-        const F32x8  share = f32x8_set(away_m * 0.57 * exp2(-octave));
-        dx = f32x8_fma(share, noise_eight(cover->seed + 40 + (uint64_t)octave, wave_m, x_m, y_m), dx);
-        dy = f32x8_fma(share, noise_eight(cover->seed + 50 + (uint64_t)octave, wave_m, x_m, y_m), dy);
+    const double cell_m = cover->grid[0].surface ? cover->grid[0].cell_m : cover->grid[1].cell_m;
+    const double reach_m = 0.5 * cell_m;
+    unsigned     none = 0, near = 0;
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        SurfaceClass corner[4];
+        for (int c = 0; c < 4; c++)
+            corner[c] = cover_grid_at(cover->grid, x_m[k] + (c & 1 ? reach_m : -reach_m),
+                                      y_m[k] + (c & 2 ? reach_m : -reach_m));
+        surface[k] = (int32_t)corner[0];
+        if (corner[0] != corner[1] || corner[0] != corner[2] || corner[0] != corner[3]) near |= 1u << k;
+        else if (corner[0] == SURFACE_NONE) none |= 1u << k;
     }
-    float    off_x[8], off_y[8];
-    unsigned none = 0;
+    if (!near) return none;
+    F32x8 dx = f32x8_set(0), dy = f32x8_set(0);
+    for (int octave = 0; octave < most_octaves; octave++) {
+        const double wave_m = cell_m * exp2(-octave);
+        if (octave && wave_m < 0.1) break;
+        const F32x8 share = f32x8_set(reach_m * 0.4 * pow(0.6, octave)); /* 0.4 / (1 - 0.6): within reach */
+        F32x8       wave_y;
+        dx = f32x8_fma(share, noise_pair_eight(&wave_y, cover->seed + 40 + (uint64_t)octave, wave_m, x_m, y_m), dx);
+        dy = f32x8_fma(share, wave_y, dy);
+    }
+    float off_x[8], off_y[8];
     f32x8_store(off_x, dx), f32x8_store(off_y, dy);
-    for (int k = 0; k < 8; k++) {
-        if (!(lanes >> k & 1)) continue;
+    for (; near; near &= near - 1) {
+        const int k = __builtin_ctz(near);
         surface[k] = (int32_t)cover_grid_at(cover->grid, x_m[k] + (double)off_x[k], y_m[k] + (double)off_y[k]);
         if (surface[k] == SURFACE_NONE) none |= 1u << k;
     }
@@ -370,6 +441,7 @@ void cover_free(Cover *cover)
     cover_grid_free(cover->grid);
     photo_free(&cover->photo);
     coast_destroy(&cover->coast);
+    ways_free(cover->ways);
     if (cover->store.map) munmap(cover->store.map, cover->store.octets);
     free(cover->store.path);
     free(cover);

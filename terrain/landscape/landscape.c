@@ -5,7 +5,7 @@
  * posts, the level is read off, bent over the curved Earth into ENU, joined to the level around it, cut by the
  * clear lines and moved onto its fixes. At the end everything is quantised, coarse before fine, so that edge
  * posts fall exactly on the level around them. */
-#include "terrain/landscape/landscape_private.h"
+#include "terrain/landscape/ways_private.h"
 
 #include <stdlib.h>
 
@@ -381,6 +381,9 @@ Status landscape_create_from(Landscape *out, const LandscapeConfig *config, cons
 
     count_fixes(&landscape, &work, fix, fix_count);
     cover->seed = landscape_hash(config->seed, 2, 0);
+    status = ways_create(&cover->ways, &(WaysGround){.elevation = &landscape.elevation, .coast = &work.coast,
+                                                     .seed = cover->seed, .fix_count = fix_count, .fix = fix});
+    if (status != STATUS_OK) goto done;
     cover->coast = work.coast;
     work.coast = (Coast){0};
     landscape.cover = cover;
@@ -390,6 +393,7 @@ Status landscape_create_from(Landscape *out, const LandscapeConfig *config, cons
 
 done:
     free_evidence(&landscape.fitted_to);
+    if (status != STATUS_OK) elevation_destroy(&landscape.elevation);
     free(cover);
     free(work.aim);
     field_destroy(&work.calm.factor);

@@ -49,6 +49,30 @@ static inline F32x8 noise_eight(uint64_t seed, double wavelength_m, const double
     return f32x8_lerp(south, north_side, v);
 }
 
+/* Two such noises for little more than one: the second from another mixing of the same words. */
+static inline F32x8 second_of_word(I32x8 h)
+{
+    h = i32x8_mul(i32x8_xor(h, i32x8_shift_right(h, 15)), i32x8_set((int)0xd168aaadu));
+    h = i32x8_mul(i32x8_xor(h, i32x8_shift_right(h, 16)), i32x8_set((int)0xaf723597u));
+    return f32x8_of_ints(h) * f32x8_set(0x1p-31);
+}
+
+static inline F32x8 noise_pair_eight(F32x8 *second, uint64_t seed, double wavelength_m, const double x_m[8],
+                                     const double y_m[8])
+{
+    const I32x8   east = i32x8_set((int)0x9e3779b1u), north = i32x8_set((int)0x85ebca77u);
+    const Lattice x = lattice_of(x_m, 1 / wavelength_m), y = lattice_of(y_m, 1 / wavelength_m);
+    const I32x8   key = i32x8_set((int)(uint32_t)(landscape_hash(seed, 0, 0) >> 32));
+    const I32x8   sw = i32x8_add(key, i32x8_add(i32x8_mul(x.cell, east), i32x8_mul(y.cell, north)));
+    const I32x8   nw = i32x8_add(sw, north), se = i32x8_add(sw, east), ne = i32x8_add(nw, east);
+    const F32x8   u = x.share * x.share * (f32x8_set(3) - f32x8_set(2) * x.share);
+    const F32x8   v = y.share * y.share * (f32x8_set(3) - f32x8_set(2) * y.share);
+    *second = f32x8_lerp(f32x8_lerp(second_of_word(sw), second_of_word(se), u),
+                         f32x8_lerp(second_of_word(nw), second_of_word(ne), u), v);
+    return f32x8_lerp(f32x8_lerp(noise_of_word(sw), noise_of_word(se), u),
+                      f32x8_lerp(noise_of_word(nw), noise_of_word(ne), u), v);
+}
+
 /* ---- fields ------------------------------------------------------------------------------- */
 
 static const double plot_m = 160;
@@ -69,6 +93,33 @@ typedef struct PlotCell {
 typedef struct PlotCells {
     PlotCell cell[plot_cells_kept];
 } PlotCells;
+
+/* The nearest border to another field of a place in a cell. */
+typedef struct PlotBorder {
+    double away_m;       /* from the place */
+    int    other;        /* site of the field beyond */
+    bool   first;        /* the place's field comes first of the two */
+    bool   track, hedge; /* along it */
+    double direction[2]; /* unit vector from the place's site to the other */
+} PlotBorder;
+
+bool plot_border(PlotBorder *out, const PlotCell *cell, uint64_t seed, int site, float x_m, float y_m);
+
+/* The fields are laid out on a plane that is bent over tens of metres: where eight places are on it. */
+static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8], const double y_m[8])
+{
+    static const double wave_m[] = {2300, 330, 90}, away_m[] = {260, 26, 5};
+    F32x8               dx = f32x8_set(0), dy = f32x8_set(0);
+    float               by_x[8], by_y[8];
+    for (int n = 0; n < 3; n++) {
+        F32x8 wave_y;
+        dx = f32x8_fma(f32x8_set(away_m[n]), noise_pair_eight(&wave_y, seed + 26 + (uint64_t)n, wave_m[n], x_m, y_m),
+                       dx);
+        dy = f32x8_fma(f32x8_set(away_m[n]), wave_y, dy);
+    }
+    f32x8_store(by_x, dx), f32x8_store(by_y, dy);
+    for (int k = 0; k < 8; k++) bent_x[k] = x_m[k] + (double)by_x[k], bent_y[k] = y_m[k] + (double)by_y[k];
+}
 
 const PlotCell *plot_cell_at(PlotCells *cells, uint64_t seed, int64_t i, int64_t j);
 

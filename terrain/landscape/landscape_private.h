@@ -9,6 +9,7 @@
  * clear_lines.c      height limits by clear lines
  * nearest_fix.c      spatial index of points
  * plots.c            synthetic fields
+ * ways.c             roads, streams, villages: terrain/landscape/ways.h
  * cover.c            land cover: tracks, hedges, woods; land cover from files
  * texture.c          rows of fields; brightness from photographs
  * detail.c           noise of the ground; detail_table.c: its statistics */
@@ -195,6 +196,7 @@ typedef struct Cover {
     CoverGrid grid[cover_windows];
     Photo     photo;
     Coast     coast;
+    struct Ways *ways;           /* synthetic: roads, streams, villages; NULL: none */
     LandscapeMap store;           /* grid, photo and the elevation borrow from it */
 } Cover;
 

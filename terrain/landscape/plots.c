@@ -28,7 +28,7 @@ static SurfaceClass crop_of_field(uint64_t id, bool arable)
 
 static void find_cell(PlotCell *cell, uint64_t seed, int64_t ci, int64_t cj)
 {
-    static const double jitter = 0.8;
+    static const double jitter = 0.5;
     double              whole_x[16] = {0}, whole_y[16] = {0}; /* a place that belongs to the field as a whole */
     *cell = (PlotCell){.i = ci, .j = cj, .known = true};
     for (int n = 0; n < plot_sites; n++) {
@@ -58,4 +58,39 @@ const PlotCell *plot_cell_at(PlotCells *cells, uint64_t seed, int64_t i, int64_t
     PlotCell *cell = &cells->cell[(uint64_t)(i + 5 * j) % plot_cells_kept];
     if (!cell->known || cell->i != i || cell->j != j) find_cell(cell, seed, i, j);
     return cell;
+}
+
+/* Blocks of four by four sites: tracks run about most of them, and so join up. */
+static uint64_t block_of(const PlotCell *cell, uint64_t seed, int site)
+{
+    return landscape_hash(seed + 8, (cell->i + site % 3 - 1) >> 2, (cell->j + site / 3 - 1) >> 2);
+}
+
+bool plot_border(PlotBorder *out, const PlotCell *cell, uint64_t seed, int site, float x_m, float y_m)
+{
+    double near[plot_sites], least = INFINITY;
+    int    other = -1;
+    for (int n = 0; n < plot_sites; n++) {
+        const double dx = (double)(x_m - cell->x_m[n]), dy = (double)(y_m - cell->y_m[n]);
+        near[n] = dx * dx + dy * dy;
+    }
+    for (int n = 0; n < plot_sites; n++) {
+        if (cell->field[n] == cell->field[site]) continue;
+        /* distance to the perpendicular bisector */
+        const double dx = (double)(cell->x_m[n] - cell->x_m[site]), dy = (double)(cell->y_m[n] - cell->y_m[site]);
+        const double apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3), here_m = 0.5 * (near[n] - near[site]) / apart_m;
+        if (here_m >= least) continue;
+        least = here_m, other = n;
+        out->direction[0] = dx / apart_m, out->direction[1] = dy / apart_m;
+    }
+    if (other < 0) return false;
+    const uint64_t one = block_of(cell, seed, site), two = block_of(cell, seed, other);
+    const double   both = unit_from_hash(landscape_hash(seed + 9, (int64_t)(one ^ two), 0));
+    const double   u = unit_from_hash(landscape_hash(seed + 6, (int64_t)(cell->id[other] ^ cell->id[site]), 0));
+    out->away_m = least;
+    out->other = other;
+    out->first = cell->id[site] < cell->id[other];
+    out->track = one != two ? both < 0.7 : u < 0.05;
+    out->hedge = u > 0.66;
+    return true;
 }

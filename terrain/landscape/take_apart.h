@@ -11,8 +11,8 @@ typedef struct SurfaceModel {
     double         cell_m;
     const float   *surface_m; /* [ny][nx] NAN: void */
     const float   *bare_m;    /* a terrain model of the same cells, NAN where it has none; NULL: none */
-    const uint8_t *rgb;       /* [ny][nx][3] sRGB of an orthophoto; NULL: none */
-    int64_t        column, row; /* of the window's south-west cell in the whole model: windows that overlap agree */
+    const uint8_t *rgb;       /* [ny][nx][3] sRGB of an orthophoto, NULL: none; not used yet */
+    int64_t        column, row; /* of the south-west cell in the whole model: overlapping windows agree */
 } SurfaceModel;
 
 typedef enum CellKind { CELL_BARE, CELL_BUILDING, CELL_TREE } CellKind;
@@ -25,7 +25,7 @@ typedef struct Crown {
 /* Arrays of nx x ny, the caller's, but the crowns: allocated. */
 typedef struct SurfaceParts {
     float   *bare_m;          /* bare ground, also under roofs and crowns; no NAN unless all is void */
-    float   *roof_m;          /* height of the roof, its planes smoothed and its outline straightened; NAN: no building */
+    float   *roof_m;          /* height of the roof, its planes smoothed; NAN: no building */
     uint8_t *kind;            /* CellKind */
     int      crown_count;
     Crown   *crown;           /* by place, south-west first; free() */
@@ -36,7 +36,7 @@ typedef struct SurfaceParts {
 static const double take_apart_reach_m = 320;
 
 /* One thread, deterministic; cell_m 0.1 .. 4, at coarser cells nothing can be told apart: STATUS_UNSUPPORTED.
- * Temporary memory: about 20 bytes a cell. */
+ * Temporary memory: at most 32 bytes a cell. */
 Status surface_take_apart(SurfaceParts *out, const SurfaceModel *model);
 
 #endif

@@ -38,11 +38,11 @@ Status take_apart_crowns(SurfaceParts *out, const SurfaceModel *model, const flo
     if (!raw || !canopy || !up || !row) goto done;
     for (size_t c = 0; c < n; c++) raw[c] = out->kind[c] == CELL_TREE ? fmaxf(surface_m[c] - out->bare_m[c], 0) : 0;
     smooth(canopy, row, raw, nx, ny);
-    if (cell < 0.6F) {
-        for (int pass = 0; pass < (cell < 0.3F ? 8 : 3); pass++) {
-            memcpy(raw, canopy, n * sizeof *raw);
-            smooth(canopy, row, raw, nx, ny);
-        }
+    /* a standard deviation of 1 m: branches are no tops; each pass adds half a cell squared of variance */
+    const int passes = (int)fmin(2 / (model->cell_m * model->cell_m) + 0.5, 16);
+    for (int pass = 1; pass < passes; pass++) {
+        memcpy(raw, canopy, n * sizeof *raw);
+        smooth(canopy, row, raw, nx, ny);
     }
 
     /* up: the highest cell within reach, itself for a top; first of 8 neighbours, then for local tops of the window */
@@ -65,8 +65,8 @@ Status take_apart_crowns(SurfaceParts *out, const SurfaceModel *model, const flo
                 for (int dy = -r; dy <= r; dy++)
                     for (int dx = -r; dx <= r; dx++) {
                         const int i = x + dx, j = y + dy;
-                        if (i < 0 || j < 0 || i >= nx || j >= ny || (float)(dx * dx + dy * dy) * cell * cell > r_m * r_m)
-                            continue;
+                        if (i < 0 || j < 0 || i >= nx || j >= ny) continue;
+                        if ((float)(dx * dx + dy * dy) * cell * cell > r_m * r_m) continue;
                         const size_t d = (size_t)j * (size_t)nx + (size_t)i;
                         if (canopy[d] > canopy[best] || (canopy[d] == canopy[best] && d < best)) best = d;
                     }

@@ -95,15 +95,24 @@ static int blocks_in(const Blocks *b, double m)
     return n < 1 ? 1 : n;
 }
 
-/* Slope of the ground over 16 m, greatest within 12 m. */
-static Status find_slope(Ground *g)
+/* Whether a square of `radius` blocks about the block is clipped by the window's edge. */
+static bool clipped(const Blocks *b, const SurfaceModel *model, int x, int y, int radius)
+{
+    const int x0 = b->left / b->size, y0 = b->below / b->size;
+    const int x1 = (b->left + model->nx - 1) / b->size, y1 = (b->below + model->ny - 1) / b->size;
+    return x - radius < x0 || y - radius < y0 || x + radius > x1 || y + radius > y1;
+}
+
+/* Slope of the ground over 16 m into `slope`, of an opening; of the clipped blocks alone where `edge`. */
+static Status slope_of_opening(Ground *g, const SurfaceModel *model, int radius, bool edge, int edge_radius)
 {
     const Blocks *b = &g->blocks;
     const int     step = blocks_in(b, 8);
-    Status status = opening(g->opened, g->low, g, blocks_in(b, radius_m[scales - 1]));
+    Status status = opening(g->opened, g->low, g, radius);
     if (status != STATUS_OK) return status;
     for (int y = 0; y < b->ny; y++)
         for (int x = 0; x < b->nx; x++) {
+            if (edge && !clipped(b, model, x, y, edge_radius)) continue;
             const int x0 = x > step ? x - step : 0, x1 = x + step < b->nx ? x + step : b->nx - 1;
             const int y0 = y > step ? y - step : 0, y1 = y + step < b->ny ? y + step : b->ny - 1;
             const float *row = g->opened + (size_t)y * (size_t)b->nx;
@@ -113,9 +122,23 @@ static Status find_slope(Ground *g)
             if (w != FLT_MAX && e != FLT_MAX && x1 > x0) gx = fabs((double)e - w) / ((x1 - x0) * b->block_m);
             if (s != FLT_MAX && n != FLT_MAX && y1 > y0) gy = fabs((double)n - s) / ((y1 - y0) * b->block_m);
             const double steep = sqrt(gx * gx + gy * gy);
-            g->slope[(size_t)y * (size_t)b->nx + (size_t)x] = (float)(steep < 1 ? steep : 1);
+            float *slope = &g->slope[(size_t)y * (size_t)b->nx + (size_t)x];
+            const float least = edge ? *slope : 0;
+            *slope = (float)(steep < 1 ? steep : 1);
+            if (*slope < least) *slope = least;
         }
-    return take_apart_extreme(g->slope, b->nx, b->ny, blocks_in(b, 12), true);
+    return STATUS_OK;
+}
+
+/* Slope of the wide ground, greatest within 12 m. An opening flattens a slope where the window's edge clips its square:
+ * there a narrower one gives the slope. */
+static Status find_slope(Ground *g, const SurfaceModel *model)
+{
+    const int widest = blocks_in(&g->blocks, radius_m[scales - 1]), narrow = blocks_in(&g->blocks, 16);
+    Status status = slope_of_opening(g, model, widest, false, 0);
+    if (status == STATUS_OK) status = slope_of_opening(g, model, narrow, true, widest);
+    if (status != STATUS_OK) return status;
+    return take_apart_extreme(g->slope, g->blocks.nx, g->blocks.ny, blocks_in(&g->blocks, 12), true);
 }
 
 /* Returns below everything within 14 m but their own neighbours: multipath, wells. */
@@ -146,19 +169,24 @@ static Status drop_low_points(Ground *g)
 }
 
 /* Marks the blocks that openings take away. */
-static Status mark_objects(Ground *g, double first_radius_m)
+static Status mark_objects(Ground *g, const SurfaceModel *model, double first_radius_m)
 {
     Status status = STATUS_OK;
     memcpy(g->height, g->low, g->count * sizeof *g->height);
     double before_m = 0;
     for (int k = 0; k < scales && status == STATUS_OK; k++) {
         if (radius_m[k] < first_radius_m) continue;
-        status = opening(g->opened, g->height, g, blocks_in(&g->blocks, radius_m[k]));
+        const int    radius = blocks_in(&g->blocks, radius_m[k]);
+        const size_t nx = (size_t)g->blocks.nx;
+        status = opening(g->opened, g->height, g, radius);
         const float wider_m = (float)(radius_m[k] - before_m);
         before_m = radius_m[k];
         for (size_t c = 0; c < g->count; c++) {
             const float steep = g->slope[c] > 0.05F ? g->slope[c] - 0.05F : 0;
-            if (g->height[c] - g->opened[c] > 0.6F + steep * wider_m) g->object[c] = 1;
+            float most = 0.6F + 0.5F * steep * wider_m;
+            /* a square clipped by the edge cuts slopes by its whole width */
+            if (clipped(&g->blocks, model, (int)(c % nx), (int)(c / nx), radius)) most += 1.0F * steep * wider_m;
+            if (g->height[c] - g->opened[c] > most) g->object[c] = 1;
             if (g->low[c] == FLT_MAX) g->object[c] = 1;
             g->height[c] = g->opened[c];
         }
@@ -273,8 +301,8 @@ Status take_apart_ground(float *bare_m, uint8_t *is_ground, const SurfaceModel *
     if (status != STATUS_OK) return status;
     lows(&g, model, surface_m);
     status = drop_low_points(&g);
-    if (status == STATUS_OK) status = find_slope(&g);
-    if (status == STATUS_OK) status = mark_objects(&g, first_radius_m);
+    if (status == STATUS_OK) status = find_slope(&g, model);
+    if (status == STATUS_OK) status = mark_objects(&g, model, first_radius_m);
     if (status == STATUS_OK) {
         regrow(&g);
         for (size_t c = 0; c < g.count; c++) g.height[c] = g.object[c] ? NAN : g.low[c];

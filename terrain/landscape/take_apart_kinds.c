@@ -6,7 +6,7 @@
 
 /* 2 m: the usual least height of canopy in lidar forestry (Naesset 1997, FUSION's cover), and of a shed's roof. */
 static const float  least_height_m = 2, straight_m = 0.12F, most_pitch = 1.3F;
-static const double least_roof_m2 = 12, most_gap_m2 = 30, least_width_m = 3;
+static const double least_roof_m2 = 12, most_gap_m2 = 30, least_width_m = 3, least_crown_m2 = 5;
 
 enum { directions = 8, most_samples = 7 };
 
@@ -94,10 +94,47 @@ static Status drop_small(const Kinds *k, const SurfaceModel *model)
     Status status = take_apart_components(&label, &area, k->nx, k->ny, same_kind, k);
     if (status != STATUS_OK) return status;
     const double cell_m2 = model->cell_m * model->cell_m;
+    /* what touches the window's edge is no gap */
+    for (int y = 0; y < k->ny; y++)
+        for (int x = 0; x < k->nx; x += y > 0 && y < k->ny - 1 && k->nx > 1 ? k->nx - 1 : 1) {
+            const size_t c = (size_t)y * (size_t)k->nx + (size_t)x;
+            if (k->kind[c] != CELL_BUILDING) area[label[c]] = INT32_MAX;
+        }
     for (size_t c = 0; c < (size_t)k->nx * (size_t)k->ny; c++) {
         const double m2 = area[label[c]] * cell_m2;
         if (k->kind[c] == CELL_BUILDING && m2 < least_roof_m2) k->kind[c] = k->object[c] ? CELL_TREE : CELL_BARE;
         else if (k->kind[c] != CELL_BUILDING && m2 < most_gap_m2) k->kind[c] = CELL_BUILDING;
+    }
+    free(label), free(area);
+    return STATUS_OK;
+}
+
+static bool both_trees(const void *user, size_t c, size_t d)
+{
+    const Kinds *k = user;
+    return k->kind[c] == CELL_TREE && k->kind[d] == CELL_TREE;
+}
+
+/* Patches too small for a crown belong to the building that they touch (its corners) or are bare (poles, wires). */
+static Status drop_small_trees(const Kinds *k, const SurfaceModel *model)
+{
+    int32_t *label, *area;
+    Status status = take_apart_components(&label, &area, k->nx, k->ny, both_trees, k);
+    if (status != STATUS_OK) return status;
+    const double cell_m2 = model->cell_m * model->cell_m;
+    const size_t nx = (size_t)k->nx, n = nx * (size_t)k->ny;
+    for (size_t c = 0; c < n; c++) {
+        if (k->kind[c] != CELL_TREE || area[label[c]] < 0 || area[label[c]] * cell_m2 >= least_crown_m2) continue;
+        const bool roof = (c % nx && k->kind[c - 1] == CELL_BUILDING && label[c - 1] != label[c])
+            || ((c + 1) % nx && k->kind[c + 1] == CELL_BUILDING && label[c + 1] != label[c])
+            || (c >= nx && k->kind[c - nx] == CELL_BUILDING && label[c - nx] != label[c])
+            || (c + nx < n && k->kind[c + nx] == CELL_BUILDING && label[c + nx] != label[c]);
+        if (roof) area[label[c]] = -1;
+    }
+    for (size_t c = 0; c < n; c++) {
+        if (k->kind[c] != CELL_TREE) continue;
+        if (area[label[c]] < 0) k->kind[c] = CELL_BUILDING;
+        else if (area[label[c]] * cell_m2 < 2) k->kind[c] = CELL_BARE;
     }
     free(label), free(area);
     return STATUS_OK;
@@ -140,6 +177,7 @@ Status take_apart_kinds(SurfaceParts *out, const SurfaceModel *model, const floa
         for (size_t c = 0; c < n; c++) k.object[c] &= 1;
     }
     if (status == STATUS_OK) status = drop_small(&k, model);
+    if (status == STATUS_OK) status = drop_small_trees(&k, model);
     free(lines), free(objects), free(k.object);
     return status;
 }

@@ -25,8 +25,8 @@ Status take_apart_fill(float *value, const Blocks *blocks);
 Status take_apart_ground(float *bare_m, uint8_t *is_ground, const SurfaceModel *model, const float *surface_m,
                          double first_radius_m);
 
-/* Components of equal kind, edges touching: label[c] is its component or -1, area[label] its cells. NULL, 0 on failure:
- * int32_t label[nx * ny], allocated; *area allocated. `joins` says whether neighbours c, d belong together. */
+/* Connected components, edges touching: label[c] is the first cell of c's component, area[label[c]] its cells. Both are
+ * allocated, [ny][nx]; NULL on failure. `joins` says whether the neighbours c and d belong together. */
 typedef bool JoinCells(const void *user, size_t c, size_t d);
 Status take_apart_components(int32_t **label, int32_t **area, int nx, int ny, JoinCells *joins, const void *user);
 

@@ -19,7 +19,9 @@ static F32x8 rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const
     double i[8], j[8];
     float  across_x[8] = {0}, across_y[8] = {0}, wave[8];
     F32x8  x, y;
-    plot_cells_of(i, j, &x, &y, x_m, y_m);
+    double bent_x[8], bent_y[8];
+    plot_bend(bent_x, bent_y, seed, x_m, y_m);
+    plot_cells_of(i, j, &x, &y, bent_x, bent_y);
     for (unsigned left = lanes, same; left; left &= ~same) {
         same = plot_cell_lanes(i, j, left);
         const int       first = __builtin_ctz(left);

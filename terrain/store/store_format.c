@@ -4,6 +4,8 @@
 #include "terrain/landscape/landscape_parts.h"
 #include "terrain/landscape/photo.h"
 
+#include <sys/mman.h>
+
 /* ---- hashes ------------------------------------------------------------------------------------- */
 
 static uint64_t mixed(uint64_t h)
@@ -79,6 +81,7 @@ uint64_t store_content(const StoreHeader *header, const uint8_t *map, Pool *pool
             else
                 for (int k = 0; k < pieces; k++) hash_piece(&job, 0, k);
             h = store_hash(h, job.hash, (size_t)pieces * sizeof *job.hash);
+            madvise((void *)(uintptr_t)job.at, job.octets, MADV_DONTNEED); /* of a file: its pages stay in the cache */
             done += job.octets;
         }
     }

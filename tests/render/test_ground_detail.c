@@ -147,9 +147,8 @@ static void statistics_are_those_of_the_filtered_class(void **state)
                           (variance[k] * sqrt(variance[k]));
                 for (int d = 0; d < 2; d++) beside[k][d] = (s->beside[d] / s->count - mean * mean) / variance[k];
             }
-            print_message("%s at %.0f m: deviation %.4f for %.4f, skew %.2f for %.2f, beside %.2f for %.2f,
-                          behind %.2f for "
-                          "%.2f\n", f ? "LWIR" : "optical", from[r].range_m, sqrt(variance[0]), sqrt(variance[1]),
+            print_message("%s at %.0f m: deviation %.4f for %.4f, skew %.2f for %.2f, beside %.2f for %.2f, "
+                          "behind %.2f for %.2f\n", f ? "LWIR" : "optical", from[r].range_m, sqrt(variance[0]), sqrt(variance[1]),
                               skew[0],
                           skew[1], beside[0][0], beside[1][0], beside[0][1], beside[1][1]);
             CHECK_NEAR(variance[0] / variance[1], 1, 0.10);

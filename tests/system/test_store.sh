@@ -10,7 +10,7 @@ for name in dtm cover rgb; do cp "$data/autzen_${name}_1m.tif" "$tmp/$name.tif";
 store=$tmp/a.store
 run terrain import "$tmp/dtm.tif" --cover "$tmp/cover.tif" --photo "$tmp/rgb.tif" --size 0.4x0.4 --horizon 1 -o "$store"
 check "a store" [ "$code" = 0 ]
-exercise demo "$tmp/demo.pcap" place.lat_deg=44.0565 place.lon_deg=-123.0690 place.height_m=106
+exercise demo "$tmp/demo.pcap" place.lat_deg=44.0565 place.lon_deg=-123.0690 "ground.store=$store"
 few=(--rate 0.2 --only 1 --size 48x32 --no-png --set "terrain.store=$store")
 
 replay "$tmp/demo.pcap" "$tmp/one" "${few[@]}" --threads 1 --save-frame 1
@@ -19,6 +19,8 @@ for line in 'terrain store a\.store, 1 m posts shown at 1 m over 0\.4' 'cover: 1
     'are set onto the ground'; do
     check "it says: $line" said "$line"
 done
+left=$(grep -oE 'they were sent [0-9.]+ m' "$tmp/stdout" | grep -oE '[0-9.]+')
+check "an exercise over the same store is sent within 0.1 m (median), not ${left:-nothing}" is "$left" '<' 0.1
 
 # a frame file refers to the store
 frame=$(ls "$tmp"/one/*.pvf)
