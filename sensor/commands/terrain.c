@@ -144,9 +144,11 @@ static void print_summary(const Wanted *w, const TerrainReport *r, double second
               1e-6 * r->nx * r->ny, e->spacing_m, 1e-3 * e->width_m[0], 1e-3 * e->width_m[1], e->sheets,
               e->sheets == 1 ? "" : "s", e->posting_m);
     if (e->ellipsoidal) log_print("heights: above the ellipsoid\n");
-    else log_print("heights: above the geoid, which lies %+.2f m from the ellipsoid here; converted at each post\n", e->geoid_m);
+    else log_print("heights: above the geoid, which lies %+.2f m from the ellipsoid here; converted at each post\n",
+                   e->geoid_m);
     if (r->apart)
-        log_print("surface model taken apart%s: bare ground %.1f %%, buildings %.1f %% (%llu), trees %.1f %% (%llu crowns)\n",
+        log_print("surface model taken apart%s: bare ground %.1f %%, buildings %.1f %% (%llu), trees %.1f %% (%llu "
+                  "crowns)\n",
                   r->beside ? " with the terrain model beside it" : " by its own shape", 100 * r->kind_share[0],
                   100 * r->kind_share[1], (unsigned long long)r->store.buildings, 100 * r->kind_share[2],
                   (unsigned long long)r->store.crowns);

@@ -1,5 +1,5 @@
-/* sensor/node/ground_store.c: the ground of a node from a terrain store: whether it is fresh and of this place, and what
- * it has. */
+/* sensor/node/ground_store.c: the ground of a node from a terrain store: whether it is fresh and of this place, and
+ * what it has. */
 #include "sensor/node/ground_store.h"
 
 #include "terrain/import/terrain_import.h"
@@ -22,8 +22,8 @@ static Status made_again(TerrainStore *store, const char *path, const char *why)
     Status status = terrain_store_rebuild(path, options);
     free(options);
     if (status == STATUS_OK) return store_open(store, path);
-    log_error("terrain.store: %s cannot be used: %s, nor made again; run `pitviper terrain import` with sources that are "
-              "here", path, why);
+    log_error("terrain.store: %s cannot be used: %s, nor made again; run `pitviper terrain import` with sources that "
+              "are here", path, why);
     return status;
 }
 

@@ -235,7 +235,8 @@ static void read_strip(void *user, int worker, int task)
 
 static Status allocate(Patch *p, const PatchWindow *w)
 {
-    int nx = (w->x1 - w->x0 + w->factor - 1) / w->factor, ny = (w->y1 - w->y0 + w->factor - 1) / w->factor, most = patch_most_mips;
+    int nx = (w->x1 - w->x0 + w->factor - 1) / w->factor, ny = (w->y1 - w->y0 + w->factor - 1) / w->factor;
+    int most = patch_most_mips;
     *p = (Patch){.factor = w->factor, .x0 = w->x0, .y0 = w->y0, .wider = w->wider};
     if (w->wider && w->wider->mips > 0)
         for (most = 0; w->factor << most < w->wider->factor;) most++;

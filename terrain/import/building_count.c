@@ -1,5 +1,5 @@
-/* terrain/import/building_count.c: connected parts of building cells: labels of one row, joined where the next row joins
- * them. */
+/* terrain/import/building_count.c: connected parts of building cells: labels of one row, joined where the next row
+ * joins them. */
 #include "terrain/import/building_count.h"
 
 #include "terrain/landscape/take_apart.h"

@@ -24,7 +24,8 @@ typedef struct Nodes {
 } Nodes;
 
 /* False: the raster has nothing here, or there is no memory (*status). */
-static bool nodes_create(Nodes *out, Status *status, const Raster *raster, const CellRows *cells, const GroundView *view)
+static bool nodes_create(Nodes *out, Status *status, const Raster *raster, const CellRows *cells,
+                         const GroundView *view)
 {
     Nodes n = {.nx = (cells->nx - 1) / node_cells + 2, .ny = (cells->rows - 1) / node_cells + 2};
     const int count = n.nx * n.ny;

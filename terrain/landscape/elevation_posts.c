@@ -199,8 +199,8 @@ static double composed(const Import *m, const View *view, const double *x, const
 }
 
 /* Where the vertical line of the ENU plane, which is inclined against the grids' own verticals, intersects them. */
-static double height_at(const Import *m, const View *view, const double *x0, const double *y0, const double *dx, const double *dy,
-                        double n_m, double guess_m)
+static double height_at(const Import *m, const View *view, const double *x0, const double *y0, const double *dx,
+                        const double *dy, double n_m, double guess_m)
 {
     double h_m = guess_m, lean = 0;
     for (int k = 0; k < m->grids; k++) lean = fmax(lean, fmax(fabs(dx[k]), fabs(dy[k])));
@@ -246,8 +246,8 @@ static double run_of_grids(float *h_m, const Import *m, const View *view, size_t
     return guess_m;
 }
 
-/* The same where there is one grid alone, its bilinear surface without detours; of several rows at once, because each post
- * waits for the one before it. */
+/* The same where there is one grid alone, its bilinear surface without detours; of several rows at once, because each
+ * post waits for the one before it. */
 static void run_of_one(float *h_m, const Import *m, const View *view, int grid, size_t node, const double *b, int from,
                        int count, int rows, double *guess_m)
 {
@@ -312,7 +312,7 @@ static void find_rows(void *user, int worker, int task)
 {
     const Finding *f = user;
     const View    *view = f->view;
-    const int      nx = view->level.nx, end = (task + 1) * rows_a_task < view->rows ? (task + 1) * rows_a_task : view->rows;
+    const int      nx = view->level.nx, after = (task + 1) * rows_a_task, end = after < view->rows ? after : view->rows;
     (void)worker;
     for (int r = task * rows_a_task, rows; r < end; r += rows) {
         const int    j = view->row0 + r - view->node_row0, node_row = j / view->stride;
