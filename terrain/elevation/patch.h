@@ -42,8 +42,8 @@ void   patch_free(Patch *patch); /* accepts zeroes */
 /* Bilinear between posts, held at the edges, at a place in pixels of the raster. mip: how often halved, 0 .. mips - 1,
  * between two of them linearly. */
 double patch_at(const Patch *patch, double x_px, double y_px, double mip);
-/* How far a place is inside a hole: 0 on posts that are valid, and along the rim; 1 where all posts about are void. Small
- * holes stay near 0. */
+/* How far a place is inside a hole: 0 on posts that are valid, and along the rim; 1 where all posts about are void.
+ * Small holes stay near 0. */
 double patch_hole(const Patch *patch, double x_px, double y_px);
 
 #endif

@@ -151,8 +151,8 @@ static bool grid_at(double *h_m, double *out_m, const Grid *g, const Patch *patc
     return true;
 }
 
-/* Inside a hole of grid `at` the next coarser grid that holds the place, and inside a hole of that the next again; where
- * there is none, what the hole was filled with. */
+/* Inside a hole of grid `at` the next coarser grid that holds the place, and inside a hole of that the next again;
+ * where there is none, what the hole was filled with. */
 static double coarser_in_holes(const Import *m, const View *view, int at, double filled_m, const double *x,
                                const double *y, double n_m)
 {
