@@ -7,6 +7,7 @@
  * backscatter does not follow the albedo is of the other. */
 #include "terrain/landscape/detail_private.h"
 #include "terrain/landscape/landscape_eight_private.h"
+#include "terrain/landscape/ways.h"
 
 /* ---- an octave ---------------------------------------------------------------------------------- */
 
@@ -322,5 +323,5 @@ void landscape_details(const GroundDetail *out, const DetailTable *table, const 
         details(&eight, table, seed, &nodes, wanted, x, y, photo ? photo_m : NULL);
         store_eight(out, first, some, &eight);
     }
-    if (table && out->albedo) texture_rows(out->albedo, landscape, count, surface, x_m, y_m, footprint->along_m);
+    if (table) ways_detail(out, landscape, count, surface, x_m, y_m, footprint->along_m);
 }

@@ -46,10 +46,7 @@ struct DetailTable {
 Status detail_table_create(DetailTable **out, const DetailStatistics statistics[SURFACE_COUNT][detail_fields],
                            double cut_off);
 
-/* Factor for the rows of fields (terrain/landscape/texture.c) into albedo; and the side of the photograph's pixels at
- * each place, 0: no photograph there. */
-void texture_rows(float *albedo, const Landscape *landscape, int count, const uint8_t *surface, const double *x_m,
-                  const double *y_m, const float *footprint_m);
+/* Side of the photograph's pixels at each place, 0: no photograph there (terrain/landscape/texture.c). */
 void texture_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
                          unsigned lanes);
 

@@ -10,8 +10,9 @@
  * nearest_fix.c      spatial index of points
  * plots.c            synthetic fields
  * ways.c             roads, streams, villages: terrain/landscape/ways.h
+ * hedges.c           places of hedgerows
  * cover.c            land cover: tracks, hedges, woods; land cover from files
- * texture.c          rows of fields; brightness from photographs
+ * texture.c          brightness from photographs
  * detail.c           noise of the ground; detail_table.c: its statistics */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
@@ -206,5 +207,18 @@ double landscape_treeline_m(double lat_rad);
 /* Means of the photograph over each class, once the classes are known. */
 void cover_measure_photo(Landscape *landscape);
 void cover_free(Cover *cover);   /* accepts NULL */
+
+/* ---- ways --------------------------------------------------------------------------------- */
+
+/* What ways are laid out on. */
+typedef struct WaysGround {
+    const Elevation *elevation;
+    const Coast     *coast;
+    uint64_t         seed;
+    int              fix_count;
+    const GroundFix *fix;
+} WaysGround;
+
+Status ways_create(struct Ways **out, const WaysGround *ground);
 
 #endif
