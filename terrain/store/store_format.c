@@ -294,7 +294,7 @@ void store_attach(TerrainStore *out, const StoreHeader *h, uint8_t *map)
     if (h->canopy_cover.nx) out->canopy_cover = map + at[STORE_CANOPY_COVER].offset;
     if (h->crown_count) out->crown = (const Crown *)(const void *)(map + at[STORE_CROWNS].offset);
     out->sources        = store_text(h, STORE_SOURCES);
-    out->options        = store_text(h, STORE_OPTIONS);
+    out->options        = store_record_options(store_text(h, STORE_OPTIONS));
     out->crs            = store_text(h, STORE_CRS);
     out->vertical_datum = store_text(h, STORE_DATUM);
     out->provenance     = store_text(h, STORE_PROVENANCE);
