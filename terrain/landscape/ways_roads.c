@@ -119,7 +119,7 @@ static Status find_route(int **path, int *count, Search *s, const Ways *ways, in
     s->cost[start] = 0, s->from[start] = -1;
     const int    gi = goal % ways->cx, gj = goal / ways->cx;
     double       run_of[16];
-    for (int n = 0; n < 16; n++) run_of[n] = sqrt(neighbour[n][0] * neighbour[n][0] + neighbour[n][1] * neighbour[n][1]);
+    for (int n = 0; n < 16; n++) run_of[n] = root_of(neighbour[n][0], neighbour[n][1]);
     Status       status = heap_push(s, (Open){0, start});
     while (s->heap_count && status == STATUS_OK) {
         const Open o = heap_pop(s);

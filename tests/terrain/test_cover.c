@@ -1,5 +1,5 @@
-/* Ground cover of eight places at once: against a plain reading of its definition, one place at a time in double, written
- * here; and independent of the other places. */
+/* Ground cover of eight places at once: against a plain reading of its definition, one place at a time in double,
+ * written here; and independent of the other places. */
 #include "tests/check.h"
 
 #include "terrain/landscape/ways_private.h"
