@@ -445,3 +445,23 @@ bool landscape_village(double place_m[2], const Landscape *landscape, int index)
     place_m[0] = ways->x0_m + ways->village[index][0], place_m[1] = ways->y0_m + ways->village[index][1];
     return true;
 }
+
+double landscape_wetness(const Landscape *landscape, double x_m, double y_m)
+{
+    const Cover *cover = landscape->cover;
+    const double x[8] = {x_m}, y[8] = {y_m};
+    float        wet[8];
+    if (!cover || !cover->ways) return 0;
+    f32x8_store(wet, ways_wet(cover->ways, x, y));
+    return (double)wet[0];
+}
+
+bool landscape_ways_near(const Landscape *landscape, double x_m, double y_m)
+{
+    const Cover *cover = landscape->cover;
+    const double x[8] = {x_m}, y[8] = {y_m};
+    int32_t      cell[8];
+    if (!cover || !cover->ways) return false;
+    i32x8_store(cell, ways_cells(cover->ways, x, y));
+    return cell[0] >= 0;
+}

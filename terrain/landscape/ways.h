@@ -7,6 +7,7 @@
 #define TERRAIN_LANDSCAPE_WAYS_H
 
 #include "terrain/landscape/ground_detail.h"
+#include "terrain/landscape/landscape.h"
 
 typedef enum WayKind { WAY_NONE, WAY_ROAD, WAY_LANE, WAY_TRACK, WAY_STREAM, WAY_GULLY, WAY_KINDS } WayKind;
 
@@ -45,5 +46,10 @@ typedef struct HousePlot {
 const HousePlot *landscape_plots(const Landscape *landscape, int *count);
 /* Village `index`'s centre; false: no such village. */
 bool landscape_village(double place_m[2], const Landscape *landscape, int index);
+
+/* How wet the ground is (hollows) or, below 0, worn (crests): -1 .. 1; 0 where there are no ways. */
+double landscape_wetness(const Landscape *landscape, double x_m, double y_m);
+/* Whether a way, a pond, a plot or a vehicle's place reaches into the cell of the index about a place. */
+bool landscape_ways_near(const Landscape *landscape, double x_m, double y_m);
 
 #endif

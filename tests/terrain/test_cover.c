@@ -2,7 +2,8 @@
  * written here; and independent of the other places. */
 #include "tests/check.h"
 
-#include "terrain/landscape/ways_private.h"
+#include "terrain/landscape/landscape_parts.h"
+#include "terrain/landscape/ways.h"
 
 /* ---- the plain reading ------------------------------------------------------------------------ */
 
@@ -88,21 +89,6 @@ static double wander_at(uint64_t seed, double x_m, double y_m)
     return sum;
 }
 
-/* How wet or worn a place is: between the posts of the coarse grid, held at its rim. */
-static double wet_at(const Ways *ways, double x_m, double y_m)
-{
-    const double x = clamp((x_m - ways->x0_m) / ways->coarse_m, 0, ways->cx - 1.001);
-    const double y = clamp((y_m - ways->y0_m) / ways->coarse_m, 0, ways->cy - 1.001);
-    const int    i = (int)x, j = (int)y;
-    double       sum = 0;
-    for (int n = 0; n < 4; n++) {
-        const double u = n & 1 ? x - i : 1 - (x - i), v = n & 2 ? y - j : 1 - (y - j);
-        const double post = (double)(ways->wet[j * ways->cx + i] >> (8 * n) & 255) - 128;
-        sum += post / 127 * u * u * (3 - 2 * u) * v * v * (3 - 2 * v);
-    }
-    return sum;
-}
-
 /* Where no way touches the cell of the index. */
 static SurfaceClass plain_surface(const Landscape *land, uint64_t seed, double x_m, double y_m)
 {
@@ -117,7 +103,7 @@ static SurfaceClass plain_surface(const Landscape *land, uint64_t seed, double x
     const double patch = noise(seed + 12, 17, x_m, y_m);
     const double wild = noise(seed + 10, 310, x_m, y_m) + 0.5 * middle + 0.14 * patch +
                         4 * slope;
-    const double wet = wet_at(((const Cover *)land->cover)->ways, x_m, y_m);
+    const double wet = landscape_wetness(land, x_m, y_m);
     const double grown = wild + 0.2 * fmax(wet, 0) - 0.88 + 0.02 * wander;
     const double stony = wild - 0.3 * wet - 1.24 + 0.12 * fmin(slope / 0.2, 1) + 0.02 * wander;
     if (stony > 0) return SURFACE_ROCK;
@@ -217,10 +203,7 @@ static void cover_is_what_it_is_defined_to_be(void **state)
     choose_places();
     landscape_surfaces(surface, &land, places, x_m, y_m);
     for (int n = 0; n < places; n++) {
-        const double here_x[8] = {x_m[n]}, here_y[8] = {y_m[n]};
-        int32_t      touched[8];
-        i32x8_store(touched, ways_cells(((const Cover *)land.cover)->ways, here_x, here_y));
-        if (touched[0] >= 0) continue;
+        if (landscape_ways_near(&land, x_m[n], y_m[n])) continue;
         inside += fabs(x_m[n]) < 1500 && fabs(y_m[n]) < 1500;
         const SurfaceClass plain = plain_surface(&land, cover_seed, x_m[n], y_m[n]);
         of_class[plain]++;
@@ -276,13 +259,15 @@ static void borders_of_files_have_no_steps(void **state)
     static uint8_t      classes[side * side];
     for (int k = 0; k < 3; k++) {
         const double c = cell[k];
-        Cover        cover = {.seed = 5, .real = true};
-        Landscape    of = land; /* its ground, with cover of its own */
-        of.cover = &cover;
-        cover.grid[0] = (CoverGrid){.nx = side, .ny = side, .x0_m = -32 * c, .y0_m = -32 * c, .cell_m = c,
-                                    .surface = classes};
+        /* its ground, with cover of its own */
+        LandscapeParts parts = {.frame = land.frame, .config = land.config, .elevation = land.elevation, .cover_seed = 5,
+                                .cover = {{.nx = side, .ny = side, .x0_m = -32 * c, .y0_m = -32 * c, .cell_m = c,
+                                           .surface = classes}}};
+        Landscape      of;
+        const char    *why;
         for (int n = 0; n < side * side; n++)
             classes[n] = n / side - 31.5 < 0.4 * (n % side - 31.5) ? SURFACE_CROP : SURFACE_SCRUB;
+        CHECK(landscape_from_parts(&of, &why, &parts) == STATUS_OK);
         double prior = NAN, off = 0, rough = 0;
         int    flat = 0;
         for (int n = 0; n < samples; n++) {
@@ -296,6 +281,7 @@ static void borders_of_files_have_no_steps(void **state)
         }
         print_message("cells of %.0f m: %d of %d flat, %.2f cells off, rough by %.3f m\n", c, flat, (int)samples,
                       sqrt(off) / c, sqrt(rough));
+        landscape_destroy(&of);
         CHECK(flat < samples / 5 && sqrt(off) < 0.6 * c && sqrt(rough) > 0.05);
     }
 }
