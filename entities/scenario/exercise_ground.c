@@ -2,6 +2,7 @@
 #include "entities/scenario/exercise_ground.h"
 
 #include "terrain/landscape/elevation_import.h"
+#include "terrain/store/store.h"
 
 static const double horizon_m = 60000;
 
@@ -14,6 +15,24 @@ static void set_curvature(ExerciseGround *ground)
     ground->half_curvature[1] = 0.5 / (prime_m * (1 - e2) / w2 + ground->frame.origin.h_m);
 }
 
+/* z of the place's ENU plane at (x, y). A store has a frame of its own, whose verticals lean by 0.16 mrad a kilometre
+ * between the origins: the place is followed along the vertical line, to 1 mm in three steps. */
+static double post_at(const ExerciseGround *ground, double x_m, double y_m)
+{
+    if (!ground->stored.cover) return elevation_height(&ground->elevation, x_m, y_m, NULL);
+    double z_m = exercise_level_at(NULL, ground, x_m, y_m);
+    for (int step = 0; step < 3; step++) {
+        double p_ecef[3], p_store[3], p_enu[3] = {x_m, y_m, z_m};
+        ecef_from_enu(p_ecef, &ground->frame, p_enu);
+        enu_from_ecef(p_store, &ground->stored.frame, p_ecef);
+        p_store[2] = elevation_height(&ground->stored.elevation, p_store[0], p_store[1], NULL);
+        ecef_from_enu(p_ecef, &ground->stored.frame, p_store);
+        enu_from_ecef(p_enu, &ground->frame, p_ecef);
+        z_m = p_enu[2];
+    }
+    return z_m;
+}
+
 Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario)
 {
     ExerciseGround ground = {.swell_m = scenario->ground.swell_m, .smooth_m = scenario->ground.smooth_m};
@@ -24,6 +43,22 @@ Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario)
     for (uint64_t i = 0; i < 2; i++)
         ground.phase_rad[i] = 2 * pi_rad * random_uniform((uint64_t)scenario->seed, 1, 0, i);
     set_curvature(&ground);
+    if (*scenario->ground.store && *scenario->ground.elevation) {
+        log_error("scenario: ground.store and ground.elevation exclude each other: leave one of them out");
+        return STATUS_BAD_VALUE;
+    }
+    if (*scenario->ground.store) {
+        status = landscape_open_store(&ground.stored, scenario->ground.store, (uint64_t)scenario->seed);
+        if (status != STATUS_OK) return status;
+        ground.real = true;
+        if (!isfinite(post_at(&ground, 0, 0))) {
+            log_error("scenario: ground.store: %s has no ground at place.lat_deg, place.lon_deg: %.4f, %.4f; `pitviper "
+                      "terrain info` says where it lies", scenario->ground.store, scenario->place.lat_deg,
+                      scenario->place.lon_deg);
+            landscape_destroy(&ground.stored);
+            return STATUS_BAD_VALUE;
+        }
+    }
     if (*scenario->ground.elevation) {
         const char          *vertical = scenario->ground.vertical;
         ElevationReport      report;
@@ -43,6 +78,7 @@ Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario)
 void exercise_ground_destroy(ExerciseGround *ground)
 {
     elevation_destroy(&ground->elevation);
+    landscape_destroy(&ground->stored);
     *ground = (ExerciseGround){0};
 }
 
@@ -74,7 +110,7 @@ static double smoothed(double slope[2], const ExerciseGround *ground, double x_m
     for (int b = 0; b < 4; b++)
         for (int a = 0; a < 4; a++) {
             const double x = (i + a - 1) * h, y = (j + b - 1) * h;
-            double       post = elevation_height(&ground->elevation, x, y, NULL);
+            double       post = post_at(ground, x, y);
             if (!isfinite(post)) post = exercise_level_at(NULL, ground, x, y); /* beyond the horizon */
             z += wy[b] * wx[a] * post;
             zx += wy[b] * dx[a] * post;

@@ -1,6 +1,6 @@
 /* entities/scenario/exercise_ground.h: the ground of a generated exercise: smooth, in the tangent plane of its place.
  *
- * Synthetic: swells over the curved Earth, slopes below 2.4 % at 1.5 m. From files: elevation (terrain/), through a
+ * Synthetic: swells over the curved Earth, slopes below 2.4 % at 1.5 m. From files or a terrain store: through a
  * cubic B-spline of `smooth_m`, so that velocity and angular rate of vehicles on it are continuous. */
 #ifndef ENTITIES_SCENARIO_EXERCISE_GROUND_H
 #define ENTITIES_SCENARIO_EXERCISE_GROUND_H
@@ -8,6 +8,7 @@
 #include "entities/scenario/scenario.h"
 #include "terrain/elevation/elevation.h"
 #include "terrain/earth/local_frame.h"
+#include "terrain/landscape/landscape.h"
 
 typedef struct ExerciseGround {
     LocalFrame frame;
@@ -16,6 +17,7 @@ typedef struct ExerciseGround {
     bool       real;
     double     smooth_m;
     Elevation  elevation;
+    Landscape  stored;            /* of a terrain store, in its own frame; cover NULL: none */
 } ExerciseGround;
 
 /* Reads the files of ground.elevation. Failures are logged. */

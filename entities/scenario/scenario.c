@@ -83,6 +83,8 @@ static const Setting keys[] = {
     {"place.turn_deg", SETTING_DOUBLE, AT(place.turn_deg), -360, 360, NULL, "deg", "all routes and places, clockwise"},
     {"ground.swell_m", SETTING_DOUBLE, AT(ground.swell_m), 0, 20, NULL, "m",
      "of invented ground: swells 0.4 to 0.6 km long"},
+    {"ground.store", SETTING_PATH, AT(ground.store), 0, 0, NULL, "",
+     "terrain store of real ground (`pitviper terrain import`), instead of ground.elevation; empty: none"},
     {"ground.elevation", SETTING_PATHS, AT(ground.elevation), 0, 0, NULL, "",
      "files and folders of real ground, separated by commas; empty: invented"},
     {"ground.vertical", SETTING_TEXT, AT(ground.vertical), 0, 0, "file|geoid|ellipsoid", "",

@@ -50,6 +50,7 @@ typedef struct Scenario {
     } place;
     struct {
         double swell_m, smooth_m;
+        char   store[1024];
         char   elevation[scenario_path_size], geoid[scenario_path_size], vertical[12];
     } ground;
     struct {

@@ -16,12 +16,13 @@ static const char help[] =
     "\n"
     "import: a terrain store, one file that is mapped (terrain.store), from any files that GDAL reads. SOURCE: terrain\n"
     "models, that is bare ground; files, or folders of them. Sheets may overlap, have different postings and coordinate\n"
-    "systems, and holes: the finest wins, of equals the one given first; a hole is filled from its surroundings. FILE@geoid\n"
-    "and FILE@ellipsoid state what one file's heights are above; FILE:BAND names a band.\n"
+    "systems, and holes: the finest wins, of equals the one given first; a large hole is filled from coarser files, a\n"
+    "small one from its surroundings. FILE@geoid and FILE@ellipsoid state what one file's heights are above; FILE:BAND\n"
+    "names a band.\n"
     "\n"
     "sources\n"
-    "  --surface FILES        surface models, roofs and crowns included: taken apart into bare ground, buildings and trees,\n"
-    "                         with the help of SOURCE where that is given; posts up to 4 m apart\n"
+    "  --surface FILES        surface models, roofs and crowns included: taken apart into bare ground, buildings and\n"
+    "                         trees, with the help of SOURCE where that is given; posts up to 4 m apart\n"
     "  --cover FILES          land cover classes\n"
     "  --cover-table TABLE    what its codes mean: worldcover, nlcd, fbfm40 or a CSV (the one with most of the codes)\n"
     "  --photo FILES          an orthophoto, 8 bits, one band or three\n"
@@ -143,17 +144,21 @@ static void print_summary(const Wanted *w, const TerrainReport *r, double second
               1e-6 * r->nx * r->ny, e->spacing_m, 1e-3 * e->width_m[0], 1e-3 * e->width_m[1], e->sheets,
               e->sheets == 1 ? "" : "s", e->posting_m);
     if (e->ellipsoidal) log_print("heights: above the ellipsoid\n");
-    else log_print("heights: above the geoid, which lies %+.2f m from the ellipsoid here; converted at each post\n", e->geoid_m);
+    else log_print("heights: above the geoid, which lies %+.2f m from the ellipsoid here; converted at each post\n",
+                   e->geoid_m);
     if (r->apart)
-        log_print("surface model taken apart%s: bare ground %.1f %%, buildings %.1f %% (%llu), trees %.1f %% (%llu crowns)\n",
+        log_print("surface model taken apart%s: bare ground %.1f %%, buildings %.1f %% (%llu), trees %.1f %% (%llu "
+                  "crowns)\n",
                   r->beside ? " with the terrain model beside it" : " by its own shape", 100 * r->kind_share[0],
                   100 * r->kind_share[1], (unsigned long long)r->store.buildings, 100 * r->kind_share[2],
                   (unsigned long long)r->store.crowns);
     if (e->places > 0)
         log_print("resampling: %.3f m rms, p99 %.3f, at most %.3f against the files\n", e->error_rms_m, e->error_p99_m,
                   e->error_max_m);
-    if (e->voids > 0) log_print("voids: %ld posts filled\n", e->voids);
-    log_print("quantisation: steps of %.3g mm, at most %.3g mm off\n", 1e3 * r->store.step_m[0], 1e3 * r->store.worst_m[0]);
+    if (e->voids > 0) log_print("voids: %ld posts filled from their surroundings\n", e->voids);
+    if (e->voids_coarser > 0) log_print("voids: %ld posts filled from coarser files\n", e->voids_coarser);
+    log_print("quantisation: steps of %.3g mm, at most %.3g mm off\n", 1e3 * r->store.step_m[0],
+              1e3 * r->store.worst_m[0]);
     if (r->apart || r->cover.posting_m > 0) print_classes(&r->cover);
     if (r->photo_posting_m > 0) log_print("photograph: pixels %.3g m apart\n", r->photo_posting_m);
     if (r->canopy_scale_m > 0) log_print("canopy height: numbers of %.2g m\n", r->canopy_scale_m);

@@ -1,20 +1,43 @@
-/* sensor/node/ground_store.c: the ground of a node from a terrain store: whether it is fresh and of this place, and what
- * it has. */
+/* sensor/node/ground_store.c: the ground of a node from a terrain store: whether it is fresh and of this place, and
+ * what it has. */
 #include "sensor/node/ground_store.h"
 
 #include "terrain/import/terrain_import.h"
 #include "terrain/store/store.h"
 
+#include <stdlib.h>
 #include <unistd.h>
 
 /* ---- fresh ----------------------------------------------------------------------------------------- */
 
+/* A file that cannot be used, but still has the options that it was made with. */
+static Status made_again(TerrainStore *store, const char *path, const char *why)
+{
+    char *options = store_recall(path);
+    if (!options) {
+        log_error("terrain.store: %s cannot be used: %s; make it again with `pitviper terrain import`", path, why);
+        return STATUS_BAD_VALUE;
+    }
+    log_print("ground: %s cannot be used: %s; it is made again with the options that it was made with\n", path, why);
+    Status status = terrain_store_rebuild(path, options);
+    free(options);
+    if (status == STATUS_OK) return store_open(store, path);
+    log_error("terrain.store: %s cannot be used: %s, nor made again; run `pitviper terrain import` with sources that "
+              "are here", path, why);
+    return status;
+}
+
 /* Opens the store; made again before where its sources have changed. */
 static Status open_fresh(TerrainStore *store, Choices *choices, const char *path)
 {
-    char   which[1024];
-    Status status = store_open(store, path);
-    if (status != STATUS_OK) return status;
+    char        which[1024];
+    const char *why;
+    Status      status = store_open_why(store, &why, path);
+    if (status == STATUS_BAD_VALUE || status == STATUS_UNSUPPORTED) return made_again(store, path, why);
+    if (status != STATUS_OK) {
+        log_error("terrain.store: cannot open %s: %s; `pitviper terrain import` makes a terrain store", path, why);
+        return status;
+    }
     switch (store_sources(store, which, sizeof which)) {
     case STORE_FRESH: return STATUS_OK;
     case STORE_SOURCES_MISSING:
@@ -23,7 +46,7 @@ static Status open_fresh(TerrainStore *store, Choices *choices, const char *path
     case STORE_CHANGED: break;
     }
     log_print("ground: %s has changed since %s was made of it (%s); it is made again\n", which, path, store->made);
-    status = terrain_store_rebuild(path, store);
+    status = terrain_store_rebuild(path, store->options);
     store_close(store);
     return status == STATUS_OK ? store_open(store, path) : status;
 }

@@ -7,6 +7,7 @@ void patch_free(Patch *patch)
 {
     for (int k = 0; k < patch_most_mips; k++) free(patch->v[k]);
     free(patch->hole);
+    free(patch->share);
     *patch = (Patch){0};
 }
 
@@ -137,6 +138,48 @@ static Status fill(Patch *p, int k)
     return STATUS_OK;
 }
 
+enum { square = 8 };
+
+/* Squares are those of the whole raster, whichever window the patch has. */
+static int first_square(int px, const Patch *p) { return px / p->factor / square; }
+static int squares(int px, int count, const Patch *p)
+{
+    return (px / p->factor + count - 1) / square - first_square(px, p) + 1;
+}
+
+static Status measure_holes(Patch *p)
+{
+    const int i0 = p->x0 / p->factor, j0 = p->y0 / p->factor, a0 = first_square(p->x0, p), b0 = first_square(p->y0, p);
+    const int nx = squares(p->x0, p->nx[0], p), ny = squares(p->y0, p->ny[0], p);
+    if (p->voids == 0) return STATUS_OK;
+    p->share = calloc((size_t)nx * (size_t)ny, sizeof *p->share);
+    if (!p->share) return STATUS_NO_MEMORY;
+    for (int j = 0; j < p->ny[0]; j++)
+        for (int i = 0; i < p->nx[0]; i++)
+            p->share[(size_t)((j + j0) / square - b0) * (size_t)nx + (size_t)((i + i0) / square - a0)] +=
+                (float)p->hole[(size_t)j * (size_t)p->nx[0] + (size_t)i] / (square * square);
+    return STATUS_OK;
+}
+
+double patch_hole(const Patch *p, double x_px, double y_px)
+{
+    if (!p->share) return 0;
+    const double x = (x_px - p->x0) / p->factor, y = (y_px - p->y0) / p->factor;
+    const double px = clamp(x - 0.5, 0, p->nx[0] - 1), py = clamp(y - 0.5, 0, p->ny[0] - 1);
+    const int    i = (int)px, j = (int)py, e = i + 1 < p->nx[0], n = j + 1 < p->ny[0] ? p->nx[0] : 0;
+    const uint8_t *at = &p->hole[(size_t)j * (size_t)p->nx[0] + (size_t)i];
+    const double south = at[0] + (px - i) * (at[e] - at[0]), north = at[n] + (px - i) * (at[n + e] - at[n]);
+    const double here = south + (py - j) * (north - south);
+    if (!(here > 0)) return 0;
+    const int    nx = squares(p->x0, p->nx[0], p), ny = squares(p->y0, p->ny[0], p);
+    const double a = x_px / p->factor / square - first_square(p->x0, p),
+                 b = y_px / p->factor / square - first_square(p->y0, p);
+    double sum = 0;
+    for (int k = 0; k < 9; k++) sum += bilinear(p->share, nx, ny, a + k % 3 - 1, b + k / 3 - 1);
+    const double t = clamp((sum / 9 - 0.5) / 0.45, 0, 1);
+    return here * t * t * (3 - 2 * t);
+}
+
 static Status fill_all(Patch *p, Pool *pool)
 {
     Status status = STATUS_OK;
@@ -147,6 +190,7 @@ static Status fill_all(Patch *p, Pool *pool)
         return STATUS_OK;
     }
     for (int k = p->wider ? p->mips - 1 : p->mips - 2; status == STATUS_OK && k >= 0; k--) status = fill(p, k);
+    if (status == STATUS_OK) status = measure_holes(p);
     return status;
 }
 
@@ -191,7 +235,8 @@ static void read_strip(void *user, int worker, int task)
 
 static Status allocate(Patch *p, const PatchWindow *w)
 {
-    int nx = (w->x1 - w->x0 + w->factor - 1) / w->factor, ny = (w->y1 - w->y0 + w->factor - 1) / w->factor, most = patch_most_mips;
+    int nx = (w->x1 - w->x0 + w->factor - 1) / w->factor, ny = (w->y1 - w->y0 + w->factor - 1) / w->factor;
+    int most = patch_most_mips;
     *p = (Patch){.factor = w->factor, .x0 = w->x0, .y0 = w->y0, .wider = w->wider};
     if (w->wider && w->wider->mips > 0)
         for (most = 0; w->factor << most < w->wider->factor;) most++;

@@ -15,6 +15,7 @@ typedef struct Patch {
     float   *v[patch_most_mips];/* [0] finest; each next one the mean of 2 x 2 */
     uint8_t *hole;              /* [ny[0]][nx[0]] 1: was void, and is filled */
     long     voids;             /* posts filled within the raster */
+    float   *share;             /* of holes in squares of 8 x 8 posts; NULL: no hole */
     /* A coarser patch of a wider window of the same raster: its mip 0 continues the mips here. NULL: none. Borrowed. */
     const struct Patch *wider;
 } Patch;
@@ -41,5 +42,8 @@ void   patch_free(Patch *patch); /* accepts zeroes */
 /* Bilinear between posts, held at the edges, at a place in pixels of the raster. mip: how often halved, 0 .. mips - 1,
  * between two of them linearly. */
 double patch_at(const Patch *patch, double x_px, double y_px, double mip);
+/* How far a place is inside a hole: 0 on posts that are valid, and along the rim; 1 where all posts about are void.
+ * Small holes stay near 0. */
+double patch_hole(const Patch *patch, double x_px, double y_px);
 
 #endif

@@ -682,8 +682,10 @@ static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raste
     const bool masked = !(GDALGetMaskFlags(of) & GMF_ALL_VALID);
     if (raster->sheet_count == 1 && !masked) { /* nothing else is there: without a copy */
         const size_t at = (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
-        status = GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, out + at * (size_t)bands, w, h,
-                                     GDT_Byte, bands, band, bands, bands * width, 1) == CE_None ? STATUS_OK : damaged(s, key);
+        const CPLErr error = GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h,
+                                                 out + at * (size_t)bands, w, h, GDT_Byte, bands, band, bands,
+                                                 bands * width, 1);
+        status = error == CE_None ? STATUS_OK : damaged(s, key);
         for (int r = 0; r < h; r++) memset(valid + at + (size_t)r * (size_t)width, 255, (size_t)w);
         goto done;
     }
@@ -700,7 +702,8 @@ static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raste
         goto done;
     }
     for (int r = 0; r < h; r++) {
-        const size_t at = (size_t)(part[1] + r - y0) * (size_t)width + (size_t)(part[0] - x0), from = (size_t)r * (size_t)w;
+        const size_t at = (size_t)(part[1] + r - y0) * (size_t)width + (size_t)(part[0] - x0);
+        const size_t from = (size_t)r * (size_t)w;
         for (size_t i = 0; i < (size_t)w; i++) {
             if (valid[at + i] || (masked && !mask[from + i])) continue;
             valid[at + i] = 255;

@@ -61,8 +61,8 @@ void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, con
  * at once; windows whose first rows lie in different blocks of row_block rows do not wait for each other. STATUS_IO,
  * logged, when a file turns out to be damaged. */
 Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key);
-/* From now on whole rows of a band that are read are kept, decoded, in a nameless file of this folder, and read from it when
- * they are asked for again: 4 octets a pixel. Nothing where the folder cannot have such a file. */
+/* From now on whole rows of a band that are read are kept, decoded, in a nameless file of this folder, and read from it
+ * when they are asked for again: 4 octets a pixel. Nothing where the folder cannot have such a file. */
 void raster_keep(Raster *raster, int band, const char *folder);
 /* The same of a raster of octets: out [height][width][bands], and valid [height][width], 0 or 255. bands: how many, from
  * the first on. */

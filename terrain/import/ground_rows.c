@@ -24,7 +24,8 @@ typedef struct Nodes {
 } Nodes;
 
 /* False: the raster has nothing here, or there is no memory (*status). */
-static bool nodes_create(Nodes *out, Status *status, const Raster *raster, const CellRows *cells, const GroundView *view)
+static bool nodes_create(Nodes *out, Status *status, const Raster *raster, const CellRows *cells,
+                         const GroundView *view)
 {
     Nodes n = {.nx = (cells->nx - 1) / node_cells + 2, .ny = (cells->rows - 1) / node_cells + 2};
     const int count = n.nx * n.ny;
@@ -104,16 +105,16 @@ static void read_rows(void *user, int worker, int task)
     const int y0 = from > box[1] ? from : box[1], y1 = to < box[3] ? to : box[3];
     const size_t at = (size_t)(y0 - box[1]) * (size_t)box_w(job);
     if (job->bytes)
-        job->status[task] = raster_read_bytes(job->bytes + at * (size_t)job->bands, job->valid + at, job->raster, job->band,
-                                              job->bands, box[0], y0, box_w(job), y1 - y0, job->view->key);
+        job->status[task] = raster_read_bytes(job->bytes + at * (size_t)job->bands, job->valid + at, job->raster,
+                                              job->band, job->bands, box[0], y0, box_w(job), y1 - y0, job->view->key);
     else
         job->status[task] = raster_read(job->number + at, job->raster, job->band, box[0], y0, box_w(job), y1 - y0,
                                         job->view->key);
 }
 
 /* One raster after the other: its box read, then the rows of cells sampled. */
-static Status each_raster(void *out, const RasterSet *set, int band, int most_bands, bool numbers, const CellRows *cells,
-                          const GroundView *view, PoolTask *sample)
+static Status each_raster(void *out, const RasterSet *set, int band, int most_bands, bool numbers,
+                          const CellRows *cells, const GroundView *view, PoolTask *sample)
 {
     Status status = STATUS_OK;
     for (int k = 0; k < set->count && status == STATUS_OK; k++) {

@@ -1,5 +1,5 @@
-/* terrain/import/surface_strip.c: overlapping windows of a surface model taken apart; beyond its data the ground that the
- * files lead over to. */
+/* terrain/import/surface_strip.c: overlapping windows of a surface model taken apart; beyond its data the ground that
+ * the files lead over to. */
 #include "terrain/import/surface_strip.h"
 
 #include "terrain/import/ground_rows.h"
@@ -94,7 +94,8 @@ static void take_window(void *user, int worker, int task)
     const int    i0 = task * core_cells > w->margin ? task * core_cells - w->margin : 0;
     const int    end = (task + 1) * core_cells + w->margin, i1 = end < level_nx ? end : level_nx, nx = i1 - i0;
     const size_t cells = (size_t)nx * (size_t)ny;
-    float       *surface_m = malloc(cells * sizeof *surface_m), *bare_in_m = w->bare_m ? malloc(cells * sizeof *bare_in_m) : NULL;
+    float       *surface_m = malloc(cells * sizeof *surface_m);
+    float       *bare_in_m = w->bare_m ? malloc(cells * sizeof *bare_in_m) : NULL;
     uint8_t     *rgb = w->rgb ? malloc(3 * cells) : NULL;
     SurfaceParts parts = {.bare_m = malloc(cells * sizeof(float)), .roof_m = malloc(cells * sizeof(float)),
                           .kind = malloc(cells)};
@@ -160,16 +161,19 @@ static Status read_models(Work *w, const SurfaceSources *from)
         status = elevation_stream_heights(from->bare, w->r0, rows, w->bare_m, w->of_file, false);
         memcpy(w->plain_m, w->bare_m, posts * sizeof *w->plain_m);
         for (size_t n = 0; n < posts; n++)
-            if (w->of_file[n] != 1) w->bare_m[n] = NAN;
+            if (w->of_file[n] != 1 && w->of_file[n] != 3) w->bare_m[n] = NAN;
     }
     if (status == STATUS_OK)
         status = elevation_stream_heights(from->surface, w->r0, rows, w->surface_m, w->of_file, false);
     if (status != STATUS_OK) return status;
     if (!from->bare) memcpy(w->plain_m, w->surface_m, posts * sizeof *w->plain_m);
-    const size_t first = (size_t)(w->row0 - w->r0) * (size_t)w->level.nx, end = first + (size_t)w->rows * (size_t)w->level.nx;
+    const size_t first = (size_t)(w->row0 - w->r0) * (size_t)w->level.nx;
+    const size_t end = first + (size_t)w->rows * (size_t)w->level.nx;
     for (size_t n = 0; n < posts; n++) {
-        if (w->of_file[n] != 1) w->surface_m[n] = NAN;
-        if (w->of_file[n] == 2 && n >= first && n < end) w->out->voids++;
+        if (w->of_file[n] != 1 && w->of_file[n] != 3) w->surface_m[n] = NAN;
+        if (n < first || n >= end) continue;
+        w->out->voids += w->of_file[n] == 2;
+        w->out->voids_coarser += w->of_file[n] == 3;
     }
     measure_away(w);
     return STATUS_OK;
@@ -191,7 +195,8 @@ Status surface_strip_make(SurfaceStrip *out, const SurfaceSources *from, int row
     w.crown  = calloc((size_t)w.windows, sizeof *w.crown);
     w.crowns = calloc((size_t)w.windows, sizeof *w.crowns);
     w.status = calloc((size_t)w.windows, sizeof *w.status);
-    Status status = strip.h_m && strip.kind && strip.canopy_m && w.crown && w.crowns && w.status ? STATUS_OK : STATUS_NO_MEMORY;
+    const bool whole = strip.h_m && strip.kind && strip.canopy_m && w.crown && w.crowns && w.status;
+    Status     status = whole ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = read_models(&w, from);
     if (status == STATUS_OK && from->photo) status = read_colours(&w, from);
     if (status == STATUS_OK) {

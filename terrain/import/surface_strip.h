@@ -20,7 +20,7 @@ typedef struct SurfaceStrip {
     float   *canopy_m;  /* surface above bare ground where kind is CELL_TREE, else 0 */
     int      crowns;
     Crown   *crown;
-    long     voids;     /* posts within the data that they do not have */
+    long     voids, voids_coarser; /* posts filled from their surroundings; from a coarser file */
 } SurfaceStrip;
 
 /* Strips may be of any height and come in any order: the same posts (take_apart_reach_m). */

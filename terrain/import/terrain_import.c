@@ -2,6 +2,7 @@
  * covers it. */
 #include "terrain/import/terrain_import.h"
 
+#include "terrain/import/building_count.h"
 #include "terrain/import/ground_rows.h"
 #include "terrain/import/surface_strip.h"
 #include "terrain/landscape/cover_table.h"
@@ -30,9 +31,9 @@ typedef struct Making {
     StoreWriter     *writer;
     StreamLevel      level;
     int              strip_rows;
-    long             kinds[3], quads; /* quads: four times buildings less courtyards */
-    uint8_t         *last_kind;       /* row of the strip before, for quads */
-    long             voids;
+    long             kinds[3];
+    BuildingCount    buildings;
+    long             voids, voids_coarser;
     TerrainReport    r;
 } Making;
 
@@ -70,7 +71,8 @@ static Status open_sources(Making *m)
     if (status == STATUS_OK) status = local_frame_at(&m->frame, &origin);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < 2; k++)
-        m->files[k] = (ElevationFiles){.paths = k ? o->surface : o->elevation, .geoid_path = o->geoid, .vertical = o->vertical,
+        m->files[k] = (ElevationFiles){.paths = k ? o->surface : o->elevation, .geoid_path = o->geoid,
+                                       .vertical = o->vertical,
                                        .spacing_m = o->spacing_m, .horizon_m = 1000 * o->horizon_km,
                                        .size_m = {1000 * o->size_km[0], 1000 * o->size_km[1]},
                                        .keep_folder = m->folder};
@@ -84,18 +86,20 @@ static Status open_sources(Making *m)
     if (status == STATUS_OK) status = open_set(&m->photo, o->photo, "terrain import: --photo", true, "a photograph");
     for (int k = 0; status == STATUS_OK && k < m->photo.count; k++)
         if (!m->photo.raster[k].bytes) {
-            log_error("terrain import: --photo: %s holds samples of more than 8 bits; gdal_translate -ot Byte -scale %s OUT.tif",
+            log_error("terrain import: --photo: %s holds samples of more than 8 bits; "
+                      "gdal_translate -ot Byte -scale %s OUT.tif",
                       m->photo.raster[k].sheet[0].path, m->photo.raster[k].sheet[0].path);
             status = STATUS_BAD_VALUE;
         }
     if (status == STATUS_OK)
         status = open_set(&m->canopy_height, o->canopy_height, "terrain import: --canopy-height", false, "");
-    if (status == STATUS_OK) status = open_set(&m->canopy_cover, o->canopy_cover, "terrain import: --canopy-cover", false, "");
+    if (status == STATUS_OK)
+        status = open_set(&m->canopy_cover, o->canopy_cover, "terrain import: --canopy-cover", false, "");
     return status;
 }
 
-/* Cells of a power of two times the posts' spacing, about as large as pixels, over level 0; or, with a set, only over its
- * part of that, from whole nodes on. */
+/* Cells of a power of two times the posts' spacing, about as large as pixels, over level 0; or, with a set, only over
+ * its part of that, from whole nodes on. */
 static void plan_grid(StoreGrid *out, const Making *m, double posting_m, const RasterSet *set, int finest)
 {
     const double s = m->level.spacing_m;
@@ -193,7 +197,8 @@ static Status plan(Making *m)
         plan_grid(&p->canopy_height, m, 4, NULL, 0);
         p->canopy_cover = p->canopy_height;
     }
-    if (m->canopy_height.count) plan_grid(&p->canopy_height, m, fmax(finest_m(&m->canopy_height), 4), &m->canopy_height, 0);
+    if (m->canopy_height.count)
+        plan_grid(&p->canopy_height, m, fmax(finest_m(&m->canopy_height), 4), &m->canopy_height, 0);
     if (m->canopy_cover.count) plan_grid(&p->canopy_cover, m, fmax(finest_m(&m->canopy_cover), 4), &m->canopy_cover, 0);
     ElevationReport e;
     Status status = elevation_stream_report(&e, m->first, NULL);
@@ -209,12 +214,14 @@ static Status plan(Making *m)
     p->geoid_m   = e.geoid_m;
     p->options   = m->options;
     p->crs       = "east, north, up at the origin, WGS 84";
-    snprintf(m->datum, sizeof m->datum, "%s", e.ellipsoidal ? "files above the ellipsoid" : "files above the geoid (EGM96 unless --geoid), converted at each post");
+    snprintf(m->datum, sizeof m->datum, "%s",
+             e.ellipsoidal ? "files above the ellipsoid"
+                           : "files above the geoid (EGM96 unless --geoid), converted at each post");
     p->vertical_datum = m->datum;
-    snprintf(m->notes, sizeof m->notes, "%s%s",
-             m->surface ? m->terrain ? "surface model taken apart with the terrain model beside it: bare ground, roofs as blocks, crowns listed"
-                                     : "surface model taken apart by its own shape: bare ground, roofs as blocks, crowns listed"
-                        : "terrain model as it is",
+    snprintf(m->notes, sizeof m->notes, "%s%s%s", !m->surface ? "terrain model as it is" : "surface model taken apart ",
+             !m->surface  ? ""
+             : m->terrain ? "with the terrain model beside it: bare ground, roofs as blocks, crowns listed"
+                          : "by its own shape: bare ground, roofs as blocks, crowns listed",
              "; where files overlap the finest wins, of equals the one given first");
     p->provenance = m->notes;
     return STATUS_OK;
@@ -273,8 +280,8 @@ static Status make_wide(Making *m)
         known += code[n] != SURFACE_NONE;
     }
     if (status == STATUS_OK && known == 0) {
-        log_error("terrain import: --cover: none of the codes of %s is in the table %s; give --cover-table", raster->sheet[0].path,
-                  m->r.cover.table);
+        log_error("terrain import: --cover: none of the codes of %s is in the table %s; give --cover-table",
+                  raster->sheet[0].path, m->r.cover.table);
         status = STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK) status = store_write_surface(m->writer, 1, g->ny, code);
@@ -360,7 +367,8 @@ static Status canopy_of_file(Making *m, bool height, int row0, int rows)
     const RasterSet *set = height ? &m->canopy_height : &m->canopy_cover;
     CellRows cells;
     int      first;
-    if (!rows_of(&cells, &first, height ? &m->plan.canopy_height : &m->plan.canopy_cover, m, row0, rows)) return STATUS_OK;
+    const StoreGrid *g = height ? &m->plan.canopy_height : &m->plan.canopy_cover;
+    if (!rows_of(&cells, &first, g, m, row0, rows)) return STATUS_OK;
     const GroundView view = view_of(m, height ? "terrain import: --canopy-height" : "terrain import: --canopy-cover");
     const size_t     count = (size_t)cells.nx * (size_t)cells.rows;
     const double     scale = height ? m->r.canopy_scale_m / store_canopy_height_m : 0.01 / store_canopy_cover;
@@ -400,7 +408,8 @@ static Status canopy_of_strip(Making *m, bool height, int row0, int rows, const 
                     most_m = fmax(most_m, (double)strip->canopy_m[at]);
                 }
             octet[(size_t)j * (size_t)cells.nx + (size_t)i] =
-                (uint8_t)(height ? fmin(rint(most_m / store_canopy_height_m), 255) : rint(100.0 * trees / (posts + !posts)));
+                (uint8_t)(height ? fmin(rint(most_m / store_canopy_height_m), 255)
+                                 : rint(100.0 * trees / (posts + !posts)));
         }
     const Status status = (height ? store_write_canopy_height : store_write_canopy_cover)(m->writer, cells.rows, octet);
     free(octet);
@@ -419,33 +428,18 @@ static Status make_canopy(Making *m, int row0, int rows, const SurfaceStrip *str
 
 /* ---- strips ---------------------------------------------------------------------------------- */
 
-/* Buildings less courtyards: the Euler number of their cells, four-connected, from the 2 x 2 squares of the picture with a
- * rim of nothing (Gray 1971): once for every pair of neighbouring rows. */
-static void count_quads(Making *m, const uint8_t *south, const uint8_t *north)
-{
-    const int nx = m->level.nx;
-    for (int i = 0; i <= nx; i++) {
-        const int a = south && i > 0 && south[i - 1] == CELL_BUILDING, b = south && i < nx && south[i] == CELL_BUILDING;
-        const int c = north && i > 0 && north[i - 1] == CELL_BUILDING, d = north && i < nx && north[i] == CELL_BUILDING;
-        const int sum = a + b + c + d;
-        m->quads += sum == 1 ? 1 : sum == 3 ? -1 : sum == 2 && a == d ? 2 : 0;
-    }
-}
-
-static Status count_kinds(Making *m, int row0, int rows, const SurfaceStrip *strip)
+static Status count_kinds(Making *m, int rows, const SurfaceStrip *strip)
 {
     const size_t nx = (size_t)m->level.nx;
-    if (!m->last_kind) m->last_kind = calloc(nx, 1);
-    if (!m->last_kind) return STATUS_NO_MEMORY;
-    for (int r = 0; r < rows; r++) {
+    Status       status = STATUS_OK;
+    for (int r = 0; r < rows && status == STATUS_OK; r++) {
         const uint8_t *row = strip->kind + (size_t)r * nx;
         for (size_t i = 0; i < nx; i++) m->kinds[row[i] <= CELL_TREE ? row[i] : 0]++;
-        count_quads(m, r ? row - nx : m->last_kind, row);
+        status = building_count_row(&m->buildings, m->level.nx, row);
     }
-    memcpy(m->last_kind, strip->kind + (size_t)(rows - 1) * nx, nx);
-    if (row0 + rows == m->level.ny) count_quads(m, m->last_kind, NULL);
     m->voids += strip->voids;
-    return STATUS_OK;
+    m->voids_coarser += strip->voids_coarser;
+    return status;
 }
 
 static Status make_strip(Making *m, int row0, int rows)
@@ -456,10 +450,11 @@ static Status make_strip(Making *m, int row0, int rows)
     Status       status = STATUS_OK;
     if (m->surface) {
         status = surface_strip_make(&strip, &from, row0, rows);
-        if (status == STATUS_OK) status = count_kinds(m, row0, rows, &strip);
+        if (status == STATUS_OK) status = count_kinds(m, rows, &strip);
     } else {
         strip.h_m = malloc((size_t)rows * (size_t)m->level.nx * sizeof *strip.h_m);
-        status    = strip.h_m ? elevation_stream_heights(m->terrain, row0, rows, strip.h_m, NULL, true) : STATUS_NO_MEMORY;
+        status    = STATUS_NO_MEMORY;
+        if (strip.h_m) status = elevation_stream_heights(m->terrain, row0, rows, strip.h_m, NULL, true);
     }
     if (status == STATUS_OK) status = elevation_stream_bend(m->first, row0, rows, strip.h_m);
     const double posts_s = wall_clock_s();
@@ -507,11 +502,12 @@ static Status finish(Making *m, const char *path)
         store_writer_abandon(writer);
         return STATUS_IO;
     }
-    Status status = store_writer_finish(writer, (uint64_t)(m->quads > 0 ? m->quads / 4 : 0), &m->r.store);
+    Status status = store_writer_finish(writer, (uint64_t)m->buildings.count, &m->r.store);
     m->r.seconds[3] += wall_clock_s() - begun_s;
     if (status == STATUS_OK) status = store_open(&store, path);
-    if (status == STATUS_OK) status = elevation_stream_report(&m->r.elevation, m->first, m->surface ? NULL : &store.elevation);
-    if (m->surface) m->r.elevation.voids = m->voids;
+    if (status == STATUS_OK)
+        status = elevation_stream_report(&m->r.elevation, m->first, m->surface ? NULL : &store.elevation);
+    if (m->surface) m->r.elevation.voids = m->voids, m->r.elevation.voids_coarser = m->voids_coarser;
     store_close(&store);
     double cells = 0, posts = 0;
     for (int s = 1; s < SURFACE_COUNT; s++) cells += m->r.cover.share[s];
@@ -558,37 +554,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     raster_set_close(&m->canopy_cover);
     free(m->source);
     free(m->options);
-    free(m->last_kind);
+    building_count_free(&m->buildings);
     free(m);
-    return status;
-}
-
-static bool tell(void *user, const char *stage, double share)
-{
-    char text[160];
-    if (wall_clock_s() - *(double *)user < 1) return true;
-    snprintf(text, sizeof text, "terrain: the store is made again: %s, %.0f %%", stage, 100 * share);
-    log_status(text);
-    return true;
-}
-
-Status terrain_store_rebuild(const char *path, const TerrainStore *old)
-{
-    TerrainOptions *o = malloc(sizeof *o);
-    TerrainReport   r;
-    Pool           *pool = NULL;
-    const char     *why = "its header cannot be read";
-    int             line = 0;
-    double          begun_s = wall_clock_s();
-    if (!o) return STATUS_NO_MEMORY;
-    Status status = old && old->options && terrain_options_parse(o, &why, &line, old->options) ? STATUS_OK : STATUS_BAD_VALUE;
-    if (status != STATUS_OK)
-        log_error("terrain.store: %s cannot be made again: line %d of its options: %s; run `pitviper terrain import` again",
-                  path, line, why);
-    if (status == STATUS_OK) status = pool_create(&pool, thread_processors());
-    if (status == STATUS_OK) status = terrain_import(&r, o, path, pool, tell, &begun_s);
-    log_status(NULL);
-    pool_destroy(pool);
-    free(o);
     return status;
 }

@@ -24,11 +24,12 @@ typedef struct TerrainReport {
     bool            stopped;            /* by the progress function */
 } TerrainReport;
 
-/* pool NULL: one thread. progress may be NULL. Failures are logged with the file and the next step; PATH is replaced only
- * by a whole store. */
+/* pool NULL: one thread. progress may be NULL. Failures are logged with the file and the next step; PATH is replaced
+ * only by a whole store. */
 Status terrain_import(TerrainReport *out, const TerrainOptions *options, const char *path, Pool *pool,
                       TerrainProgress *progress, void *user);
-/* Makes a store again with the options that its header has, on all processors. old: as it was opened. */
-Status terrain_store_rebuild(const char *path, const TerrainStore *old);
+/* Makes a store again with the options that it has, on all processors. options: as TerrainStore or store_recall has
+ * them. */
+Status terrain_store_rebuild(const char *path, const char *options);
 
 #endif

@@ -58,7 +58,7 @@ static I32x8 of_tiles(const int32_t *value, I32x8 tile, I32x8 mask)
 
 /* Heights above `about` in the level's own steps, of lanes within its cells. Two posts of a row take one load;
  * differences are formed of whole steps. */
-static F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattice y, F32x8 lanes, I32x8 about)
+static inline F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattice y, F32x8 lanes, I32x8 about)
 {
     const I32x8 post = i32x8_set(0xffff), none = i32x8_set(0), mask = _mm256_castps_si256(lanes);
     const I32x8 inside = i32x8_set(elevation_tile_cells - 1), tile = tiles_of(level, x, y);
@@ -158,15 +158,14 @@ static const double track_half_m = 2, hedge_half_m = 1.5, hedge_beyond_m = 3.6, 
 
 /* Cover on the border of two fields, at a position near one; SURFACE_NONE: nothing of its own. crop: of the field that
  * the position is in once the border has wandered. */
-static SurfaceClass border_surface(int32_t *crop, const PlotCell *cell, uint64_t seed, int site, float x_m, float y_m,
-                                   float wander)
+static SurfaceClass border_surface(int32_t *crop, const PlotCell *cell, uint64_t seed, int site, int other, float x_m,
+                                   float y_m, float wander)
 {
-    PlotBorder border;
+    const PlotBorder border = plot_border(cell, seed, site, other, x_m, y_m);
     *crop = cell->crop[site];
-    if (!plot_border(&border, cell, seed, site, x_m, y_m)) return SURFACE_NONE;
     const double off_m = border_wander_m * (double)wander;
     double       here_m = border.away_m + (border.first ? off_m : -off_m);
-    if (here_m < 0) *crop = cell->crop[border.other], here_m = -here_m;
+    if (here_m < 0) *crop = cell->crop[other], here_m = -here_m;
     const double edge_m = 0.5 * off_m; /* edges wander less */
     if (border.track && here_m + edge_m < track_half_m) return SURFACE_TRACK;
     if (border.hedge && border.track && here_m > track_half_m && here_m + edge_m < hedge_beyond_m) return SURFACE_SCRUB;
@@ -175,26 +174,32 @@ static SurfaceClass border_surface(int32_t *crop, const PlotCell *cell, uint64_t
     return SURFACE_NONE;
 }
 
-/* Lanes within reach of a border to another field than their own. */
-static unsigned near_border(const PlotCell *cell, F32x8 x, F32x8 y, I32x8 site, F32x8 least)
+/* Lanes within reach of a border to another field than their own; other: site beyond the nearest border. Distances to
+ * perpendicular bisectors are compared by their squares, without divisions. */
+static unsigned near_border(I32x8 *other, const PlotCell *cell, F32x8 x, F32x8 y, I32x8 site, F32x8 least)
 {
-    const F32x8    own_x = f32x8_gather(cell->x_m, site), own_y = f32x8_gather(cell->y_m, site);
-    const I32x8 own = plot_look(cell->field, site);
-    /* squared: no root; margin for rounding */
-    const double   reach_m = hedge_beyond_m + border_wander_m;
-    const F32x8    reach = f32x8_set(reach_m * reach_m * 1.01);
-    F32x8          near = f32x8_set(0);
+    const F32x8  own_x = f32x8_gather(cell->x_m, site), own_y = f32x8_gather(cell->y_m, site);
+    const I32x8  own = plot_look(cell->field, site);
+    const double reach_m = 2 * (hedge_beyond_m + border_wander_m);
+    F32x8        best = f32x8_set(reach_m * reach_m * 1.01), best_apart = f32x8_set(1); /* margin for rounding */
+    F32x8        near = f32x8_set(0);
+    I32x8        found = i32x8_set(0);
     for (int n = 0; n < plot_sites; n++) {
         const F32x8 sx = f32x8_set((double)cell->x_m[n]), sy = f32x8_set((double)cell->y_m[n]);
         const F32x8 dx = x - sx, dy = y - sy, ax = sx - own_x, ay = sy - own_y;
         const F32x8 more = f32x8_fma(dx, dx, dy * dy) - least, apart = f32x8_fma(ax, ax, ay * ay);
-        const F32x8 same = i32x8_equal(own, i32x8_set(cell->field[n]));
-        near = f32x8_or(near, f32x8_and_not(f32x8_less(more * more, reach * f32x8_set(4) * apart), same));
+        const F32x8 square = more * more, same = i32x8_equal(own, i32x8_set(cell->field[n]));
+        const F32x8 nearer = f32x8_and_not(f32x8_less(square * best_apart, best * apart), same);
+        best = f32x8_select(nearer, square, best);
+        best_apart = f32x8_select(nearer, apart, best_apart);
+        found = i32x8_select(nearer, i32x8_set(n), found);
+        near = f32x8_or(near, nearer);
     }
+    *other = found;
     return f32x8_bits(near);
 }
 
-static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells *cells, const double x_m[8],
+static void invented_surfaces(int32_t surface[8], const Cover *cover, const double x_m[8],
                               const double y_m[8], F32x8 slope, unsigned lanes)
 {
     static const double wild_wander = 0.02; /* some metres of the patches' borders */
@@ -211,26 +216,28 @@ static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells 
     F32x8       grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, zero), wild) - f32x8_set(0.88);
     F32x8       stony = f32x8_fma(f32x8_set(-0.3), wet, wild) - f32x8_set(1.24);
     stony = f32x8_fma(f32x8_set(0.12), f32x8_clamp(slope * f32x8_set(5), 0, 1), stony);
-    F32x8       marsh = f32x8_fma(f32x8_set(0.3), middle, wet) - f32x8_set(0.72);
+    F32x8       marsh = f32x8_fma(f32x8_set(0.35), middle, wet) - f32x8_set(0.92);
+    marsh = f32x8_fma(f32x8_set(0.22), patch, marsh);
     const F32x8 dry_from = f32x8_set(-0.1), soil_from = f32x8_set(-0.16);
 
     double   i[8], j[8], bent_x[8], bent_y[8];
     float    in_x[8], in_y[8], wander_of[8], patch_of[8];
-    int32_t  site_of[8], found[8], cell_of[8];
+    int32_t  site_of[8], other_of[8], found[8], cell_of[8];
     F32x8    x, y;
-    I32x8    class = i32x8_set(SURFACE_NONE), sites = i32x8_set(0);
+    I32x8    class = i32x8_set(SURFACE_NONE), sites = i32x8_set(0), others = i32x8_set(0);
     unsigned near = 0, touched = 0;
     plot_bend(bent_x, bent_y, seed, x_m, y_m);
     plot_cells_of(i, j, &x, &y, bent_x, bent_y);
     for (unsigned left = lanes, same; left; left &= ~same) {
         same = plot_cell_lanes(i, j, left);
         const int       first = __builtin_ctz(left);
-        const PlotCell *cell = plot_cell_at(cells, seed, (int64_t)i[first], (int64_t)j[first]);
-        I32x8           site;
+        const PlotCell *cell = plot_cell_at(seed, (int64_t)i[first], (int64_t)j[first]);
+        I32x8           site, other;
         const F32x8     least = plot_nearest(&site, cell, x, y), here = f32x8_mask(same);
         class = i32x8_select(here, plot_look(cell->crop, site), class);
         sites = i32x8_select(here, site, sites);
-        near |= near_border(cell, x, y, site, least) & same;
+        near |= near_border(&other, cell, x, y, site, least) & same;
+        others = i32x8_select(here, other, others);
     }
     if (cover->ways) {
         const I32x8 touches = ways_cells(cover->ways, x_m, y_m);
@@ -254,7 +261,7 @@ static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells 
     }
     const F32x8 rock = f32x8_greater(stony, zero);
     if (near & ~f32x8_bits(rock)) {
-        i32x8_store(site_of, sites);
+        i32x8_store(site_of, sites), i32x8_store(other_of, others);
         i32x8_store(found, class);
         f32x8_store(in_x, x), f32x8_store(in_y, y);
     }
@@ -262,8 +269,8 @@ static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells 
     unsigned     bordered = 0;
     for (unsigned left = near & ~f32x8_bits(rock); left; left &= left - 1) {
         const int       k = __builtin_ctz(left);
-        const PlotCell *cell = plot_cell_at(cells, seed, (int64_t)i[k], (int64_t)j[k]);
-        on_border[k] = border_surface(&found[k], cell, seed, site_of[k], in_x[k], in_y[k], wander_of[k]);
+        const PlotCell *cell = plot_cell_at(seed, (int64_t)i[k], (int64_t)j[k]);
+        on_border[k] = border_surface(&found[k], cell, seed, site_of[k], other_of[k], in_x[k], in_y[k], wander_of[k]);
         if (on_border[k] != SURFACE_NONE) bordered |= 1u << k;
     }
     if (near & ~f32x8_bits(rock)) class = i32x8_load(found);
@@ -353,7 +360,7 @@ static unsigned mapped_surfaces(int32_t surface[8], const Cover *cover, const do
     return none;
 }
 
-static void real_surfaces(int32_t surface[8], const Landscape *landscape, PlotCells *cells, const double x_m[8],
+static void real_surfaces(int32_t surface[8], const Landscape *landscape, const double x_m[8],
                           const double y_m[8], unsigned lanes)
 {
     const Cover   *cover = landscape->cover;
@@ -375,7 +382,7 @@ static void real_surfaces(int32_t surface[8], const Landscape *landscape, PlotCe
                                                (double)woods[k]);
         if (surface[k] == SURFACE_NONE) invented |= 1u << k;
     }
-    if (invented) invented_surfaces(surface, cover, cells, x_m, y_m, slopes, invented);
+    if (invented) invented_surfaces(surface, cover, x_m, y_m, slopes, invented);
 }
 
 /* ---- both ----------------------------------------------------------------------------------- */
@@ -411,8 +418,6 @@ static unsigned grounded(const Elevation *elevation, const double x_m[8], const 
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
 {
     const Cover *cover = landscape->cover;
-    PlotCells    cells;
-    for (int k = 0; k < plot_cells_kept; k++) cells.cell[k].known = false;
     for (int first = 0; first < count; first += 8) {
         double    x[8], y[8];
         int32_t   found[8] = {0};
@@ -421,9 +426,9 @@ void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count,
         unsigned lanes = cover ? grounded(&landscape->elevation, x, y) : 0;
         if (lanes && cover->coast.sea_count) lanes = coast_surfaces(found, &cover->coast, x, y, lanes);
         if (lanes && cover->real)
-            real_surfaces(found, landscape, &cells, x, y, lanes);
+            real_surfaces(found, landscape, x, y, lanes);
         else if (lanes)
-            invented_surfaces(found, cover, &cells, x, y, slopes_of_terrain(&landscape->elevation, x, y, lanes), lanes);
+            invented_surfaces(found, cover, x, y, slopes_of_terrain(&landscape->elevation, x, y, lanes), lanes);
         for (int k = 0; k < some; k++) surface[first + k] = (uint8_t)found[k];
     }
 }

@@ -5,8 +5,9 @@
  * at lattice points and between them; each lattice is turned by its own angle, so that none shows as a grid. Every
  * lattice point has two uncorrelated values: one is of the albedo and the height, and what of temperature and
  * backscatter does not follow the albedo is of the other. */
-#include "terrain/landscape/detail_private.h"
+#include "terrain/landscape/detail.h"
 #include "terrain/landscape/landscape_eight_private.h"
+#include "terrain/landscape/ways.h"
 
 /* ---- an octave ---------------------------------------------------------------------------------- */
 
@@ -322,5 +323,5 @@ void landscape_details(const GroundDetail *out, const DetailTable *table, const 
         details(&eight, table, seed, &nodes, wanted, x, y, photo ? photo_m : NULL);
         store_eight(out, first, some, &eight);
     }
-    if (table && out->albedo) texture_rows(out->albedo, landscape, count, surface, x_m, y_m, footprint->along_m);
+    if (table) ways_detail(out, landscape, count, surface, x_m, y_m, footprint->along_m);
 }

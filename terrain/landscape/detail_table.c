@@ -6,7 +6,7 @@
  * smooth as coarser octaves are, to which the variance is moved. So the variance and the correlation of neighbouring
  * samples are those of the filtered class, and no octave that the samples cannot resolve remains: a sample that moves
  * by a part of its footprint sees nearly the same. */
-#include "terrain/landscape/detail_private.h"
+#include "terrain/landscape/detail_table.h"
 
 #include <stdlib.h>
 

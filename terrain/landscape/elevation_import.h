@@ -34,6 +34,7 @@ typedef struct ElevationReport {
     bool   ellipsoidal;           /* heights of that grid were taken as above the ellipsoid */
     double geoid_m;               /* N at the origin, where it was added */
     long   voids;                 /* posts of that grid on level 0 filled from their surroundings */
+    long   voids_coarser;         /* and from coarser grids, where it was counted (elevation_stream.h) */
     /* |surface - file| over places of that grid on level 0, voids left out: what resampling cost. The
      * largest is that of 100 000 such places and as many posts; others may exceed it a little. */
     int    places;

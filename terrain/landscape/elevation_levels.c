@@ -73,7 +73,8 @@ Status elevation_import_levels(Import *m, bool with_0, View *finest)
             log_error("%s: no post of the named files holds a height; gdalinfo -mm says what they hold", key);
             status = STATUS_BAD_VALUE;
         }
-        if (status == STATUS_OK && (k > 0 || with_0)) status = field_create(z, z->spacing_m, z->i0, z->j0, z->nx, z->ny);
+        if (status == STATUS_OK && (k > 0 || with_0))
+            status = field_create(z, z->spacing_m, z->i0, z->j0, z->nx, z->ny);
         if (status == STATUS_OK && (k > 0 || with_0)) view_heights(z->v, &view[k], m);
     }
     if (status == STATUS_OK) {

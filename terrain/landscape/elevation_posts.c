@@ -151,6 +151,22 @@ static bool grid_at(double *h_m, double *out_m, const Grid *g, const Patch *patc
     return true;
 }
 
+/* Inside a hole of grid `at` the next coarser grid that holds the place, and inside a hole of that the next again;
+ * where there is none, what the hole was filled with. */
+static double coarser_in_holes(const Import *m, const View *view, int at, double filled_m, const double *x,
+                               const double *y, double n_m)
+{
+    double sum = 0, left = 1, h_m = filled_m, out_m = 0;
+    for (int k = at; k < m->grids; k++) {
+        if (k > at && (!grid_at(&h_m, &out_m, &m->grid[k], &view->patch[k], x[k], y[k], n_m) || out_m > 0)) continue;
+        const double inside = patch_hole(&view->patch[k], x[k], y[k]);
+        if (!(inside > 0)) return sum + left * h_m;
+        sum += left * (1 - inside) * h_m;
+        left *= inside;
+    }
+    return sum + left * filled_m;
+}
+
 /* All grids together: the finest that holds the place, led over to by finer ones near by; between and beyond all of
  * them the edges, the nearest first, and farther out the plain. */
 static double composed(const Import *m, const View *view, const double *x, const double *y, double n_m)
@@ -162,6 +178,7 @@ static double composed(const Import *m, const View *view, const double *x, const
         else if (out_m[at] == 0) break;
     }
     if (at < m->grids) {
+        if (view->patch[at].share) h_m[at] = coarser_in_holes(m, view, at, h_m[at], x, y, n_m);
         for (int k = 0; k < at; k++) {
             if (!(out_m[k] < m->grid[k].short_m)) continue;
             const double share = 1 - smooth_step(0, m->grid[k].short_m, out_m[k]);
@@ -182,8 +199,8 @@ static double composed(const Import *m, const View *view, const double *x, const
 }
 
 /* Where the vertical line of the ENU plane, which is inclined against the grids' own verticals, intersects them. */
-static double height_at(const Import *m, const View *view, const double *x0, const double *y0, const double *dx, const double *dy,
-                        double n_m, double guess_m)
+static double height_at(const Import *m, const View *view, const double *x0, const double *y0, const double *dx,
+                        const double *dy, double n_m, double guess_m)
 {
     double h_m = guess_m, lean = 0;
     for (int k = 0; k < m->grids; k++) lean = fmax(lean, fmax(fabs(dx[k]), fabs(dy[k])));
@@ -229,8 +246,8 @@ static double run_of_grids(float *h_m, const Import *m, const View *view, size_t
     return guess_m;
 }
 
-/* The same where there is one grid alone, its bilinear surface without detours; of several rows at once, because each post
- * waits for the one before it. */
+/* The same where there is one grid alone, its bilinear surface without detours; of several rows at once, because each
+ * post waits for the one before it. */
 static void run_of_one(float *h_m, const Import *m, const View *view, int grid, size_t node, const double *b, int from,
                        int count, int rows, double *guess_m)
 {
@@ -295,7 +312,7 @@ static void find_rows(void *user, int worker, int task)
 {
     const Finding *f = user;
     const View    *view = f->view;
-    const int      nx = view->level.nx, end = (task + 1) * rows_a_task < view->rows ? (task + 1) * rows_a_task : view->rows;
+    const int      nx = view->level.nx, after = (task + 1) * rows_a_task, end = after < view->rows ? after : view->rows;
     (void)worker;
     for (int r = task * rows_a_task, rows; r < end; r += rows) {
         const int    j = view->row0 + r - view->node_row0, node_row = j / view->stride;

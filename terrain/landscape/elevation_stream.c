@@ -98,9 +98,11 @@ static Status read_patch(View *view, bool *borrowed, const ElevationStream *s, i
     return patches_read(&view->patch[grid], &w, 1, &source);
 }
 
-/* Posts whose nearest pixel of some grid is valid: 1; those that only have voids: 2; beyond the data: 0. */
+/* Posts whose nearest pixel of the finest grid there is valid: 1; voids filled from their surroundings: 2; from a
+ * coarser grid: 3; beyond the data: 0. */
 static void mark(uint8_t *from_file, const View *view, const Import *m)
 {
+    enum { inner = 4 }; /* well inside a hole: a coarser grid may have it */
     const int nx = view->level.nx;
     memset(from_file, 0, (size_t)view->rows * (size_t)nx);
     for (int grid = 0; grid < m->grids; grid++) {
@@ -121,12 +123,15 @@ static void mark(uint8_t *from_file, const View *view, const Import *m)
                 if (!(px >= 0 && py >= 0 && px < w && py < h)) continue;
                 const int c = ((int)px - p->x0) / p->factor, q = ((int)py - p->y0) / p->factor;
                 if (c < 0 || q < 0 || c >= p->nx[0] || q >= p->ny[0]) continue;
-                uint8_t *to = &from_file[(size_t)r * (size_t)nx + (size_t)i];
-                if (!p->hole[(size_t)q * (size_t)p->nx[0] + (size_t)c]) *to = 1;
-                else if (*to == 0) *to = 2;
+                uint8_t   *to = &from_file[(size_t)r * (size_t)nx + (size_t)i];
+                const bool hole = p->hole[(size_t)q * (size_t)p->nx[0] + (size_t)c] != 0;
+                if (*to == 0) *to = !hole ? 1 : patch_hole(p, px, py) > 0.5 ? inner : 2;
+                else if (*to == inner && !hole) *to = 3;
             }
         }
     }
+    for (size_t n = 0; n < (size_t)view->rows * (size_t)nx; n++)
+        if (from_file[n] == inner) from_file[n] = 2;
 }
 
 /* Posts of the strip within the data that were filled. */
@@ -137,7 +142,10 @@ static void count_voids(ElevationStream *s, const View *view)
     uint8_t *seen = malloc((size_t)view->rows * (size_t)view->level.nx);
     if (!seen) return;
     mark(seen, view, &s->m);
-    for (size_t n = 0; n < (size_t)view->rows * (size_t)view->level.nx; n++) s->report.voids += seen[n] == 2;
+    for (size_t n = 0; n < (size_t)view->rows * (size_t)view->level.nx; n++) {
+        s->report.voids += seen[n] == 2;
+        s->report.voids_coarser += seen[n] == 3;
+    }
     free(seen);
 }
 

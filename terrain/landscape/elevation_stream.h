@@ -27,7 +27,7 @@ const RasterSet *elevation_stream_files(const ElevationStream *stream);
 int    elevation_stream_levels(const ElevationStream *stream);
 void   elevation_stream_level(StreamLevel *out, const ElevationStream *stream, int level);
 /* Heights above the ellipsoid of rows of level 0, h_m [rows][nx]. from_file, may be NULL, [rows][nx]: 1 where the post
- * is of the files, 2 in a void of theirs, 0 beyond them. counted: the voids and samples of these rows are added to the
+ * is of the files, 2 in a void of theirs filled from its surroundings, 3 from a coarser file, 0 beyond them. counted: the voids and samples of these rows are added to the
  * report: true once for each row, from the south. */
 Status elevation_stream_heights(ElevationStream *stream, int row0, int rows, float *h_m, uint8_t *from_file, bool counted);
 /* In place: to ENU z, blended into level 1 near the outline. */

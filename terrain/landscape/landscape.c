@@ -5,7 +5,7 @@
  * posts, the level is read off, bent over the curved Earth into ENU, joined to the level around it, cut by the
  * clear lines and moved onto its fixes. At the end everything is quantised, coarse before fine, so that edge
  * posts fall exactly on the level around them. */
-#include "terrain/landscape/ways_private.h"
+#include "terrain/landscape/landscape_private.h"
 
 #include <stdlib.h>
 

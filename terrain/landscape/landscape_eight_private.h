@@ -32,24 +32,7 @@ static inline F32x8 noise_of_word(I32x8 h)
     return f32x8_of_ints(h) * f32x8_set(0x1p-31);
 }
 
-/* Smooth value noise of one wavelength, -1 .. 1, mean 0. */
-static inline F32x8 noise_eight(uint64_t seed, double wavelength_m, const double x_m[8], const double y_m[8])
-{
-    /* odd multipliers whose lattice of equal words has no vector shorter than 35 000 cells */
-    const I32x8 east = i32x8_set((int)0x9e3779b1u), north = i32x8_set((int)0x85ebca77u);
-    const Lattice  x = lattice_of(x_m, 1 / wavelength_m), y = lattice_of(y_m, 1 / wavelength_m);
-    const I32x8 key = i32x8_set((int)(uint32_t)(landscape_hash(seed, 0, 0) >> 32));
-    const I32x8 sw = i32x8_add(
-        key, i32x8_add(i32x8_mul(x.cell, east), i32x8_mul(y.cell, north)));
-    const I32x8 nw = i32x8_add(sw, north);
-    const F32x8    u = x.share * x.share * (f32x8_set(3) - f32x8_set(2) * x.share);
-    const F32x8    v = y.share * y.share * (f32x8_set(3) - f32x8_set(2) * y.share);
-    const F32x8    south = f32x8_lerp(noise_of_word(sw), noise_of_word(i32x8_add(sw, east)), u);
-    const F32x8    north_side = f32x8_lerp(noise_of_word(nw), noise_of_word(i32x8_add(nw, east)), u);
-    return f32x8_lerp(south, north_side, v);
-}
-
-/* Two such noises for little more than one: the second from another mixing of the same words. */
+/* Second noise of the same words, by another mixing. */
 static inline F32x8 second_of_word(I32x8 h)
 {
     h = i32x8_mul(i32x8_xor(h, i32x8_shift_right(h, 15)), i32x8_set((int)0xd168aaadu));
@@ -57,30 +40,84 @@ static inline F32x8 second_of_word(I32x8 h)
     return f32x8_of_ints(h) * f32x8_set(0x1p-31);
 }
 
+/* The lattice cells of eight places in one wavelength, and their weights. */
+typedef struct NoiseCells {
+    I32x8 sw;   /* word of the south-western corner; the others are added */
+    F32x8 u, v;
+    bool  same; /* one cell holds the eight: its four corners are mixed at once */
+} NoiseCells;
+
+/* odd multipliers whose lattice of equal words has no vector shorter than 35 000 cells */
+static const uint32_t noise_east = 0x9e3779b1u, noise_north = 0x85ebca77u;
+
+static inline NoiseCells noise_cells(uint64_t seed, double wavelength_m, const double x_m[8], const double y_m[8])
+{
+    const Lattice x = lattice_of(x_m, 1 / wavelength_m), y = lattice_of(y_m, 1 / wavelength_m);
+    const I32x8   key = i32x8_set((int)(uint32_t)(landscape_hash(seed, 0, 0) >> 32));
+    const I32x8   sw = i32x8_add(key, i32x8_add(i32x8_mul(x.cell, i32x8_set((int)noise_east)),
+                                                i32x8_mul(y.cell, i32x8_set((int)noise_north))));
+    const F32x8   equal = i32x8_equal(sw, _mm256_permutevar8x32_epi32(sw, i32x8_set(0)));
+    return (NoiseCells){.sw = sw, .u = x.share * x.share * (f32x8_set(3) - f32x8_set(2) * x.share),
+                        .v = y.share * y.share * (f32x8_set(3) - f32x8_set(2) * y.share),
+                        .same = f32x8_bits(equal) == 0xff};
+}
+
+/* Words of the corners SW, SE, NW, NE, twice, of places that share a cell. */
+static inline I32x8 noise_corner_words(const NoiseCells *c)
+{
+    return i32x8_add(c->sw, _mm256_setr_epi32(0, (int)noise_east, (int)noise_north, (int)(noise_east + noise_north), 0,
+                                              (int)noise_east, (int)noise_north, (int)(noise_east + noise_north)));
+}
+
+static inline F32x8 noise_between(const NoiseCells *c, F32x8 sw, F32x8 se, F32x8 nw, F32x8 ne)
+{
+    return f32x8_lerp(f32x8_lerp(sw, se, c->u), f32x8_lerp(nw, ne, c->u), c->v);
+}
+
+/* The same with the four corners' values in the lanes of one. */
+static inline F32x8 noise_between_same(const NoiseCells *c, F32x8 corner)
+{
+    return noise_between(c, _mm256_permutevar8x32_ps(corner, i32x8_set(0)),
+                         _mm256_permutevar8x32_ps(corner, i32x8_set(1)),
+                         _mm256_permutevar8x32_ps(corner, i32x8_set(2)),
+                         _mm256_permutevar8x32_ps(corner, i32x8_set(3)));
+}
+
+/* Smooth value noise of one wavelength, -1 .. 1, mean 0. */
+static inline F32x8 noise_eight(uint64_t seed, double wavelength_m, const double x_m[8], const double y_m[8])
+{
+    const NoiseCells c = noise_cells(seed, wavelength_m, x_m, y_m);
+    if (c.same) return noise_between_same(&c, noise_of_word(noise_corner_words(&c)));
+    const I32x8 east = i32x8_set((int)noise_east), nw = i32x8_add(c.sw, i32x8_set((int)noise_north));
+    return noise_between(&c, noise_of_word(c.sw), noise_of_word(i32x8_add(c.sw, east)), noise_of_word(nw),
+                         noise_of_word(i32x8_add(nw, east)));
+}
+
+/* Two such noises for little more than one. */
 static inline F32x8 noise_pair_eight(F32x8 *second, uint64_t seed, double wavelength_m, const double x_m[8],
                                      const double y_m[8])
 {
-    const I32x8   east = i32x8_set((int)0x9e3779b1u), north = i32x8_set((int)0x85ebca77u);
-    const Lattice x = lattice_of(x_m, 1 / wavelength_m), y = lattice_of(y_m, 1 / wavelength_m);
-    const I32x8   key = i32x8_set((int)(uint32_t)(landscape_hash(seed, 0, 0) >> 32));
-    const I32x8   sw = i32x8_add(key, i32x8_add(i32x8_mul(x.cell, east), i32x8_mul(y.cell, north)));
-    const I32x8   nw = i32x8_add(sw, north), se = i32x8_add(sw, east), ne = i32x8_add(nw, east);
-    const F32x8   u = x.share * x.share * (f32x8_set(3) - f32x8_set(2) * x.share);
-    const F32x8   v = y.share * y.share * (f32x8_set(3) - f32x8_set(2) * y.share);
-    *second = f32x8_lerp(f32x8_lerp(second_of_word(sw), second_of_word(se), u),
-                         f32x8_lerp(second_of_word(nw), second_of_word(ne), u), v);
-    return f32x8_lerp(f32x8_lerp(noise_of_word(sw), noise_of_word(se), u),
-                      f32x8_lerp(noise_of_word(nw), noise_of_word(ne), u), v);
+    const NoiseCells c = noise_cells(seed, wavelength_m, x_m, y_m);
+    if (c.same) {
+        const I32x8 words = noise_corner_words(&c);
+        *second = noise_between_same(&c, second_of_word(words));
+        return noise_between_same(&c, noise_of_word(words));
+    }
+    const I32x8 east = i32x8_set((int)noise_east), nw = i32x8_add(c.sw, i32x8_set((int)noise_north));
+    const I32x8 se = i32x8_add(c.sw, east), ne = i32x8_add(nw, east);
+    *second = noise_between(&c, second_of_word(c.sw), second_of_word(se), second_of_word(nw), second_of_word(ne));
+    return noise_between(&c, noise_of_word(c.sw), noise_of_word(se), noise_of_word(nw), noise_of_word(ne));
 }
 
 /* ---- fields ------------------------------------------------------------------------------- */
 
 static const double plot_m = 160;
-enum { plot_sites = 9, plot_cells_kept = 16 };
+enum { plot_sites = 9, plot_cells_kept = 128 };
 
 /* One cell of the grid of fields, and the nine sites a place in it can belong to. From the cell's south-west corner. */
 typedef struct PlotCell {
     int64_t  i, j;
+    uint64_t seed;
     bool     known;
     float    x_m[plot_sites], y_m[plot_sites];
     uint64_t id[plot_sites];                          /* of the field; several sites may share one */
@@ -89,39 +126,51 @@ typedef struct PlotCell {
     float    across_x[plot_sites], across_y[plot_sites]; /* unit vector across its rows */
 } PlotCell;
 
-/* Those of the previous call; starts zeroed. */
-typedef struct PlotCells {
-    PlotCell cell[plot_cells_kept];
-} PlotCells;
-
-/* The nearest border to another field of a place in a cell. */
+/* The border between two sites of different fields, at a place in the first of them. */
 typedef struct PlotBorder {
     double away_m;       /* from the place */
-    int    other;        /* site of the field beyond */
     bool   first;        /* the place's field comes first of the two */
     bool   track, hedge; /* along it */
-    double direction[2]; /* unit vector from the place's site to the other */
 } PlotBorder;
 
-bool plot_border(PlotBorder *out, const PlotCell *cell, uint64_t seed, int site, float x_m, float y_m);
+PlotBorder plot_border(const PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m);
 
-/* The fields are laid out on a plane that is bent over tens of metres: where eight places are on it. */
+/* The nearest border about a place, the unit vector away from it, but for the bend, and a number of its two fields. */
+bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m);
+
+/* Cosine and sine of the angle by which a seed turns its fields from north. */
+static inline void plot_turn(double *cosine, double *sine, uint64_t seed)
+{
+    static const double of[8][2] = {{3 / 5.0, 4 / 5.0},     {5 / 13.0, 12 / 13.0},  {8 / 17.0, 15 / 17.0},
+                                    {20 / 29.0, 21 / 29.0}, {12 / 37.0, 35 / 37.0}, {9 / 41.0, 40 / 41.0},
+                                    {28 / 53.0, 45 / 53.0}, {33 / 65.0, 56 / 65.0}};
+    const uint64_t      h = landscape_hash(seed + 25, 0, 0), swap = h >> 60 & 1;
+    *cosine = of[h >> 61][swap], *sine = of[h >> 61][1 - swap];
+}
+
+/* The fields are laid out on a plane that is turned, and bent over hundreds of metres: where eight places are on it. */
 static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8], const double y_m[8])
 {
-    static const double wave_m[] = {2300, 330, 90}, away_m[] = {260, 26, 5};
+    static const double wave_m[] = {2300, 330}, away_m[] = {260, 28};
     F32x8               dx = f32x8_set(0), dy = f32x8_set(0);
     float               by_x[8], by_y[8];
-    for (int n = 0; n < 3; n++) {
+    for (int n = 0; n < 2; n++) {
         F32x8 wave_y;
         dx = f32x8_fma(f32x8_set(away_m[n]), noise_pair_eight(&wave_y, seed + 26 + (uint64_t)n, wave_m[n], x_m, y_m),
                        dx);
         dy = f32x8_fma(f32x8_set(away_m[n]), wave_y, dy);
     }
     f32x8_store(by_x, dx), f32x8_store(by_y, dy);
-    for (int k = 0; k < 8; k++) bent_x[k] = x_m[k] + (double)by_x[k], bent_y[k] = y_m[k] + (double)by_y[k];
+    double c, t;
+    plot_turn(&c, &t, seed);
+    for (int k = 0; k < 8; k++) {
+        bent_x[k] = c * x_m[k] - t * y_m[k] + (double)by_x[k];
+        bent_y[k] = t * x_m[k] + c * y_m[k] + (double)by_y[k];
+    }
 }
 
-const PlotCell *plot_cell_at(PlotCells *cells, uint64_t seed, int64_t i, int64_t j);
+/* Valid until the thread's next call. */
+const PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j);
 
 /* Of the places in `left`, those in the same cell as the first of them. */
 static inline unsigned plot_cell_lanes(const double i[8], const double j[8], unsigned left)

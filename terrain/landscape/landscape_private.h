@@ -10,14 +10,16 @@
  * nearest_fix.c      spatial index of points
  * plots.c            synthetic fields
  * ways.c             roads, streams, villages: terrain/landscape/ways.h
+ * hedges.c           places of hedgerows
  * cover.c            land cover: tracks, hedges, woods; land cover from files
- * texture.c          rows of fields; brightness from photographs
+ * texture.c          brightness from photographs
  * detail.c           noise of the ground; detail_table.c: its statistics */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 
 #include "terrain/landscape/ground_image.h"
 #include "terrain/landscape/landscape.h"
+#include "terrain/landscape/work_level.h"
 
 /* ---- integer hash ------------------------------------------------------------------------- */
 
@@ -90,13 +92,6 @@ void   fix_set_destroy(FixSet *set);
 
 /* ---- fields ------------------------------------------------------------------------------- */
 
-/* Values at places ((i0 + i) spacing, (j0 + j) spacing) of ENU: control points of a cubic B-spline, or posts. */
-typedef struct Field {
-    double spacing_m;
-    int    i0, j0, nx, ny;
-    float *v; /* [ny][nx] */
-} Field;
-
 /* Share of the synthetic relief near fixes, on its own coarse grid. */
 typedef struct Calm {
     Field factor; /* v NULL: 1 everywhere */
@@ -108,8 +103,6 @@ typedef struct FieldAim {
     bool   ceiling;
 } FieldAim;
 
-Status field_create(Field *out, double spacing_m, int i0, int j0, int nx, int ny);
-void   field_destroy(Field *field);
 /* The same spline on control points half as far apart. The window must lie two fine points inside. */
 Status field_refine(Field *out, const Field *coarse, int i0, int j0, int nx, int ny);
 /* Values of the spline at its own knots. The window must lie one point inside. */
@@ -121,15 +114,6 @@ double field_bilinear(const Field *field, double x_m, double y_m); /* held at th
 Status calm_create(Calm *out, const FixSet *fixes, double cell_m);
 
 /* ---- posts of one level ------------------------------------------------------------------- */
-
-typedef struct WorkLevel {
-    Field z;    /* ENU z of the surface; starts as height above the ellipsoid */
-    float *cap; /* highest z allowed by clear lines, NULL: no line is near */
-    /* posts of the hole, inclusive, in this level's own index; hole_i1 < hole_i0: none */
-    int hole_i0, hole_i1, hole_j0, hole_j1;
-    bool outermost;
-    uint8_t *water; /* posts of the sea, which nothing moves; NULL: none */
-} WorkLevel;
 
 /* Height of the triangle of a field of posts, as elevation_height defines it; NaN outside. corner, weight: the
  * three posts and their shares. */
@@ -178,17 +162,8 @@ void curve_at(const Curve *curve, double x_m, double y_m, double *z_m, double *d
 
 /* ---- levels ------------------------------------------------------------------------------- */
 
-enum { level_ratio = 8 }; /* 2^3 between the spacings of neighbouring levels */
-
 /* Turns heights above the ellipsoid into ENU z, in place. */
 Status levels_bend(Field *posts, const Curve *curve);
-/* Blends the posts within `band` of the outline into the surface of the enclosing level, on which the outline lies. */
-void   levels_join(WorkLevel *level, const WorkLevel *outer, int band);
-/* Quantises all levels and builds their pyramids; keeps both promises of terrain/elevation/elevation.h on seams. */
-Status levels_store(Elevation *out, const WorkLevel *level, int count);
-/* The same for heights from files: steps of 1/2048 m for all levels (where they are less than 16 km apart in height),
- * shifted in tiles whose heights are more than 31 m apart (in those along a seam, 23 m). */
-Status levels_store_fine(Elevation *out, const WorkLevel *level, int count);
 
 /* ---- coast -------------------------------------------------------------------------------- */
 
@@ -232,5 +207,24 @@ double landscape_treeline_m(double lat_rad);
 /* Means of the photograph over each class, once the classes are known. */
 void cover_measure_photo(Landscape *landscape);
 void cover_free(Cover *cover);   /* accepts NULL */
+
+/* ---- ways --------------------------------------------------------------------------------- */
+
+/* What ways are laid out on. */
+typedef struct WaysGround {
+    const Elevation *elevation;
+    const Coast     *coast;
+    uint64_t         seed;
+    int              fix_count;
+    const GroundFix *fix;
+} WaysGround;
+
+Status ways_create(struct Ways **out, const WaysGround *ground);
+
+/* ---- photograph ---------------------------------------------------------------------------- */
+
+/* Side of the photograph's pixels at each place, 0: no photograph there (terrain/landscape/texture.c). */
+void texture_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
+                         unsigned lanes);
 
 #endif

@@ -117,6 +117,22 @@ static Quanta choose_quanta(const Field *z)
     return q;
 }
 
+/* All posts of a level whose tiles have base 0 and shift 0, tile by tile. */
+static void quantise_plain(ElevationLevel *to, const Field *z, float z0, float inv_step, float half)
+{
+    for (int tj = 0; tj < to->tiles_y; tj++)
+        for (int ti = 0; ti < to->tiles_x; ti++) {
+            const int i0 = ti * elevation_tile_cells, j0 = tj * elevation_tile_cells;
+            const int columns = z->nx - i0 < elevation_tile_side ? z->nx - i0 : elevation_tile_side;
+            const int rows = z->ny - j0 < elevation_tile_side ? z->ny - j0 : elevation_tile_side;
+            uint16_t *stored = to->stored + ((size_t)tj * (size_t)to->tiles_x + (size_t)ti) * elevation_tile_posts;
+            for (int j = 0; j < rows; j++, stored += elevation_tile_side) {
+                const float *v = z->v + (size_t)(j0 + j) * (size_t)z->nx + (size_t)i0;
+                for (int i = 0; i < columns; i++) stored[i] = (uint16_t)(int32_t)((v[i] - z0) * inv_step + half);
+            }
+        }
+}
+
 /* Posts of the hole's outline become multiples of the coarse step and of 8 fine steps, rounded down (towards
  * clear lines): then the seven posts between them are whole fine steps. */
 static void quantise(Elevation *elevation, const WorkLevel *levels, int count, const Quanta *quanta)
@@ -129,7 +145,8 @@ static void quantise(Elevation *elevation, const WorkLevel *levels, int count, c
         /* coarse steps may rival the clearance of lines: round down there */
         const float  half = k < 2 ? 0.5f : 0.0f;
         const float *v = z->v;
-        for (int j = 0; j < z->ny; j++)
+        if (to->plain) quantise_plain(to, z, z0, inv_step, half);
+        for (int j = 0; j < z->ny && !to->plain; j++)
             for (int i = 0; i < z->nx; i++) elevation_set_post(to, i, j, (uint16_t)((*v++ - z0) * inv_step + half));
 
         if (k > 0) {

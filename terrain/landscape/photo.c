@@ -146,11 +146,22 @@ static float choose(PhotoBlock *block, const Pixels *px, bool holes)
 static void ends_of(float end[2][3], const Pixels *px)
 {
     float mean[3] = {0}, cov[3][3] = {{0}}, axis[3];
-    for (int n = 0; n < px->count; n++)
+    for (int n = 0; n < 16 && px->count == 16; n++) /* the same as by division: a power of two */
+        for (int c = 0; c < 3; c++) mean[c] += px->value[c][n] * (1.0f / 16);
+    for (int n = 0; n < px->count && px->count < 16; n++)
         for (int c = 0; c < 3; c++) mean[c] += px->value[c][n] / (float)px->count;
-    for (int n = 0; n < px->count; n++)
-        for (int a = 0; a < 3; a++)
-            for (int b = 0; b < 3; b++) cov[a][b] += (px->value[a][n] - mean[a]) * (px->value[b][n] - mean[b]);
+    for (int n = 0; n < px->count; n++) {
+        const float r = px->value[0][n] - mean[0], g = px->value[1][n] - mean[1], b = px->value[2][n] - mean[2];
+        cov[0][0] += r * r;
+        cov[1][1] += g * g;
+        cov[2][2] += b * b;
+        cov[0][1] += r * g;
+        cov[0][2] += r * b;
+        cov[1][2] += g * b;
+    }
+    cov[1][0] = cov[0][1];
+    cov[2][0] = cov[0][2];
+    cov[2][1] = cov[1][2];
     int widest = 1;
     for (int c = 0; c < 3; c++) widest = cov[c][c] > cov[widest][widest] ? c : widest;
     for (int c = 0; c < 3; c++) axis[c] = cov[widest][c];
@@ -158,7 +169,7 @@ static void ends_of(float end[2][3], const Pixels *px)
         float next[3], longest = 0;
         for (int a = 0; a < 3; a++) {
             next[a] = cov[a][0] * axis[0] + cov[a][1] * axis[1] + cov[a][2] * axis[2];
-            longest = fmaxf(longest, fabsf(next[a]));
+            longest = fabsf(next[a]) > longest ? fabsf(next[a]) : longest;
         }
         if (!(longest > 0)) break;
         for (int a = 0; a < 3; a++) axis[a] = next[a] / longest;
@@ -168,8 +179,12 @@ static void ends_of(float end[2][3], const Pixels *px)
     for (int n = 0; n < px->count && length2 > 0; n++) {
         float t = 0;
         for (int c = 0; c < 3; c++) t += (px->value[c][n] - mean[c]) * axis[c];
-        low  = fminf(low, t / length2);
-        high = fmaxf(high, t / length2);
+        low  = t < low ? t : low;
+        high = t > high ? t : high;
+    }
+    if (length2 > 0) {
+        low /= length2;
+        high /= length2;
     }
     for (int c = 0; c < 3; c++) {
         end[0][c] = mean[c] + high * axis[c];

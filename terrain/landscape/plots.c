@@ -30,7 +30,7 @@ static void find_cell(PlotCell *cell, uint64_t seed, int64_t ci, int64_t cj)
 {
     static const double jitter = 0.5;
     double              whole_x[16] = {0}, whole_y[16] = {0}; /* a place that belongs to the field as a whole */
-    *cell = (PlotCell){.i = ci, .j = cj, .known = true};
+    *cell = (PlotCell){.i = ci, .j = cj, .seed = seed, .known = true};
     for (int n = 0; n < plot_sites; n++) {
         const int64_t  di = n % 3 - 1, dj = n / 3 - 1, i = ci + di, j = cj + dj;
         const uint64_t h = landscape_hash(seed, i, j);
@@ -53,10 +53,13 @@ static void find_cell(PlotCell *cell, uint64_t seed, int64_t ci, int64_t cj)
     for (int n = 0; n < plot_sites; n++) cell->crop[n] = (int32_t)crop_of_field(cell->id[n], arable[n] > -0.15f);
 }
 
-const PlotCell *plot_cell_at(PlotCells *cells, uint64_t seed, int64_t i, int64_t j)
+/* Cells of earlier look-ups: what a cell holds is of its seed and place alone, so that results do not depend on which
+ * are kept. */
+const PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j)
 {
-    PlotCell *cell = &cells->cell[(uint64_t)(i + 5 * j) % plot_cells_kept];
-    if (!cell->known || cell->i != i || cell->j != j) find_cell(cell, seed, i, j);
+    static _Thread_local PlotCell kept[plot_cells_kept];
+    PlotCell *cell = &kept[(uint64_t)(i + 11 * j) % plot_cells_kept];
+    if (!cell->known || cell->i != i || cell->j != j || cell->seed != seed) find_cell(cell, seed, i, j);
     return cell;
 }
 
@@ -66,31 +69,47 @@ static uint64_t block_of(const PlotCell *cell, uint64_t seed, int site)
     return landscape_hash(seed + 8, (cell->i + site % 3 - 1) >> 2, (cell->j + site / 3 - 1) >> 2);
 }
 
-bool plot_border(PlotBorder *out, const PlotCell *cell, uint64_t seed, int site, float x_m, float y_m)
+PlotBorder plot_border(const PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m)
 {
-    double near[plot_sites], least = INFINITY;
-    int    other = -1;
+    /* distance to the perpendicular bisector */
+    const double own_x = (double)(x_m - cell->x_m[site]), own_y = (double)(y_m - cell->y_m[site]);
+    const double off_x = (double)(x_m - cell->x_m[other]), off_y = (double)(y_m - cell->y_m[other]);
+    const double dx = (double)(cell->x_m[other] - cell->x_m[site]), dy = (double)(cell->y_m[other] - cell->y_m[site]);
+    const double apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3);
+    const double more = off_x * off_x + off_y * off_y - (own_x * own_x + own_y * own_y);
+    const uint64_t one = block_of(cell, seed, site), two = block_of(cell, seed, other);
+    const double   u = unit_from_hash(landscape_hash(seed + 6, (int64_t)(cell->id[other] ^ cell->id[site]), 0));
+    const double   v = unit_from_hash(landscape_hash(seed + 9, (int64_t)(one ^ two), 0));
+    return (PlotBorder){.away_m = 0.5 * more / apart_m, .first = cell->id[site] < cell->id[other],
+                        .track = one != two ? v < 0.7 : u < 0.05, .hedge = u > 0.66};
+}
+
+bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m)
+{
+    double x[8], y[8], bent_x[8], bent_y[8], i[8], j[8], near_least = INFINITY, c, t;
+    float  from_x[8], from_y[8];
+    F32x8  in_x, in_y;
+    int    site = 0;
+    for (int k = 0; k < 8; k++) x[k] = x_m, y[k] = y_m;
+    plot_bend(bent_x, bent_y, seed, x, y);
+    plot_cells_of(i, j, &in_x, &in_y, bent_x, bent_y);
+    f32x8_store(from_x, in_x), f32x8_store(from_y, in_y);
+    const PlotCell *cell = plot_cell_at(seed, (int64_t)i[0], (int64_t)j[0]);
     for (int n = 0; n < plot_sites; n++) {
-        const double dx = (double)(x_m - cell->x_m[n]), dy = (double)(y_m - cell->y_m[n]);
-        near[n] = dx * dx + dy * dy;
+        const double dx = (double)(from_x[0] - cell->x_m[n]), dy = (double)(from_y[0] - cell->y_m[n]);
+        if (dx * dx + dy * dy < near_least) near_least = dx * dx + dy * dy, site = n;
     }
+    plot_turn(&c, &t, seed);
+    out->away_m = INFINITY;
     for (int n = 0; n < plot_sites; n++) {
         if (cell->field[n] == cell->field[site]) continue;
-        /* distance to the perpendicular bisector */
+        const PlotBorder border = plot_border(cell, seed, site, n, from_x[0], from_y[0]);
+        if (border.away_m >= out->away_m) continue;
         const double dx = (double)(cell->x_m[n] - cell->x_m[site]), dy = (double)(cell->y_m[n] - cell->y_m[site]);
-        const double apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3), here_m = 0.5 * (near[n] - near[site]) / apart_m;
-        if (here_m >= least) continue;
-        least = here_m, other = n;
-        out->direction[0] = dx / apart_m, out->direction[1] = dy / apart_m;
+        const double apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3);
+        *out = border;
+        away_from[0] = -(c * dx + t * dy) / apart_m, away_from[1] = (t * dx - c * dy) / apart_m;
+        *fields = cell->id[n] ^ cell->id[site];
     }
-    if (other < 0) return false;
-    const uint64_t one = block_of(cell, seed, site), two = block_of(cell, seed, other);
-    const double   both = unit_from_hash(landscape_hash(seed + 9, (int64_t)(one ^ two), 0));
-    const double   u = unit_from_hash(landscape_hash(seed + 6, (int64_t)(cell->id[other] ^ cell->id[site]), 0));
-    out->away_m = least;
-    out->other = other;
-    out->first = cell->id[site] < cell->id[other];
-    out->track = one != two ? both < 0.7 : u < 0.05;
-    out->hedge = u > 0.66;
-    return true;
+    return out->away_m < INFINITY;
 }

@@ -196,19 +196,24 @@ I32x8 ways_cells(const Ways *ways, const double x_m[8], const double y_m[8])
 
 F32x8 ways_wet(const Ways *ways, const double x_m[8], const double y_m[8])
 {
-    float at[2][8];
-    for (int k = 0; k < 8; k++) { /* held at the rim */
-        at[0][k] = (float)clamp((x_m[k] - ways->x0_m) / ways->coarse_m, 0, ways->cx - 1.001);
-        at[1][k] = (float)clamp((y_m[k] - ways->y0_m) / ways->coarse_m, 0, ways->cy - 1.001);
-        if (!(x_m[k] + y_m[k] < INFINITY)) at[0][k] = at[1][k] = 0;
-    }
-    const F32x8 x = f32x8_load(at[0]), y = f32x8_load(at[1]), fx = f32x8_floor(x), fy = f32x8_floor(y);
+    double        at[2][8];
+    const double *from[2] = {x_m, y_m};
+    const double  corner_m[2] = {ways->x0_m, ways->y0_m}, most[2] = {ways->cx - 1.001, ways->cy - 1.001};
+    const F64x4   per_m = f64x4_set(1 / ways->coarse_m);
+    for (int axis = 0; axis < 2; axis++)
+        for (int k = 0; k < 8; k += 4) { /* held at the rim; NaN: there */
+            const F64x4 g = (f64x4_loadu(from[axis] + k) - f64x4_set(corner_m[axis])) * per_m;
+            f64x4_storeu(at[axis] + k, f64x4_min(f64x4_max(g, f64x4_set(0)), f64x4_set(most[axis])));
+        }
+    const F32x8 x = f32x8_of_doubles(at[0]), y = f32x8_of_doubles(at[1]), fx = f32x8_floor(x), fy = f32x8_floor(y);
     const I32x8 cell = i32x8_add(i32x8_mul(i32x8_truncate(fy), i32x8_set(ways->cx)), i32x8_truncate(fx));
+    const F32x8 u = (x - fx) * (x - fx) * (f32x8_set(3) - f32x8_set(2) * (x - fx));
+    const F32x8 v = (y - fy) * (y - fy) * (f32x8_set(3) - f32x8_set(2) * (y - fy));
     const I32x8 corners = _mm256_i32gather_epi32((const int *)(const void *)ways->wet, cell, 4);
-    F32x8       v[4];
+    F32x8       w[4];
     for (int c = 0; c < 4; c++)
-        v[c] = f32x8_of_ints(i32x8_and(i32x8_shift_right(corners, 8 * c), i32x8_set(255))) - f32x8_set(128);
-    return f32x8_lerp(f32x8_lerp(v[0], v[1], x - fx), f32x8_lerp(v[2], v[3], x - fx), y - fy) * f32x8_set(1 / 127.0);
+        w[c] = f32x8_of_ints(i32x8_and(i32x8_shift_right(corners, 8 * c), i32x8_set(255))) - f32x8_set(128);
+    return f32x8_lerp(f32x8_lerp(w[0], w[1], u), f32x8_lerp(w[2], w[3], u), v) * f32x8_set(1 / 127.0);
 }
 
 /* ---- nearest ---------------------------------------------------------------------------------- */
@@ -218,7 +223,7 @@ static double beyond_edge(double *across_m, double *along_m, const WaySegment *s
 {
     const double px = x_m - (double)s->x_m, py = y_m - (double)s->y_m;
     const double dx = (double)s->dx, dy = (double)s->dy, t = clamp(px * dx + py * dy, 0, (double)s->length_m);
-    const double side = dx * py - dy * px, away = hypot(px - t * dx, py - t * dy);
+    const double side = dx * py - dy * px, away = sqrt((px - t * dx) * (px - t * dx) + (py - t * dy) * (py - t * dy));
     *across_m = side < 0 ? -away : away;
     *along_m = t;
     return away - ((double)s->half_m + (double)s->widens * t);
@@ -371,7 +376,7 @@ Status ways_create(Ways **out, const WaysGround *ground)
     if (status == STATUS_OK) status = ways_lay_streams(ways, ground);
     if (status == STATUS_OK) status = ways_lay_roads(ways, ground);
     if (status == STATUS_OK) status = make_index(ways);
-    near_grid_destroy(&ways->clear_near);
+    near_grid_destroy(&ways->clear_near), near_grid_destroy(&ways->stream_near);
     free(ways->height), free(ways->flow), free(ways->road_vertex);
     ways->height = ways->flow = NULL;
     ways->road_vertex = NULL;
@@ -383,7 +388,7 @@ Status ways_create(Ways **out, const WaysGround *ground)
 void ways_free(Ways *ways)
 {
     if (!ways) return;
-    near_grid_destroy(&ways->clear_near);
+    near_grid_destroy(&ways->clear_near), near_grid_destroy(&ways->stream_near);
     free(ways->start), free(ways->item), free(ways->segment), free(ways->pond), free(ways->plot), free(ways->clear);
     free(ways->wet), free(ways->height), free(ways->flow), free(ways->road_vertex);
     free(ways);
@@ -439,4 +444,24 @@ bool landscape_village(double place_m[2], const Landscape *landscape, int index)
     if (!ways || index < 0 || index >= ways->villages) return false;
     place_m[0] = ways->x0_m + ways->village[index][0], place_m[1] = ways->y0_m + ways->village[index][1];
     return true;
+}
+
+double landscape_wetness(const Landscape *landscape, double x_m, double y_m)
+{
+    const Cover *cover = landscape->cover;
+    const double x[8] = {x_m}, y[8] = {y_m};
+    float        wet[8];
+    if (!cover || !cover->ways) return 0;
+    f32x8_store(wet, ways_wet(cover->ways, x, y));
+    return (double)wet[0];
+}
+
+bool landscape_ways_near(const Landscape *landscape, double x_m, double y_m)
+{
+    const Cover *cover = landscape->cover;
+    const double x[8] = {x_m}, y[8] = {y_m};
+    int32_t      cell[8];
+    if (!cover || !cover->ways) return false;
+    i32x8_store(cell, ways_cells(cover->ways, x, y));
+    return cell[0] >= 0;
 }

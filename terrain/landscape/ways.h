@@ -6,6 +6,7 @@
 #ifndef TERRAIN_LANDSCAPE_WAYS_H
 #define TERRAIN_LANDSCAPE_WAYS_H
 
+#include "terrain/landscape/ground_detail.h"
 #include "terrain/landscape/landscape.h"
 
 typedef enum WayKind { WAY_NONE, WAY_ROAD, WAY_LANE, WAY_TRACK, WAY_STREAM, WAY_GULLY, WAY_KINDS } WayKind;
@@ -26,6 +27,12 @@ bool landscape_way(WayPlace *out, const Landscape *landscape, double x_m, double
 /* Vertices of a way in order, `most` of them at most; returns their number. 0: no such way. Numbered from 0. */
 int landscape_way_vertices(double (*out)[2], WayKind *kind, const Landscape *landscape, int way, int most);
 
+/* Wheel paths and worn edges of roads, ruts and the grassy middle of tracks, rows of crops and furrows: multiplied into
+ * the factors and added to the rest of what detail holds. Filtered to the footprint (its longer axis); nothing of it is
+ * left where that is half as wide as a way, or as rows are apart. */
+void ways_detail(const GroundDetail *detail, const Landscape *landscape, int count, const uint8_t *surface,
+                 const double *x_m, const double *y_m, const float *footprint_m);
+
 /* A village's plot: a rectangle beside its lane, with a place for a house. */
 typedef struct HousePlot {
     double x_m, y_m;           /* middle of the plot */
@@ -39,5 +46,10 @@ typedef struct HousePlot {
 const HousePlot *landscape_plots(const Landscape *landscape, int *count);
 /* Village `index`'s centre; false: no such village. */
 bool landscape_village(double place_m[2], const Landscape *landscape, int index);
+
+/* How wet the ground is (hollows) or, below 0, worn (crests): -1 .. 1; 0 where there are no ways. */
+double landscape_wetness(const Landscape *landscape, double x_m, double y_m);
+/* Whether a way, a pond, a plot or a vehicle's place reaches into the cell of the index about a place. */
+bool landscape_ways_near(const Landscape *landscape, double x_m, double y_m);
 
 #endif

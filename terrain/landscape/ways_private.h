@@ -2,6 +2,7 @@
  *
  * ways.c          the index, the nearest way, the class of a place
  * ways_streams.c  streams, ponds and gullies; how wet and how worn the ground is
+ * ways_detail.c   wheel paths, ruts, rows
  * ways_roads.c    villages, roads between them, lanes, plots, tracks of columns */
 #ifndef TERRAIN_LANDSCAPE_WAYS_PRIVATE_H
 #define TERRAIN_LANDSCAPE_WAYS_PRIVATE_H
@@ -44,6 +45,7 @@ typedef struct Ways {
     HousePlot  *plot;
     ClearPlace *clear;
     NearGrid    clear_near;         /* of the clear places, while ways are laid */
+    NearGrid    stream_near;        /* of the starts of streams' segments, while roads are laid */
     double      village[ways_most_villages][2];
     /* coarse grid: how wet (hollows, valleys) or worn (crests) the ground is, -127 .. 127: the four corners of a cell */
     double      coarse_m;
@@ -55,16 +57,6 @@ typedef struct Ways {
     int32_t    *road_vertex;        /* [cy][cx] a segment of a road in this cell, -1: none */
 } Ways;
 
-/* What ways are laid out on. */
-typedef struct WaysGround {
-    const Elevation *elevation;
-    const Coast     *coast;
-    uint64_t         seed;
-    int              fix_count;
-    const GroundFix *fix;
-} WaysGround;
-
-Status ways_create(Ways **out, const WaysGround *ground);
 void   ways_free(Ways *ways); /* accepts NULL */
 
 Status ways_lay_streams(Ways *ways, const WaysGround *ground);

@@ -101,6 +101,13 @@ static Open heap_pop(Search *s)
 static const int8_t neighbour[16][2] = {{1, 0},  {0, 1},  {-1, 0}, {0, -1}, {1, 1},  {-1, 1}, {-1, -1}, {1, -1},
                                         {2, 1},  {1, 2},  {-1, 2}, {-2, 1}, {-2, -1}, {-1, -2}, {1, -2}, {2, -1}};
 
+static const double least_cost = 0.3; /* of a post's distance: along a road */
+
+static double root_of(int di, int dj)
+{
+    return sqrt((double)(di * di + dj * dj));
+}
+
 /* Cheapest route between two posts; path from goal to start. Returns its length, 0: none. */
 static Status find_route(int **path, int *count, Search *s, const Ways *ways, int start, int goal)
 {
@@ -111,25 +118,27 @@ static Status find_route(int **path, int *count, Search *s, const Ways *ways, in
     s->heap_count = 0;
     s->cost[start] = 0, s->from[start] = -1;
     const int    gi = goal % ways->cx, gj = goal / ways->cx;
+    double       run_of[16];
+    for (int n = 0; n < 16; n++) run_of[n] = root_of(neighbour[n][0], neighbour[n][1]);
     Status       status = heap_push(s, (Open){0, start});
     while (s->heap_count && status == STATUS_OK) {
         const Open o = heap_pop(s);
         const int  at = o.at, i = at % ways->cx, j = at / ways->cx;
         if (at == goal) break;
-        if ((double)o.cost > (double)s->cost[at] + 0.3 * hypot(gi - i, gj - j) + 1e-3) continue; /* stale */
+        if ((double)o.cost > (double)s->cost[at] + least_cost * root_of(gi - i, gj - j) + 1e-3) continue; /* stale */
         for (int n = 0; n < 16 && status == STATUS_OK; n++) {
             const int ni = i + neighbour[n][0], nj = j + neighbour[n][1];
             if (ni < 0 || nj < 0 || ni >= ways->cx || nj >= ways->cy) continue;
             const int    to = nj * ways->cx + ni;
-            const double run = hypot(neighbour[n][0], neighbour[n][1]);
+            const double run = run_of[n];
             const double slope = fabs((double)(ways->height[to] - ways->height[at])) / (run * ways->coarse_m);
             const bool   road = ways->road_vertex[at] >= 0 && ways->road_vertex[to] >= 0;
             const double each = 1 + 400 * slope * slope + 8 * slope;
             const double cost = (double)s->cost[at] +
-                                run * each * (road ? 0.3 : 0.5 * (double)(s->dear[at] + s->dear[to]));
+                                run * each * (road ? least_cost : 0.5 * (double)(s->dear[at] + s->dear[to]));
             if (!(cost < (double)s->cost[to])) continue;
             s->cost[to] = (float)cost, s->from[to] = at;
-            status = heap_push(s, (Open){(float)(cost + 0.3 * hypot(gi - ni, gj - nj)), to});
+            status = heap_push(s, (Open){(float)(cost + least_cost * root_of(gi - ni, gj - nj)), to});
         }
     }
     if (status != STATUS_OK || !(s->cost[goal] < INFINITY)) return status;
@@ -244,18 +253,38 @@ static void choose_villages(Ways *ways, const WaysGround *ground)
 
 /* ---- plots ------------------------------------------------------------------------------------ */
 
+/* From the starts of streams and gullies, and from ponds. near_m: at most 64. */
 static bool stream_near(const Ways *ways, double x, double y, double near_m)
 {
-    for (int n = 0; n < ways->segments; n++) {
-        const WaySegment *s = &ways->segment[n];
-        if (s->kind != WAY_STREAM && s->kind != WAY_GULLY) continue;
-        if (fabs((double)s->x_m - x) < near_m && fabs((double)s->y_m - y) < near_m) return true;
-    }
+    const NearGrid *grid = &ways->stream_near;
+    const int64_t   west = near_grid_cell(grid, x - near_m), east = near_grid_cell(grid, x + near_m);
+    const int64_t   south = near_grid_cell(grid, y - near_m), north = near_grid_cell(grid, y + near_m);
+    for (int64_t j = south; j <= north; j++)
+        for (int64_t i = west; i <= east; i++) {
+            int first, end;
+            near_grid_bucket(grid, i, j, &first, &end);
+            for (int n = first; n < end; n++) {
+                const WaySegment *s = &ways->segment[grid->item[n]];
+                if (fabs((double)s->x_m - x) < near_m && fabs((double)s->y_m - y) < near_m) return true;
+            }
+        }
     for (int n = 0; n < ways->ponds; n++)
         if (hypot((double)ways->pond[n].x_m - x, (double)ways->pond[n].y_m - y) <
             near_m + (double)ways->pond[n].most_m)
             return true;
     return false;
+}
+
+/* The segments so far are those of streams and gullies. */
+static Status index_streams(Ways *ways)
+{
+    double *xy = malloc(2 * ((size_t)ways->segments + 1) * sizeof *xy);
+    if (!xy) return STATUS_NO_MEMORY;
+    for (int n = 0; n < ways->segments; n++)
+        xy[2 * n] = (double)ways->segment[n].x_m, xy[2 * n + 1] = (double)ways->segment[n].y_m;
+    const Status status = near_grid_create(&ways->stream_near, 64, ways->segments, xy, xy + 1, 2 * sizeof *xy);
+    free(xy);
+    return status;
 }
 
 /* Distance of a place from the nearest road or lane other than a given one. */
@@ -503,7 +532,8 @@ Status ways_lay_roads(Ways *ways, const WaysGround *ground)
     if (!ways->road_vertex) return STATUS_NO_MEMORY;
     for (int n = 0; n < posts; n++) ways->road_vertex[n] = -1;
     choose_villages(ways, ground);
-    Status status = search_create(&s, ways, ground);
+    Status status = index_streams(ways);
+    if (status == STATUS_OK) status = search_create(&s, ways, ground);
     if (status == STATUS_OK) status = join_villages(ways, &s);
     search_free(&s);
     for (int n = 0; n < ways->villages && status == STATUS_OK; n++) {

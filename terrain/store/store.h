@@ -111,6 +111,12 @@ typedef struct TerrainStore {
  * while it is mapped ends the process (SIGBUS): replace a store by renaming, as the writer does. */
 Status store_open(TerrainStore *out, const char *path);
 void   store_close(TerrainStore *store);
+/* As store_open, but a file that cannot be used is not logged: *why, for a message. STATUS_BAD_VALUE: it was cut or is
+ * damaged; STATUS_UNSUPPORTED: another version wrote it; STATUS_IO: it cannot be read. */
+Status store_open_why(TerrainStore *out, const char **why, const char *path);
+/* The import's options in a file that cannot be used, by a checksum of their own; malloc'd. NULL: no store, or nothing
+ * of them is left. */
+char  *store_recall(const char *path);
 
 typedef enum StoreSources { STORE_FRESH, STORE_CHANGED, STORE_SOURCES_MISSING } StoreSources;
 /* Looks at the sources; CHANGED before MISSING. which: the first one that differs; "" for FRESH. */

@@ -4,6 +4,8 @@
 #include "terrain/landscape/landscape_parts.h"
 #include "terrain/landscape/photo.h"
 
+#include <sys/mman.h>
+
 /* ---- hashes ------------------------------------------------------------------------------------- */
 
 static uint64_t mixed(uint64_t h)
@@ -79,6 +81,7 @@ uint64_t store_content(const StoreHeader *header, const uint8_t *map, Pool *pool
             else
                 for (int k = 0; k < pieces; k++) hash_piece(&job, 0, k);
             h = store_hash(h, job.hash, (size_t)pieces * sizeof *job.hash);
+            madvise((void *)(uintptr_t)job.at, job.octets, MADV_DONTNEED); /* of a file: its pages stay in the cache */
             done += job.octets;
         }
     }
@@ -291,7 +294,7 @@ void store_attach(TerrainStore *out, const StoreHeader *h, uint8_t *map)
     if (h->canopy_cover.nx) out->canopy_cover = map + at[STORE_CANOPY_COVER].offset;
     if (h->crown_count) out->crown = (const Crown *)(const void *)(map + at[STORE_CROWNS].offset);
     out->sources        = store_text(h, STORE_SOURCES);
-    out->options        = store_text(h, STORE_OPTIONS);
+    out->options        = store_record_options(store_text(h, STORE_OPTIONS));
     out->crs            = store_text(h, STORE_CRS);
     out->vertical_datum = store_text(h, STORE_DATUM);
     out->provenance     = store_text(h, STORE_PROVENANCE);

@@ -81,6 +81,10 @@ Status store_header_size(size_t *octets, const char **why, const StoreHeader *fi
 Status store_header_check(const char **why, const StoreHeader *header, size_t octets, uint64_t file_octets);
 const char *store_text(const StoreHeader *header, StoreText text);
 
+/* The text STORE_OPTIONS of some options, malloc'd, and the options in it. */
+char       *store_record(const char *options);
+const char *store_record_options(const char *text);
+
 /* Levels, rasters and texts of a checked header, whose sections are at map + offset. */
 void store_attach(TerrainStore *out, const StoreHeader *header, uint8_t *map);
 /* Hash of levels, rasters and sections. pool NULL: one thread. */

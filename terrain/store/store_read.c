@@ -32,25 +32,24 @@ static StoreHeader *read_header(const char **why, Status *status, int file, uint
     return NULL;
 }
 
-Status store_open(TerrainStore *out, const char *path)
+Status store_open_why(TerrainStore *out, const char **why, const char *path)
 {
     struct stat about;
-    const char *why = NULL;
     Status      status = STATUS_IO;
     *out = (TerrainStore){0};
+    *why = NULL;
     const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0 || fstat(file, &about) != 0) {
-        log_error("store: cannot open %s: %s; `pitviper terrain import` makes a terrain store", path, strerror(errno));
+        *why = strerror(errno);
         if (file >= 0) close(file);
         return STATUS_IO;
     }
     StoreHeader *header = NULL;
-    if (S_ISREG(about.st_mode)) header = read_header(&why, &status, file, (uint64_t)about.st_size);
-    else why = "it is no file", status = STATUS_BAD_VALUE;
+    if (S_ISREG(about.st_mode)) header = read_header(why, &status, file, (uint64_t)about.st_size);
+    else *why = "it is no file", status = STATUS_BAD_VALUE;
     void *map = header ? mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_SHARED, file, 0) : MAP_FAILED;
     if (map == MAP_FAILED) {
-        log_error("store: %s cannot be used: %s; make it again with `pitviper terrain import`", path,
-                  why ? why : strerror(errno));
+        if (!*why) *why = strerror(errno);
         free(header);
         close(file);
         return status == STATUS_OK ? STATUS_IO : status;
@@ -60,7 +59,18 @@ Status store_open(TerrainStore *out, const char *path)
     out->header = header;
     const Geodetic origin = {header->lat_rad, header->lon_rad, header->h_m};
     status = local_frame_at(&out->frame, &origin);
-    if (status != STATUS_OK) store_close(out);
+    if (status == STATUS_OK) return STATUS_OK;
+    *why = "its origin is out of range";
+    store_close(out);
+    return status;
+}
+
+Status store_open(TerrainStore *out, const char *path)
+{
+    const char  *why;
+    const Status status = store_open_why(out, &why, path);
+    if (status != STATUS_OK)
+        log_error("store: %s cannot be used: %s; make it again with `pitviper terrain import`", path, why);
     return status;
 }
 

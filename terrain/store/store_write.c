@@ -85,8 +85,12 @@ static Status make_header(StoreHeader **out, const StorePlan *plan)
 {
     char  *octets = NULL;
     size_t count = 0;
-    FILE  *to = open_memstream(&octets, &count);
-    if (!to) return STATUS_NO_MEMORY;
+    char  *record = store_record(plan->options ? plan->options : "");
+    FILE  *to = record ? open_memstream(&octets, &count) : NULL;
+    if (!to) {
+        free(record);
+        return STATUS_NO_MEMORY;
+    }
     StoreHeader h = {.version = store_version, .classes = SURFACE_COUNT, .lat_rad = plan->origin.lat_rad,
                      .lon_rad = plan->origin.lon_rad, .h_m = plan->origin.h_m, .posting_m = plan->posting_m,
                      .geoid_m = plan->geoid_m, .level_count = plan->level_count, .albedo = plan->albedo,
@@ -101,7 +105,8 @@ static Status make_header(StoreHeader **out, const StorePlan *plan)
     }
     fwrite(&h, sizeof h, 1, to);
     put_sources(to, &h, plan);
-    put_text(to, &h, STORE_OPTIONS, plan->options);
+    put_text(to, &h, STORE_OPTIONS, record);
+    free(record);
     put_text(to, &h, STORE_CRS, plan->crs);
     put_text(to, &h, STORE_DATUM, plan->vertical_datum);
     put_text(to, &h, STORE_PROVENANCE, plan->provenance);

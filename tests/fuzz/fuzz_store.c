@@ -54,6 +54,7 @@ static void look(const uint8_t *data, size_t size)
     TerrainStore store;
     Landscape    landscape;
     if (file < 0) return;
+    free(store_recall(path));
     if (store_open(&store, path) == STATUS_OK) {
         StorePart part[store_sections_most];
         double    sum = 0;

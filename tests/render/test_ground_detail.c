@@ -2,7 +2,7 @@
  * averaged over each pixel by brute force; as the eye moves, against 256 rays a pixel; and switched off. */
 #include "tests/render/hand_world.h"
 
-#include "terrain/landscape/detail_private.h"
+#include "terrain/landscape/detail.h"
 
 enum { width = 120, height = 80, pixels = width * height, side = 12 };
 

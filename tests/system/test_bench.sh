@@ -61,7 +61,7 @@ done
 table precision
 for knob in "Earth to local frame" "latitude. longitude. height" "geoid between posts" "the sun's place" \
             "powers of two" \
-            "spacing of invented ground" "reach of the finest level" "height of a post" "texture under a pixel" \
+            "spacing of invented ground" "reach of the finest level" "height of a post" "detail: weakest octave" "posts of terrain from files" \
             "dead reckoning" "heat of parts between reports" "radiance of a black body" "temperature of a radiance" \
             "light on the ground" "smoke along a ray" "air before a pixel. visible" "air before a pixel. thermal" \
             "radiance of the sky" "light of the sky on a plane" "range to the ground" "range to a part" "rays a pixel" \

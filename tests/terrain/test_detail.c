@@ -2,7 +2,7 @@
  * the table's; filtered, against means over the footprint of the unfiltered noise. */
 #include "tests/check.h"
 
-#include "terrain/landscape/detail_private.h"
+#include "terrain/landscape/detail.h"
 
 static Landscape    bare; /* of one seed, without photograph and fields */
 static DetailTable *table;

@@ -1,7 +1,7 @@
 /* Heights from files in steps of 1/2048 m: how far posts are from them, and seams to the bit over tiles of any shift. */
 #include "tests/check.h"
 
-#include "terrain/landscape/landscape_private.h"
+#include "terrain/landscape/work_level.h"
 
 enum { levels = 3, cells = 160 };
 

@@ -208,7 +208,47 @@ static void damaged_files_are_refused_with_the_next_step(void **state)
     octets[0] = 'Q';
     write_whole(bad, octets, count);
     refused(bad, STATUS_BAD_VALUE, "not a terrain store");
+    CHECK(store_recall(bad) == NULL);
+    octets[0] = 'P';
     log_set_sink(NULL, NULL);
+    unlink(bad);
+    free(octets);
+}
+
+/* Cut, of a damaged header, of another version: the options are there until they are damaged themselves. */
+static void options_are_recalled_from_what_is_left(void **state)
+{
+    (void)state;
+    char     bad[temp_name_size];
+    uint8_t *octets;
+    name_file(bad, "bad.store");
+    const size_t  count = read_whole(&octets, lab);
+    StoreHeader  *h = (StoreHeader *)(void *)octets;
+    const size_t  at = (size_t)(store_text(h, STORE_OPTIONS) - (const char *)octets);
+    const size_t  end = at + strlen((const char *)octets + at);
+    TerrainStore  store;
+    assert_int_equal(store_open(&store, lab), STATUS_OK);
+    CHECK(strlen(store.options) > 0);
+    memset(octets + sizeof store_magic, 0x5a, sizeof *h - sizeof store_magic);
+    for (size_t n = end - 3; n <= end + 1; n++) {
+        write_whole(bad, octets, n);
+        char *options = store_recall(bad);
+        CHECK(n < end ? options == NULL : options && strcmp(options, store.options) == 0);
+        free(options);
+    }
+    for (size_t n = at; n < end; n++) {
+        octets[n] ^= 1;
+        write_whole(bad, octets, n < at + 40 || n + 1 == end ? end : at);
+        char *options = store_recall(bad);
+        CHECK(options == NULL);
+        free(options);
+        octets[n] ^= 1;
+    }
+    write_whole(bad, octets, count);
+    char *whole = store_recall(bad);
+    CHECK(whole && strcmp(whole, store.options) == 0);
+    free(whole);
+    store_close(&store);
     unlink(bad);
     free(octets);
 }
@@ -358,6 +398,7 @@ int main(void)
         cmocka_unit_test(any_threads_and_rows_give_the_same_octets),
         cmocka_unit_test(opening_touches_no_page_of_data),
         cmocka_unit_test(damaged_files_are_refused_with_the_next_step),
+        cmocka_unit_test(options_are_recalled_from_what_is_left),
         cmocka_unit_test(hostile_headers_are_refused),
         cmocka_unit_test(changed_and_missing_sources_are_noticed),
         cmocka_unit_test(half_a_store_is_never_there),

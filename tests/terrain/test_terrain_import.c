@@ -3,6 +3,7 @@
 #include "tests/check.h"
 
 #include "terrain/earth/geoid.h"
+#include "terrain/import/building_count.h"
 #include "terrain/import/terrain_import.h"
 #include "terrain/landscape/elevation_stream.h"
 
@@ -48,6 +49,11 @@ static void write_grid(char out[temp_name_size], const Grid *g)
 static float hills(int i, int j) { return (float)(300 + 20 * sin(0.03 * i) * cos(0.02 * j) + 2 * sin(0.7 * i + 0.4 * j)); }
 static float with_holes(int i, int j) { return (i / 40 + j / 30) % 4 == 0 ? -9999 : hills(i, j); }
 static float higher(int i, int j) { return hills(i, j) + 25; }
+static float higher_coarse(int i, int j)
+{
+    const double x = 4 * i + 1.5, y = 4 * j + 1.5;
+    return (float)(325 + 20 * sin(0.03 * x) * cos(0.02 * y) + 2 * sin(0.7 * x + 0.4 * y));
+}
 static float flat(int i, int j) { return (float)(100 + 0 * i * j); }
 static float codes(int i, int j) { return (float)(j < 125 ? 10 : 60 + 0 * i); }
 
@@ -67,8 +73,17 @@ static TerrainOptions options_of(const char *elevation)
     TerrainOptions o;
     const char    *why;
     terrain_options_default(&o);
-    CHECK(terrain_options_set(&o, &why, "elevation", elevation) && terrain_options_set(&o, &why, "horizon", "2") &&
+    CHECK(terrain_options_set(&o, &why, "elevation", elevation) && terrain_options_set(&o, &why, "horizon", "1") &&
           terrain_options_set(&o, &why, "vertical", "ellipsoid"));
+    return o;
+}
+
+/* Posts 2 m apart: sooner done. */
+static TerrainOptions coarse_options_of(const char *elevation)
+{
+    TerrainOptions o = options_of(elevation);
+    const char    *why;
+    CHECK(terrain_options_set(&o, &why, "spacing", "2"));
     return o;
 }
 
@@ -93,19 +108,23 @@ static void strips_and_threads_give_the_same_posts(void **state)
 {
     (void)state;
     enum { most = 700 * 700 };
-    char             path[temp_name_size];
+    char             path[2 * temp_name_size], coarse[temp_name_size];
     const LocalFrame frame = frame_of(&ground);
     float           *whole = malloc(most * sizeof *whole), *part = malloc(most * sizeof *part);
     StreamLevel      level, again;
     Pool            *pool;
     assert_int_equal(pool_create(&pool, 3), STATUS_OK);
-    write_grid(path, &ground);
-    const ElevationFiles files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_GEOID, .horizon_m = 2000};
+    /* with holes, which a coarser file fills */
+    const Grid g = {"holes", 260, 250, 11, 46, 1e-5, with_holes}, c = {"coarse", 65, 63, 11, 46, 4e-5, higher_coarse};
+    write_grid(path, &g);
+    write_grid(coarse, &c);
+    snprintf(path + strlen(path), sizeof path - strlen(path), ",%s", coarse);
+    const ElevationFiles files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_GEOID, .horizon_m = 1000};
     heights_of(whole, &files, &frame, 10000, NULL, &level);
     CHECK(level.nx * level.ny <= most && level.ny > 200);
     const size_t size = (size_t)level.nx * (size_t)level.ny * sizeof *whole;
-    static const int rows[] = {1, 37, 64, 128};
-    for (size_t k = 1; k < sizeof rows / sizeof *rows; k++) {
+    static const int rows[] = {37, 128};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         heights_of(part, &files, &frame, rows[k], k & 1 ? pool : NULL, &again);
         CHECK(memcmp(whole, part, size) == 0);
     }
@@ -126,7 +145,7 @@ static void the_store_has_the_posts_of_the_path_in_memory(void **state)
     write_grid(path, &ground);
     path_of(out, "ground.store");
     const TerrainOptions o = options_of(path);
-    const ElevationFiles files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_ELLIPSOID, .horizon_m = 2000};
+    const ElevationFiles files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_ELLIPSOID, .horizon_m = 1000};
     assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     assert_int_equal(elevation_import(&memory, &report, &files, &store.frame, NULL, 0), STATUS_OK);
@@ -181,7 +200,7 @@ static void first_given_wins_and_each_has_its_datum(void **state)
     for (int k = 0; k < 3; k++) {
         if (k == 2) snprintf(list, sizeof list, "%s@geoid,%s@ellipsoid", one, two);
         else snprintf(list, sizeof list, "%s,%s", k ? two : one, k ? one : two);
-        const TerrainOptions o = options_of(list);
+        const TerrainOptions o = coarse_options_of(list);
         assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
         CHECK(r.elevation.grids == 2 && r.elevation.sheets == 2);
         assert_int_equal(store_open(&store, out), STATUS_OK);
@@ -215,6 +234,38 @@ static void holes_are_filled_and_counted(void **state)
     store_close(&store);
 }
 
+/* Deep in a hole of 40 x 30 pixels the coarser file's ground, 25 m higher; led over to from the rim, without a step; what the fine
+ * file has stays. */
+static void holes_are_filled_from_coarser_files_first(void **state)
+{
+    (void)state;
+    char          fine[temp_name_size], coarse[temp_name_size], list[2 * temp_name_size], out[temp_name_size];
+    const Grid    g = {"holes", 260, 250, 11, 46, 1e-5, with_holes}, c = {"coarse", 65, 63, 11, 46, 4e-5, higher_coarse};
+    TerrainReport r;
+    TerrainStore  store;
+    write_grid(fine, &g);
+    write_grid(coarse, &c);
+    snprintf(list, sizeof list, "%s,%s", fine, coarse);
+    path_of(out, "coarser.store");
+    const TerrainOptions o = options_of(list);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(store_open(&store, out), STATUS_OK);
+    double last_m = 0, worst_m = 0, deep_m = 0, steep_m = 0;
+    for (int i = 5; i < 250; i++) { /* along row 135: holes are pixels 0 .. 39 and 160 .. 199 */
+        const double h_m = stored_h_m(&store, 46 + (249.5 - 135) * 1e-5, 11 + (i + 0.5) * 1e-5) - (double)hills(i, 135);
+        const bool   hole = with_holes(i, 135) < 0;
+        if (!hole && with_holes(i - 2, 135) > 0 && with_holes(i + 2, 135) > 0) worst_m = fmax(worst_m, fabs(h_m));
+        if (i >= 175 && i <= 185) deep_m = fmax(deep_m, fabs(h_m - 25));
+        if (i > 5) steep_m = fmax(steep_m, fabs(h_m - last_m));
+        last_m = h_m;
+    }
+    store_close(&store);
+    print_message("off %.2f m outside, %.2f deep inside, %.2f from pixel to pixel; %ld + %ld posts\n", worst_m, deep_m, steep_m,
+                  r.elevation.voids, r.elevation.voids_coarser);
+    CHECK(worst_m < 1 && deep_m < 3 && steep_m < 8);
+    CHECK(r.elevation.voids > 0 && r.elevation.voids_coarser > r.elevation.voids / 4);
+}
+
 static void classes_are_where_the_file_has_them(void **state)
 {
     (void)state;
@@ -243,6 +294,87 @@ static void classes_are_where_the_file_has_them(void **state)
     CHECK(cover_grid_at(store.surface, 5, 1e5) == SURFACE_NONE);
     CHECK_NEAR(r.cover.share[SURFACE_FOREST_BROADLEAF], 0.5, 0.02);
     store_close(&store);
+}
+
+/* ---- surface models -------------------------------------------------------------------------- */
+
+static const int tree[3][2] = {{150, 50}, {50, 150}, {160, 165}};
+
+static bool in_house(int i, int j) { return i >= 40 && i < 65 && j >= 40 && j < 60; }
+static bool in_court(int i, int j) { return i >= 113 && i < 128 && j >= 113 && j < 128; }
+static bool in_yard_house(int i, int j) { return i >= 100 && i < 141 && j >= 100 && j < 141 && !in_court(i, j); }
+static float slope(int i, int j) { return (float)(200 + 0.02 * i + 0.01 * j); }
+
+/* Two houses, one about a courtyard, and three trees; row 0 northernmost. */
+static float town(int i, int j)
+{
+    double above_m = in_house(i, j) ? 8 : in_yard_house(i, j) ? 11 : 0;
+    for (int k = 0; k < 3; k++) {
+        const double away_m = hypot(i - tree[k][0], j - tree[k][1]);
+        const double rough_m = 0.8 * random_uniform(7, 1, (uint32_t)i, (uint64_t)j);
+        if (away_m < 5) above_m = 12 - 0.4 * away_m * away_m - rough_m;
+    }
+    return (float)((double)slope(i, j) + above_m);
+}
+
+static void houses_and_trees_are_taken_off_a_surface_model(void **state)
+{
+    (void)state;
+    char          path[temp_name_size], out[temp_name_size];
+    const char   *why;
+    TerrainReport r;
+    TerrainStore  store;
+    const double  pixel_deg = 0.9e-5, west_deg = 11, south_deg = 0.001; /* of a metre at the equator */
+    const Grid    g = {"town", 200, 200, west_deg, south_deg, pixel_deg, town};
+    write_grid(path, &g);
+    path_of(out, "town.store");
+    TerrainOptions o;
+    terrain_options_default(&o);
+    CHECK(terrain_options_set(&o, &why, "surface", path) && terrain_options_set(&o, &why, "horizon", "1") &&
+          terrain_options_set(&o, &why, "vertical", "ellipsoid") && terrain_options_set(&o, &why, "spacing", "1"));
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(store_open(&store, out), STATUS_OK);
+    CHECK(r.apart && !r.beside);
+    print_message("%d buildings, %d crowns\n", (int)store.building_count, (int)store.crown_count);
+    CHECK(store.building_count == 2);
+    int crowns = 0; /* a house's corner may leave a crown of one cell */
+    for (int n = 0; n < (int)store.crown_count; n++) crowns += store.crown[n].radius_m > 1;
+    CHECK(crowns == 3);
+    static const int place[][2] = {{52, 50}, {105, 120}, {120, 120}, {80, 80}, {150, 50}, {160, 165}};
+    static const double above_m[] = {8, 11, 0, 0, 0, 0};
+    for (int k = 0; k < 6; k++) {
+        const int    i = place[k][0], j = place[k][1];
+        const double h_m = stored_h_m(&store, south_deg + (199.5 - j) * pixel_deg, west_deg + (i + 0.5) * pixel_deg);
+        CHECK_NEAR(h_m, (double)slope(i, j) + above_m[k], 0.3);
+        /* the frame's origin is the middle of the file */
+        const uint8_t surface = (uint8_t)cover_grid_at(store.surface, i - 99.5, 99.5 - j);
+        CHECK((surface == SURFACE_BUILT) == (k < 2));
+    }
+    for (int k = 0; k < 3; k++) {
+        double nearest_m = INFINITY;
+        for (int n = 0; n < (int)store.crown_count; n++) {
+            const Crown *c = &store.crown[n];
+            nearest_m = fmin(nearest_m, hypot((double)c->x_m - (tree[k][0] - 99.5), (double)c->y_m - (99.5 - tree[k][1])));
+            CHECK(c->radius_m < 1 || (c->height_m > 10 && c->height_m < 13 && c->radius_m > 3 && c->radius_m < 6));
+        }
+        CHECK(nearest_m < 2);
+    }
+    store_close(&store);
+}
+
+static void buildings_are_counted_over_rows(void **state)
+{
+    (void)state;
+    /* a ring about a cell, two arms that meet in the last row but one, cells that touch at a corner */
+    static const char *const rows[] = {"###..#.#.#", "#.#..#.#..", "###..#.#..", ".....###..", "#.......##"};
+    BuildingCount b = {0};
+    for (int j = 0; j < 5; j++) {
+        uint8_t kind[10];
+        for (int i = 0; i < 10; i++) kind[i] = rows[j][i] == '#' ? CELL_BUILDING : i & 1 ? CELL_TREE : CELL_BARE;
+        assert_int_equal(building_count_row(&b, 10, kind), STATUS_OK);
+    }
+    assert_int_equal(b.count, 5);
+    building_count_free(&b);
 }
 
 /* ---- options, stopping, making again --------------------------------------------------------- */
@@ -296,6 +428,14 @@ static void stopped_or_refused_it_leaves_nothing(void **state)
     log_set_sink(check_listen, NULL);
     o = options_of("/nowhere.tif");
     CHECK(terrain_import(&r, &o, out, NULL, NULL, NULL) != STATUS_OK && strstr(check_said, "/nowhere.tif"));
+    CHECK(stat(out, &about) != 0 && stat(part, &about) != 0);
+    const char *why;
+    o = options_of(path);
+    CHECK(terrain_options_set(&o, &why, "cover", path)); /* heights are no classes */
+    CHECK(terrain_import(&r, &o, out, NULL, NULL, NULL) != STATUS_OK && strstr(check_said, "is it elevation"));
+    o = options_of(path);
+    CHECK(terrain_options_set(&o, &why, "origin", "10,10"));
+    CHECK(terrain_import(&r, &o, out, NULL, NULL, NULL) != STATUS_OK && strstr(check_said, "nearest"));
     log_set_sink(NULL, NULL);
     CHECK(stat(out, &about) != 0 && stat(part, &about) != 0);
 }
@@ -311,18 +451,18 @@ static void a_store_is_made_again_from_its_header(void **state)
     first.name = "again";
     write_grid(path, &first);
     path_of(out, "again.store");
-    const TerrainOptions o = options_of(path);
+    const TerrainOptions o = coarse_options_of(path);
     assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     const uint64_t was = store.content;
     CHECK(store_sources(&store, which, sizeof which) == STORE_FRESH);
-    assert_int_equal(terrain_store_rebuild(out, &store), STATUS_OK);
+    assert_int_equal(terrain_store_rebuild(out, store.options), STATUS_OK);
     store_close(&store);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     CHECK(store.content == was); /* the same, on other threads */
     write_grid(path, &other);
     CHECK(store_sources(&store, which, sizeof which) == STORE_CHANGED && strstr(which, "again"));
-    assert_int_equal(terrain_store_rebuild(out, &store), STATUS_OK);
+    assert_int_equal(terrain_store_rebuild(out, store.options), STATUS_OK);
     store_close(&store);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     CHECK(store_sources(&store, which, sizeof which) == STORE_FRESH);
@@ -351,7 +491,10 @@ int main(void)
         cmocka_unit_test(the_store_has_the_posts_of_the_path_in_memory),
         cmocka_unit_test(first_given_wins_and_each_has_its_datum),
         cmocka_unit_test(holes_are_filled_and_counted),
+        cmocka_unit_test(holes_are_filled_from_coarser_files_first),
         cmocka_unit_test(classes_are_where_the_file_has_them),
+        cmocka_unit_test(houses_and_trees_are_taken_off_a_surface_model),
+        cmocka_unit_test(buildings_are_counted_over_rows),
         cmocka_unit_test(options_are_a_text_and_back),
         cmocka_unit_test(stopped_or_refused_it_leaves_nothing),
         cmocka_unit_test(a_store_is_made_again_from_its_header),

@@ -2,6 +2,7 @@
  * them lies under a reported vehicle, and plots keep off the roads. */
 #include "tests/check.h"
 
+#include "terrain/landscape/hedges.h"
 #include "terrain/landscape/ways.h"
 
 enum { most = 20000 };
@@ -92,6 +93,35 @@ static void roads_join_the_villages(void **state)
     }
 }
 
+/* Hedgerows: strips of scrub between other classes, none across a way or within a vehicle's reach. */
+static void hedges_stand_on_borders(const Landscape *land, const GroundFix *fix, int fixes)
+{
+    const double half[2][2] = {{-1200, -1200}, {1200, 0}}, rest[2][2] = {{-1200, 0}, {1200, 1200}};
+    HedgePlace  *hedge, *more;
+    int          count, others, narrow = 0, of_height[3] = {0};
+    CHECK(landscape_hedges(&hedge, &count, land, half[0], half[1], 8) == STATUS_OK);
+    CHECK(landscape_hedges(&more, &others, land, rest[0], rest[1], 8) == STATUS_OK);
+    CHECK(count > 200 && others > 200);
+    for (int n = 0; n < count; n++) {
+        const HedgePlace *h = &hedge[n];
+        WayPlace          way;
+        int               open = 0;
+        of_height[h->height]++;
+        for (int k = 0; k < 16; k++) /* 7 m off, most is of other classes */
+            open += landscape_surface(land, h->x_m + 7 * cos(k * pi_rad / 8), h->y_m + 7 * sin(k * pi_rad / 8)) !=
+                    SURFACE_SCRUB;
+        narrow += open >= 8;
+        CHECK(!landscape_way(&way, land, h->x_m, h->y_m) || fabs(way.across_m) > way.half_m ||
+              way.kind > WAY_TRACK);
+        for (int k = 0; k < fixes; k++)
+            CHECK(hypot(fix[k].p_enu[0] - h->x_m, fix[k].p_enu[1] - h->y_m) > 6.9); /* 8 less the border's wander */
+    }
+    print_message("%d and %d places of hedges, %d on strips, %d cut, %d shrubs, %d trees\n", count, others, narrow,
+                  of_height[0], of_height[1], of_height[2]);
+    CHECK(narrow > count * 7 / 10 && of_height[0] && of_height[1] && of_height[2]);
+    free(hedge), free(more);
+}
+
 static void vehicles_stand_in_the_open(void **state)
 {
     (void)state;
@@ -116,10 +146,84 @@ static void vehicles_stand_in_the_open(void **state)
             CHECK(s != SURFACE_ROAD && s != SURFACE_WETLAND && s != SURFACE_NONE);
             tracks += n >= 100 && s == SURFACE_TRACK;
         }
+        hedges_stand_on_borders(&land, fix, fixes);
         print_message("seed %d: %d of 300 on tracks, worst fix %.4f m\n", (int)seed, tracks, land.fit_worst_m);
         CHECK(tracks > 200);
         landscape_destroy(&land);
     }
+}
+
+/* ---- detail ------------------------------------------------------------------------------------ */
+
+enum { across = 512 };
+static double  place_x[across], place_y[across];
+static uint8_t of_class[across];
+static float   albedo[across], warmth_k[across], radar[across], slope_x[across], slope_y[across], footprint[across];
+
+/* Over a section of 4 m about a place, from right to left. */
+static void ask_section(const Landscape *land, const double middle[2], const double left[2], double footprint_m)
+{
+    for (int n = 0; n < across; n++) {
+        const double d = 4.0 * (n + 0.5) / across - 2;
+        place_x[n] = middle[0] + d * left[0], place_y[n] = middle[1] + d * left[1];
+        of_class[n] = SURFACE_TRACK, footprint[n] = (float)footprint_m;
+        albedo[n] = radar[n] = 1, warmth_k[n] = slope_x[n] = slope_y[n] = 0;
+    }
+    ways_detail(&(GroundDetail){albedo, warmth_k, radar, slope_x, slope_y}, land, across, of_class, place_x, place_y,
+                footprint);
+}
+
+/* A track has two ruts and a grassy middle; a footprint sees means over itself; one as wide as the track, nothing. */
+static void tracks_have_ruts(void **state)
+{
+    (void)state;
+    enum { fixes = 60 };
+    static GroundFix fix[fixes];
+    static double    sharp[2][across];
+    Landscape        land;
+    WayKind          kind = WAY_NONE;
+    int              way = 0, count = 0, apart = 0;
+    for (int n = 0; n < fixes; n++) {
+        fix[n] = (GroundFix){.voter = 1, .p_enu = {15.0 * (n - 30), 6.0 * (n - 30)}};
+        fix[n].p_enu[2] = -(pow(fix[n].p_enu[0], 2) + pow(fix[n].p_enu[1], 2)) / (2 * 6371e3);
+    }
+    make(&land, 5, fix, fixes);
+    for (; kind != WAY_TRACK && (count = landscape_way_vertices(vertex, &kind, &land, way, most)) > 0; way++) {}
+    CHECK(kind == WAY_TRACK && count > 4);
+    const double *a = vertex[count / 2], *b = vertex[count / 2 + 1], length = hypot(b[0] - a[0], b[1] - a[1]);
+    const double  middle[2] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
+    const double  left[2] = {-(b[1] - a[1]) / length, (b[0] - a[0]) / length};
+    ask_section(&land, middle, left, 0);
+    double worst_m = 0, height_m = 0;
+    for (int n = 0; n < across; n++) { /* the slopes are those of two ruts 4.5 cm deep and a crest of twice 1 cm */
+        const double d = 4.0 * (n + 1.0) / across - 2, low = (d - 0.8) / 0.2, high = (d + 0.8) / 0.2, crest = d / 0.3;
+        if (fabs(d) > 1.7) continue; /* half its width */
+        const double here = -0.045 * (exp(-low * low / 2) + exp(-high * high / 2)) + 0.020 * exp(-crest * crest / 2);
+        if (height_m == 0) height_m = here;
+        else
+            height_m += (double)slope_x[n] * left[0] * 4 / across + (double)slope_y[n] * left[1] * 4 / across;
+        worst_m = fmax(worst_m, fabs(height_m - here));
+        sharp[0][n] = (double)albedo[n], sharp[1][n] = (double)warmth_k[n];
+    }
+    print_message("worst height %.1e m, ruts %.3f, middle %.3f\n", worst_m, (double)albedo[across * 7 / 10],
+                  (double)albedo[across / 2]);
+    CHECK(worst_m < 1e-3);
+    CHECK(albedo[across * 7 / 10] > albedo[across / 2] + 0.2f && warmth_k[across * 7 / 10] > warmth_k[across / 2]);
+    /* means over 0.5 m of it */
+    ask_section(&land, middle, left, 0.5);
+    for (int n = 0; n < across; n++) {
+        double    mean[2] = {0, 0};
+        const int reach = across / 16; /* 0.25 m */
+        if (fabs(4.0 * (n + 0.5) / across - 2) > 1.4) continue;
+        for (int m = n - reach; m < n + reach; m++)
+            for (int k = 0; k < 2; k++) mean[k] += sharp[k][m] / (2 * reach);
+        apart += fabs(mean[0] - (double)albedo[n]) > 0.02 || fabs(mean[1] - (double)warmth_k[n]) > 0.04;
+    }
+    CHECK(apart == 0);
+    ask_section(&land, middle, left, 1.7);
+    for (int n = 0; n < across; n++)
+        CHECK(albedo[n] == 1 && warmth_k[n] == 0 && radar[n] == 1 && slope_x[n] == 0 && slope_y[n] == 0);
+    landscape_destroy(&land);
 }
 
 int main(void)
@@ -128,6 +232,7 @@ int main(void)
         cmocka_unit_test(streams_descend),
         cmocka_unit_test(roads_join_the_villages),
         cmocka_unit_test(vehicles_stand_in_the_open),
+        cmocka_unit_test(tracks_have_ruts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,11 @@
-/* terrain/landscape/detail_private.h: shared by detail.c (the noise at a place) and detail_table.c (its weights).
+/* terrain/landscape/detail_table.h: statistics of the ground's noise, and from them the weights of its octaves.
  *
  * A field of a class is g + k (g^2 - var g), where g sums the octaves, each of variance 1 and weighted for its class:
  * the second Hermite polynomial gives the skew, and its mean under any filter is that of the octaves that remain. */
-#ifndef TERRAIN_LANDSCAPE_DETAIL_PRIVATE_H
-#define TERRAIN_LANDSCAPE_DETAIL_PRIVATE_H
+#ifndef TERRAIN_LANDSCAPE_DETAIL_TABLE_H
+#define TERRAIN_LANDSCAPE_DETAIL_TABLE_H
 
-#include "terrain/landscape/detail.h"
+#include "terrain/surface.h"
 
 typedef enum DetailField { DETAIL_ALBEDO, DETAIL_WARMTH, DETAIL_RADAR, DETAIL_HEIGHT, detail_fields } DetailField;
 
@@ -33,24 +33,24 @@ typedef struct DetailStatistics {
     double sigma, length_m, far_share, far_length_m, skew, follows; /* follows: correlation with the albedo */
 } DetailStatistics;
 
-struct DetailTable {
+/* Statistics of every class (etc/ground_detail.csv), and the weights of the octaves at every footprint. */
+typedef struct DetailTable {
     DetailStatistics statistics[SURFACE_COUNT][detail_fields];
     float            bend[SURFACE_COUNT][detail_fields];    /* k above, 1 / unit of the field */
     float            follows[SURFACE_COUNT][detail_fields]; /* share of the first noise; the rest is of the second */
     float            apart[SURFACE_COUNT][detail_fields];   /* share of the second */
     uint8_t          used[SURFACE_COUNT][detail_sizes][detail_longs][detail_fields]; /* octaves with a weight */
     DetailWeights    weights[SURFACE_COUNT][detail_sizes][detail_longs];
-};
+} DetailTable;
 
 /* From statistics alone. */
 Status detail_table_create(DetailTable **out, const DetailStatistics statistics[SURFACE_COUNT][detail_fields],
                            double cut_off);
 
-/* Factor for the rows of fields (terrain/landscape/texture.c) into albedo; and the side of the photograph's pixels at
- * each place, 0: no photograph there. */
-void texture_rows(float *albedo, const Landscape *landscape, int count, const uint8_t *surface, const double *x_m,
-                  const double *y_m, const float *footprint_m);
-void texture_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
-                         unsigned lanes);
+/* Logs what is wrong with the file. cut_off: octaves below this share of a field's variance are left out, their
+ * variance given to the others. */
+static const double detail_cut_off = 0.005; /* `bench precision`: detail: weakest octave */
+Status detail_table_open(DetailTable **out, const char *path, double cut_off);
+void   detail_table_close(DetailTable *table); /* accepts NULL */
 
 #endif
