@@ -33,7 +33,7 @@ typedef struct SurfaceParts {
 
 /* A cell's answer depends on cells nearer than this only: windows that overlap by twice as much agree bit for bit where
  * both are farther than this from their own edges. */
-static const double take_apart_reach_m = 320;
+static const double take_apart_reach_m = 384;
 
 /* One thread, deterministic; cell_m 0.1 .. 4, at coarser cells nothing can be told apart: STATUS_UNSUPPORTED.
  * Temporary memory: at most 32 bytes a cell. */

@@ -7,7 +7,7 @@
 enum { lanes = 32 }; /* columns at a time */
 
 /* Extreme of [x, x + width) for each of count elements of `lane` floats; beyond them stand width - 1 neutral ones.
- * Windows double: O(log width) passes that vectorize, faster than van Herk's 3 comparisons up to width 200. */
+ * Windows double: O(log width) passes that vectorize. */
 static void run_least(float *a, size_t count, size_t width, size_t lane)
 {
     size_t w = 1;

@@ -224,7 +224,58 @@ static void regrow(Ground *g)
             }
         if (!any) break;
     }
+}
+
+/* Sums of `from` over squares of 2 radius + 1 blocks, in place. */
+static void square_sums(float *v, const Blocks *b, int radius, float *line)
+{
+    for (int along = 0; along < 2; along++) {
+        const int    n = along ? b->ny : b->nx, lines = along ? b->nx : b->ny;
+        const size_t step = along ? (size_t)b->nx : 1, next = along ? 1 : (size_t)b->nx;
+        for (int l = 0; l < lines; l++) {
+            float *at = v + (size_t)l * next, sum = 0; /* whole numbers: exact */
+            for (int i = 0; i < n; i++) line[i] = at[(size_t)i * step];
+            for (int i = 0; i < n + radius; i++) {
+                if (i < n) sum += line[i];
+                if (i - 2 * radius - 1 >= 0) sum -= line[i - 2 * radius - 1];
+                if (i >= radius) at[(size_t)(i - radius) * step] = sum;
+            }
+        }
+    }
+}
+
+/* Gives up blocks taken back where what was taken back nearby ends in drops rather than on ground: seats of a stadium,
+ * embankments against a hall. A hill that a square flattened ends on ground all around. */
+static Status give_up_stands(Ground *g)
+{
+    const Blocks *b = &g->blocks;
+    const int     nx = b->nx, ny = b->ny, radius = blocks_in(b, 60);
+    static const int di[4] = {1, -1, 0, 0}, dj[4] = {0, 0, 1, -1};
+    const float wall_m = 2.5F, step_m = (float)(1.2 * b->block_m);
+    float *drops = g->work, *joins = g->opened;
+    float *line = malloc((size_t)(nx > ny ? nx : ny) * sizeof *line);
+    if (!line) return STATUS_NO_MEMORY;
+    memset(drops, 0, g->count * sizeof *drops), memset(joins, 0, g->count * sizeof *joins);
+    for (int y = 2; y < ny - 2; y++)
+        for (int x = 2; x < nx - 2; x++) {
+            const size_t c = (size_t)y * (size_t)nx + (size_t)x;
+            if (g->object[c] < 2) continue;
+            for (int k = 0; k < 4; k++) {
+                /* a wall's own block may hold both heights: one block further */
+                const ptrdiff_t d = di[k] + (ptrdiff_t)dj[k] * nx;
+                const size_t p = (size_t)((ptrdiff_t)c + d), q = (size_t)((ptrdiff_t)c + 2 * d);
+                if (g->low[p] == FLT_MAX || g->low[q] == FLT_MAX) continue;
+                if (g->object[p] == 0 && fabsf(g->low[c] - g->low[p]) <= step_m) joins[c] += 1;
+                else if (g->object[q] < 2 && g->low[c] - g->low[q] > wall_m + 2 * step_m * g->slope[c]) drops[c] += 1;
+            }
+        }
+    square_sums(drops, b, radius, line);
+    square_sums(joins, b, radius, line);
+    for (size_t c = 0; c < g->count; c++)
+        if (g->object[c] >= 2 && drops[c] >= 6 && drops[c] > 0.15F * (drops[c] + joins[c])) g->object[c] = 1;
     for (size_t c = 0; c < g->count; c++) g->object[c] = g->object[c] == 1;
+    free(line);
+    return STATUS_OK;
 }
 
 /* Height of the filled ground at a cell's centre, linear between blocks' centres, and its slope. */
@@ -305,6 +356,9 @@ Status take_apart_ground(float *bare_m, uint8_t *is_ground, const SurfaceModel *
     if (status == STATUS_OK) status = mark_objects(&g, model, first_radius_m);
     if (status == STATUS_OK) {
         regrow(&g);
+        status = give_up_stands(&g);
+    }
+    if (status == STATUS_OK) {
         for (size_t c = 0; c < g.count; c++) g.height[c] = g.object[c] ? NAN : g.low[c];
         status = take_apart_fill(g.height, &g.blocks);
     }
