@@ -15,6 +15,8 @@ config: |
   exercise:
     listen_s: 14
     utc: 2026-06-21T17:00:00Z
+  terrain:
+    detail: off
   seed: 1
 causal: true
 frames: [$frames]
