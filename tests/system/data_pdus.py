@@ -5,7 +5,7 @@ test_five_records.sh.
                                                comes in on standard input, or that is closed; says when it listens
     data_pdus.py same LIVE.pcapng FILE LEAST   the Data PDUs of FILE against those of the recording, by frame and band
 """
-import collections, select, socket, struct, sys
+import collections, select, socket, struct, sys, time
 
 def datagrams(path):
     """UDP payloads of a pcapng written by Pitviper, over IPv4."""
@@ -37,7 +37,8 @@ def receive(address, port, path):
         ear.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 21)
         ear.bind((address, int(port)))
         print("listening", flush=True)
-        for _ in range(300):  # at most 60 s
+        end = time.monotonic() + 300
+        while time.monotonic() < end:
             ready, _, _ = select.select([ear, sys.stdin], [], [], 0.2)
             if ear in ready: to.write(ear.recv(65536).hex() + "\n")
             elif sys.stdin in ready: break
