@@ -5,7 +5,7 @@
 /* A multiple of the unit next to the post, half a unit up; exact for negative posts too. */
 static inline int32_t rounded(int32_t post, int shift)
 {
-    return shift ? ((post + (1 << (shift - 1))) >> shift) * (1 << shift) : post;
+    return shift ? (post + (1 << (shift - 1))) & ~((1 << shift) - 1) : post;
 }
 
 ElevationTile elevation_tile_of(int32_t low, int32_t high)

@@ -37,7 +37,7 @@ def receive(address, port, path):
         ear.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 21)
         ear.bind((address, int(port)))
         print("listening", flush=True)
-        end = time.monotonic() + 300
+        end = time.monotonic() + 300  # s: of slow builds, too
         while time.monotonic() < end:
             ready, _, _ = select.select([ear, sys.stdin], [], [], 0.2)
             if ear in ready: to.write(ear.recv(65536).hex() + "\n")

@@ -1,6 +1,7 @@
 # What tests of `pitviper regress` share; source it after common.sh.
 export TMPDIR=$tmp # what failed on purpose is not kept
-# new_case NAME [SIZE RATE FRAMES]: frames in all bands of the demo's missile, 2 of 64x48 unless said
+# new_case NAME [SIZE RATE FRAMES]: frames in all bands of the demo's missile, 2 of 64x48 unless said; without the ground's
+# detail, whose noise no file format makes small
 new_case() {
     local name=$1 size=${2:-64x48} rate=${3:-5} frames=${4:-5, 24}
     mkdir -p "$tmp/$name"
