@@ -7,6 +7,7 @@
 #include "pitviper_channels.h"
 #include "entities/catalog/catalog.h"
 #include "terrain/surface.h"
+#include "terrain/woods/plant.h"
 
 /* Reflective channels by place (pitviper_channels.h). */
 enum {
@@ -18,6 +19,8 @@ typedef struct Material {
     char  name[32];
     float rho[optical_channel_count];
     float rho_mwir, rho_lwir;
+    float tau[optical_channel_count];  /* transmittance, hemispherical: of leaves (etc/plant_optics.csv), else 0 */
+    float tau_mwir, tau_lwir;
     float solar_absorptance;
     float gloss;                      /* share of the reflectance that is a lobe, 0 .. 1; 1: bare metal, glass */
     float roughness;                  /* width of that lobe, rad rms slope */
@@ -30,6 +33,7 @@ typedef struct Materials {
     int       count;
     Material *material;              /* [0] is "none", black */
     int       surface[SURFACE_COUNT];/* material of each surface class */
+    int       plant[PLANT_KINDS][PLANT_ORGANS]; /* rows of etc/plant_optics.csv; 0: the kind has no such organ */
     int     **part;                  /* [model][part] */
     int     **damaged;               /* [model][part * model_damage_states + damage]; NULL: as undamaged. The
                                       * model's own entry, else `burnt` for destroyed, where there is such a row */

@@ -16,7 +16,7 @@ typedef struct Rays {
 } Rays;
 
 /* Kind of a hit: sky, where nothing was met. */
-typedef enum HitKind { hit_sky, hit_ground, hit_part } HitKind;
+typedef enum HitKind { hit_sky, hit_ground, hit_part, hit_plant } HitKind;
 
 /* A ray that met nothing: range_m INFINITY, everything else 0.
  *
@@ -40,6 +40,10 @@ typedef struct Hits {
     uint16_t model[hits_capacity];      /* of the catalog, where entity > 0 */
     uint8_t  inside[hits_capacity];     /* 1: a part was met from the inner side of its surface */
     uint8_t  surface[hits_capacity];    /* SurfaceClass where the ground was met, else 0 */
+    uint32_t plant[hits_capacity];      /* 1 + ForestHit.plant, where kind is hit_plant, else 0; of such hits alone: */
+    float    albedo[hits_capacity];     /* reflectance over that of the material */
+    float    radius_m[hits_capacity];   /* of the branch; 0: a leaf */
+    float    sky[hits_capacity];        /* share of an even sky that is seen past the plant itself, 0 .. 1 */
 } Hits;
 
 /* Row `from` of others is copied to row `to`, as one return of weight 1; rays as well. from and to may be the same
@@ -55,6 +59,10 @@ static inline void hits_copy(Hits *hits, Rays *rays, int to, const Hits *from_hi
     hits->model[to]    = from_hits->model[from];
     hits->inside[to]   = from_hits->inside[from];
     hits->surface[to]  = from_hits->surface[from];
+    hits->plant[to]    = from_hits->plant[from];
+    hits->albedo[to]   = from_hits->albedo[from];
+    hits->radius_m[to] = from_hits->radius_m[from];
+    hits->sky[to]      = from_hits->sky[from];
     rays->far_m[to]    = from_rays->far_m[from];
     for (int k = 0; k < 3; k++) {
         hits->p_enu[k][to] = from_hits->p_enu[k][from];

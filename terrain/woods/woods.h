@@ -1,0 +1,64 @@
+/* terrain/woods/woods.h: where plants stand: a pure function of the landscape, of the layers of a terrain store
+ * (canopy height, canopy cover, crowns), of the tracks to be left clear, and of the seed.
+ *
+ * Trees, bushes and hedges are listed once; grass, reeds, crops and stones, which only matter near the eye, are handed
+ * out square by square. None of them stand on roads, tracks, water, roofs or where a vehicle was reported. */
+#ifndef TERRAIN_WOODS_WOODS_H
+#define TERRAIN_WOODS_WOODS_H
+
+#include "terrain/landscape/landscape.h"
+#include "terrain/woods/plant.h"
+
+/* A straight piece of a path along which invented woods are cleared, and its half width. */
+typedef struct WoodsPath {
+    double a_m[2], b_m[2]; /* ENU of the landscape */
+    double half_m;
+} WoodsPath;
+
+typedef struct WoodsConfig {
+    uint64_t seed;
+    double   centre_m[2];   /* ENU: trees beyond most_trees are left out, farthest from here first, whole cells at a time */
+    double   half_width_m;  /* of the square about it in which plants stand; 50 .. 50000 */
+    int      most_trees;    /* 0 .. woods_most_trees */
+    const char *store;      /* path of the terrain store of the landscape, for its canopy layers and crowns; NULL: none */
+    int      path_count;
+    const WoodsPath *path;  /* cleared of plants */
+} WoodsConfig;
+
+enum { woods_most_trees = 4000000 };
+
+/* Squares of standing plants, for those who look for them by place: plants of square (i, j), whose south-west corner is
+ * at origin + woods_square_m (i, j), are plant[first[j * nx + i]] .. plant[first[j * nx + i + 1] - 1]. */
+static const double woods_square_m = 64;
+
+typedef struct Woods {
+    double    origin_enu[3];   /* of plant positions, and of the squares (its x and y) */
+    int       nx, ny;          /* squares */
+    uint32_t *first;           /* [nx * ny + 1] */
+    int       count;
+    Plant    *plant;           /* [count] square by square, and in a fixed order within a square */
+    int       by_kind[PLANT_KINDS];
+    int       left_out;        /* trees beyond most_trees */
+    double    reach_m;         /* from centre_m: trees within are complete */
+    int       from_crowns, from_canopy, from_classes, from_hedges; /* sources of the plants */
+    const Landscape *landscape; /* borrowed */
+    void     *low;             /* private: what woods_low_plants needs */
+} Woods;
+
+/* pool may be NULL. STATUS_BAD_VALUE: a value outside its range, logged. */
+Status woods_create(Woods *out, const Landscape *landscape, const WoodsConfig *config, Pool *pool);
+void   woods_destroy(Woods *woods);
+
+/* Low plants of a square of woods_low_m, south-west corner at origin + woods_low_m (i, j): at most `most` into plant,
+ * positions from the square's own south-west corner and Woods.origin_enu[2]. Returns their number. Thread-safe. */
+static const double woods_low_m = 8;
+enum { woods_low_most = 4096 };
+int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i, int64_t j);
+
+/* The standing plants whose trunk or stem (woods_trunk_m of radius) a circle touches: at most `most` of their indices;
+ * returns how many there are. */
+int    woods_near(int *index, int most, const Woods *woods, double x_m, double y_m, double radius_m);
+/* Radius of a plant's trunk at breast height, m; 0 for kinds without one. */
+double woods_trunk_m(const Plant *plant);
+
+#endif
