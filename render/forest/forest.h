@@ -24,6 +24,7 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
 void   forest_destroy(Forest *forest);
 const Woods  *forest_woods(const Forest *forest);
 const Plants *forest_plants(const Forest *forest);
+bool          forest_simplifies(const Forest *forest); /* level1_px > 0 */
 
 /* A forest as one frame sees it; a pure function of these. */
 typedef struct ForestFrame {
@@ -37,7 +38,7 @@ typedef struct ForestFrame {
 } ForestFrame;
 
 /* Low plants of the squares about the eye are made here, by pool (NULL: one thread). forest_frame_close before the
- * arena is reset. */
+ * arena is reset; it accepts a frame of zeros. */
 Status forest_frame_open(ForestFrame *out, const Forest *forest, const double eye_enu[3], double per_rad,
                          double low_reach_m, double t_s, const double wind_mps[2], Pool *pool, Arena *arena);
 void   forest_frame_close(ForestFrame *frame);
@@ -56,9 +57,9 @@ typedef struct ForestHit {
  * are never traced at level 1 for this ray; NULL: 0. Returns rays that entered some plant's box. Thread-safe. */
 uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count, const double *const o_enu[3],
                            const double *const d_enu[3], const uint8_t *real);
-/* dark becomes 1 where some plant is met nearer than far_m; rays where it is 1 already are left out. */
+/* dark becomes 1 where some plant is met nearer than far_m; rays where it is 1 already are left out. real: as above. */
 uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, const double *const o_enu[3],
-                         const double *const d_enu[3], const double *far_m);
+                         const double *const d_enu[3], const double *far_m, const uint8_t *real);
 
 /* What shading needs of a hit. Normals are unit, ENU, on the ray's side; n_enu with the relief of bark. */
 typedef struct ForestSurface {

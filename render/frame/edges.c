@@ -5,7 +5,8 @@
  * plane explains. Between two ground classes no further ray is needed: the existing hit gives the plane of the
  * ground. Parts that fall between the samples (a barrel, a mast) lie within the bounding box of their target: pixels
  * in the boxes of targets that are too large for a target grid and small enough to have such parts are always
- * sampled again, and so is the ground where a small target's shadow falls. */
+ * sampled again, and so is the ground where a small target's shadow falls. Pixels of plants and beside them get the
+ * samples of a step. */
 #include "render/frame/edges.h"
 
 #include "render/frame/ground_mix.h"
@@ -117,11 +118,11 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
 {
     const Picture *p = job->picture;
     const size_t   a = pixel_index(job, xa, ya), b = pixel_index(job, xb, yb);
-    const bool     part = p->entity[a] || p->entity[b];
+    const bool     part = p->entity[a] || p->entity[b], plants = p->instance && (p->instance[a] || p->instance[b]);
     const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
     if (sky_a && sky_b) return 0;
     if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return refine_all;
-    if (sky_a != sky_b) return refine_step;
+    if (sky_a != sky_b || plants) return refine_step; /* between leaves most neighbours differ in light or kind */
     const bool   other = p->material[a] != p->material[b];
     const double cosine = p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] +
                           p->normal[2][a] * p->normal[2][b];
@@ -142,11 +143,12 @@ static void find_plain(uint32_t *restrict plain, const Job *job, size_t a, size_
     const Picture  *p = job->picture;
     const float    *nx = p->normal[0], *ny = p->normal[1], *nz = p->normal[2], *range_m = p->range_m;
     const uint32_t *entity = p->entity, *part = p->part, *material = p->material;
+    const uint32_t *plant = p->instance ? p->instance : p->part; /* none: a plane that is compared anyway */
     const float     cosine = (float)sharp_cosine * 1.0001f, step = (float)step_part * 0.999f;
     for (int i = 0; i < count; i++) {
         const size_t   k = a + (size_t)i, l = b + (size_t)i;
         const uint32_t other = (entity[k] ^ entity[l]) | (part[k] ^ part[l]) | (material[k] ^ material[l]) |
-                               (uint32_t)(job->sun[k] != job->sun[l]);
+                               (plant[k] ^ plant[l]) | (uint32_t)(job->sun[k] != job->sun[l]);
         const float    turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
         const float    near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
         const float    deep_m = fabsf(range_m[k] - range_m[l]);
@@ -180,8 +182,7 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
                 flag |= edge_between(job, x, y, xb, yb);
             }
             const size_t px = pixel_index(job, x, y);
-            if (grounds && !(flag & refine_all) && !job->picture->entity[px] &&
-                job->picture->range_m[px] < INFINITY &&
+            if (grounds && !(flag & refine_all) && job->picture->cover[px] != SURFACE_NONE &&
                 corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
                 flag |= refine_ground;
             if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* all flags set */
@@ -212,6 +213,7 @@ void recall_ground(Worker *w, const Job *job)
         hits->entity[i]  = 0;
         hits->part[i] = hits->model[i] = 0;
         hits->inside[i] = 0;
+        hits->plant[i] = 0;
         rays->far_m[i] = INFINITY;
         for (int k = 0; k < 3; k++) {
             rays->o_enu[k][i] = view->p_enu[k];

@@ -36,7 +36,7 @@ void corner_materials(uint16_t out[corner_capacity], const Job *job, int x0, int
             const double n[3] = {p->normal[0][at], p->normal[1][at], p->normal[2][at]};
             double       d_hit[3], d[3];
             x_m[x - x0] = y_m[x - x0] = NAN;
-            if (p->entity[at] || !(p->range_m[at] < INFINITY)) continue;
+            if (p->cover[at] == SURFACE_NONE) continue;
             view_ray(d_hit, view, px + 0.5, py + 0.5);
             view_ray(d, view, x, y);
             const double range_m = plane_through(n, d_hit, p->range_m[at], d);

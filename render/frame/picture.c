@@ -52,7 +52,7 @@ static float **plane_slot(Picture *picture, int plane)
 
 float *picture_plane(const Picture *picture, int plane) { return *plane_slot((Picture *)picture, plane); }
 
-Status picture_create(Picture *picture, const RenderRequest *request, int entities, Arena *arena)
+Status picture_create(Picture *picture, const RenderRequest *request, int entities, bool plants, Arena *arena)
 {
     const size_t px = (size_t)request->view.width * (size_t)request->view.height;
     bool         ok = true;
@@ -75,6 +75,8 @@ Status picture_create(Picture *picture, const RenderRequest *request, int entiti
         ok = (picture->part = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
         ok = (picture->material = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
         ok = (picture->temp_k = arena_alloc(arena, px, sizeof(float))) && ok;
+        ok = (picture->cover = arena_alloc(arena, px, sizeof(uint8_t))) && ok;
+        if (plants) ok = (picture->instance = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
         for (int k = 0; k < 3; k++) ok = (picture->normal[k] = arena_alloc(arena, px, sizeof(float))) && ok;
     }
     if (request->truth) ok = (picture->target = arena_alloc(arena, (size_t)entities, sizeof(TargetPixels))) && ok;
@@ -84,7 +86,8 @@ Status picture_create(Picture *picture, const RenderRequest *request, int entiti
 void picture_forget_truth(Picture *picture)
 {
     picture->range_m = picture->temp_k = NULL;
-    picture->entity = picture->part = picture->material = NULL;
+    picture->entity = picture->part = picture->material = picture->instance = NULL;
+    picture->cover = NULL;
     for (int k = 0; k < 3; k++) picture->normal[k] = NULL;
 }
 
@@ -118,6 +121,8 @@ void render_counters_add(RenderCounters *sum, const RenderCounters *more)
     to->rays_parts += from->rays_parts;
     to->rays_sun_ground += from->rays_sun_ground;
     to->rays_sun_parts += from->rays_sun_parts;
+    to->rays_plants += from->rays_plants;
+    to->rays_sun_plants += from->rays_sun_plants;
     to->skipped_parts += from->skipped_parts;
     to->skipped_sun_parts += from->skipped_sun_parts;
     for (int k = 0; k < SKIP_COUNT; k++) to->skipped[k] += from->skipped[k];

@@ -37,6 +37,7 @@ typedef struct TargetPixels {
     double projected_box[4];      /* of all of it, px, not clipped to the image; where `projected` */
     double occluded_ground;       /* pixels hidden by the ground, and by other entities */
     double occluded_entity;
+    double occluded_plants;
     double veiled[BAND_COUNT];    /* share of its light that smoke and dust take, mean over what is visible, 0 .. 1 */
     int    occluder;              /* snapshot index of the entity that hides most; -1 */
 } TargetPixels;
@@ -92,6 +93,9 @@ typedef struct Picture {
     float    *range_m;              /* +inf: sky */
     uint32_t *entity;               /* snapshot index + 1; 0: none */
     uint32_t *part, *material;      /* + 1; 0: none */
+    uint32_t *instance;             /* plant: 1 + its index in the woods; low plants: forest_low_bit and a number; 0:
+                                     * none. NULL where the world has no plants */
+    uint8_t  *cover;                /* SurfaceClass of the ground that is seen, 0: none is */
     float    *temp_k;               /* NaN: sky */
     float    *normal[3];            /* ENU of the terrain origin */
     float    *covered;              /* share of the pixel that small targets cover; NULL: there are none */
@@ -129,9 +133,10 @@ static inline size_t picture_index(const Picture *picture, int x, int y)
     return (size_t)y * (size_t)picture->width + (size_t)x;
 }
 
-/* Planes for a request, all 0; truth planes where truth is requested and where edges are looked for.
+/* Planes for a request, all 0; truth planes where truth is requested and where edges are looked for. plants: the world
+ * has some.
  * STATUS_NO_MEMORY: of the arena. */
-Status picture_create(Picture *out, const RenderRequest *request, int entities, Arena *arena);
+Status picture_create(Picture *out, const RenderRequest *request, int entities, bool plants, Arena *arena);
 /* Removes from the picture the planes that only the search for edges needed. */
 void   picture_forget_truth(Picture *picture);
 

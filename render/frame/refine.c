@@ -36,6 +36,7 @@ static void take_back(Worker *w, const Job *job, unsigned bands, int listed, boo
     for (size_t p = 0; p < pixels; p++) {
         const size_t px = pixel_index(job, block->x[p], block->y[p]);
         s->hits.entity[p]  = picture->entity[px];
+        s->hits.plant[p]   = picture->instance ? picture->instance[px] : 0;
         s->hits.range_m[p] = picture->range_m[px] * (1 - 1e-6); /* a float's: no farther than it was */
     }
     ask_bands(w, job, bands);

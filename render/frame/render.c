@@ -68,7 +68,7 @@ static Status prepare_sky(Job *job, Pool *pool, Arena *arena)
     for (int k = 0; k < job->scene.snapshot->count; k++)
         for (int c = 0; c < 4; c++) box_px[k][c] = job->boxes[k].projected ? job->boxes[k].projected_box[c] : NAN;
     const SkyVisibilityScene scene = {
-        .gather = {job->scene.visibility, job->scene.air, &world->materials, world->catalog, job->scene.snapshot},
+        .gather = {job->scene.bare, job->scene.air, &world->materials, world->catalog, job->scene.snapshot},
         .landscape = world->landscape, .view = &request->view, .box_px = (const double (*)[4])box_px,
         .air_bands = bands, .skips_off = request->skips_off, .hidden_entity = request->hidden_entity};
     Status status = sky_visibility_create(&job->scene.sky, &scene, arena);
@@ -111,11 +111,11 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     job->tiles_y  = (request->view.height + job->side_px - 1) / job->side_px;
     job->channels = picture_channels(job->channel, request->bands, request->optical);
 
-    Status status = picture_create(job->picture, request, scene->snapshot->count, arena);
+    Status status = picture_create(job->picture, request, scene->snapshot->count, world->forest != NULL, arena);
     if (status == STATUS_OK && job->picture->optical[1]) optical_white(job->picture->white_w_m2_sr, scene->air);
     if (status == STATUS_OK)
         status = shade_scene_create(scene, world, scene->snapshot, scene->air, request,
-                                    render_air_bands(request->bands, request->optical), arena);
+                                    render_air_bands(request->bands, request->optical), pool, arena);
     if (status == STATUS_OK) status = create_job(job, pool_threads(pool), arena);
     if (status != STATUS_OK) return status;
     choose_rules(job);
@@ -186,6 +186,7 @@ static Status render_once(Picture *out, const World *world, const Snapshot *snap
     picture.times.prepare_ms = 1e3 * (wall_clock_s() - start_s);
     if (status == STATUS_OK) status = run_passes(&job, pool, arena);
     if (status == STATUS_OK) status = visibility_status(job.scene.visibility);
+    shade_scene_close(&job.scene);
     if (status != STATUS_OK) return status;
     if (!request->truth) picture_forget_truth(&picture);
     *out = picture;

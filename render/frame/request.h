@@ -23,6 +23,8 @@ typedef struct RenderRequest {
     unsigned skips_off;      /* 1 << Skip (render/scene/skip.h): skips to disable; must give the same bits */
     bool     budget;         /* estimate the error of the planes: Picture.budget */
     bool     hand_over_cells; /* keep the samples of small targets for a detector behind optics: Picture.small */
+    double   t_s;            /* exercise time: plants sway by it */
+    double   low_plants_m;   /* low plants stand within this of the eye; 0: none */
     double   profile_near_m, profile_bin_m; /* radar range profile */
     int      profile_bins;
 } RenderRequest;

@@ -5,8 +5,27 @@
 #include "render/light/optical.h"
 #include "render/light/thermal.h"
 
+/* The plants as this frame's eye sees them. */
+static Status open_plants(ShadeScene *scene, Visibility *visibility, const RenderRequest *request, Pool *pool, Arena *arena)
+{
+    const Weather *weather = &scene->air->light.weather;
+    const double   wind_mps[2] = {-weather->wind_mps * sin(weather->wind_from_rad),
+                                  -weather->wind_mps * cos(weather->wind_from_rad)};
+    if (!scene->world->forest) {
+        scene->bare = visibility;
+        return STATUS_OK;
+    }
+    const Status status = forest_frame_open(&scene->plants, scene->world->forest, request->view.p_enu,
+                                            request->view.focal_px, request->low_plants_m, request->t_s, wind_mps, pool,
+                                            arena);
+    if (status != STATUS_OK) return status;
+    visibility_plants(visibility, &scene->plants);
+    scene->bare = visibility_without_plants(visibility, arena);
+    return scene->bare ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
 Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *snapshot, const Air *air,
-                          const RenderRequest *request, unsigned channels, Arena *arena)
+                          const RenderRequest *request, unsigned channels, Pool *pool, Arena *arena)
 {
     Visibility *posed = NULL;
     *out = (ShadeScene){.world = world, .snapshot = snapshot, .air = air, .sky_samples = request->sky_samples,
@@ -22,8 +41,12 @@ Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *s
     if (status != STATUS_OK) return status;
     visibility_materials(posed, &world->materials);
     out->visibility = posed;
+    status = open_plants(out, posed, request, pool, arena);
+    if (status != STATUS_OK) return status;
     return surface_light_prepare(&out->surface_light, air, &world->materials, arena);
 }
+
+void shade_scene_close(ShadeScene *scene) { forest_frame_close(&scene->plants); }
 
 Status samples_create(Samples *out, int capacity, Arena *arena)
 {

@@ -19,6 +19,8 @@ typedef struct ShadeScene {
     const Snapshot   *snapshot;
     const Air        *air;
     const Visibility *visibility;
+    const Visibility *bare;          /* the same without plants */
+    ForestFrame       plants;        /* where visibility has some */
     EffectScene       effects;       /* smoke, dust, flames and bursts */
     SurfaceLight      surface_light;
     SkyVisibility    *sky;           /* NULL: sky and ground irradiance follow from the surface tilt alone */
@@ -27,10 +29,12 @@ typedef struct ShadeScene {
     int               hidden_entity; /* snapshot index of the entity whose parts these rays do not meet; -1: none */
 } ShadeScene;
 
-/* Poses the snapshot and prepares its light and smoke, seen from the eye of this view; sky: left NULL. channels:
- * 1 << AirBand, those that will be requested. All other arguments must outlive it; the arena owns its memory. */
+/* Poses the snapshot and prepares its plants, light and smoke, seen from the eye of this view; sky: left NULL. channels:
+ * 1 << AirBand, those that will be requested. pool may be NULL: one thread. All other arguments must outlive it; the
+ * arena owns its memory. shade_scene_close before the arena is reset, after a failure as well. */
 Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *snapshot, const Air *air,
-                          const RenderRequest *request, unsigned channels, Arena *arena);
+                          const RenderRequest *request, unsigned channels, Pool *pool, Arena *arena);
+void   shade_scene_close(ShadeScene *scene);
 
 /* A list of samples: inputs and results. Arrays of `capacity`, of the arena they came from. */
 typedef struct Samples {

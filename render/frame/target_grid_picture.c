@@ -91,6 +91,8 @@ static void put_truth_on(const Job *job, const TargetGrid *f, int k, size_t px)
     picture->range_m[px]  = t->range_m;
     picture->part[px]     = t->part;
     picture->material[px] = t->material;
+    picture->cover[px]    = SURFACE_NONE;
+    if (picture->instance) picture->instance[px] = 0;
     picture->temp_k[px]   = t->temp_k;
     for (int a = 0; a < 3; a++) picture->normal[a][px] = t->normal[a];
 }
@@ -143,6 +145,7 @@ static void gather_one(TargetPixels *target, const Job *job, const TargetGrid *f
     target->amodal          = f->amodal;
     target->occluded_ground = f->hidden_ground;
     target->occluded_entity = f->hidden_entity;
+    target->occluded_plants = f->hidden_plants;
     for (int b = 0; b < BAND_COUNT; b++) target->veiled[b] = f->visible > 0 ? f->veiled[b] / f->visible : 0;
     memcpy(target->amodal_box, f->amodal_box, sizeof f->amodal_box);
     for (int y = f->y0, k = 0; y < f->y1; y++)

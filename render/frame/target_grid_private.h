@@ -21,7 +21,7 @@ struct TargetGrid {
     double *area;                      /* px, a pixel */
     TargetGridTruth *truth;             /* [pixels]; NULL: not needed */
     /* over the target, px within the image */
-    double  visible, amodal, hidden_ground, hidden_entity;
+    double  visible, amodal, hidden_ground, hidden_entity, hidden_plants;
     double  veiled[BAND_COUNT];          /* area x the share that smoke absorbs */
     double  square[picture_plane_count]; /* area x radiance^2 */
     float  *cell[picture_plane_count]; /* radiance of each; NULL: neither needed for the budget nor for a detector */

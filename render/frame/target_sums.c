@@ -204,6 +204,8 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
             if (s->hits.entity[i]) {
                 count->hidden_entity += whole;
                 occlusion_add(&sums->hidden, rules->arena, index, (int)s->hits.entity[i] - 1, whole, 0);
+            } else if (s->hits.plant[i]) {
+                count->hidden_plants += whole;
             } else {
                 count->hidden_ground += whole;
             }
@@ -266,6 +268,7 @@ static void gather_target(TargetPixels *target, const SumRules *rules, const Tar
         sum.amodal += t->amodal;
         sum.hidden_ground += t->hidden_ground;
         sum.hidden_entity += t->hidden_entity;
+        sum.hidden_plants += t->hidden_plants;
         for (int k = 0; k < picture_plane_count; k++) sum.radiance[k] += t->radiance[k];
         for (int b = 0; b < BAND_COUNT; b++) sum.veiled[b] += t->veiled[b];
         merge_box(sum.box, t->box);
@@ -276,6 +279,7 @@ static void gather_target(TargetPixels *target, const SumRules *rules, const Tar
     target->amodal          = (double)sum.amodal * share;
     target->occluded_ground = (double)sum.hidden_ground * share;
     target->occluded_entity = (double)sum.hidden_entity * share;
+    target->occluded_plants = (double)sum.hidden_plants * share;
     target->occluder        = -1;
     for (int k = 0; k < picture_plane_count; k++)
         target->radiance[k] = (double)sum.radiance[k] * rules->radiance_quantum;

@@ -11,7 +11,7 @@
 
 /* Areas in steps of 1 / SumRules.steps_per_px of a pixel, powers in steps of the rules' quanta. */
 typedef struct TargetCount {
-    int64_t visible, amodal, hidden_ground, hidden_entity;
+    int64_t visible, amodal, hidden_ground, hidden_entity, hidden_plants;
     int64_t radiance[picture_plane_count];
     int64_t veiled[BAND_COUNT]; /* area times the share of its light that smoke absorbs */
     int     box[4], amodal_box[4];

@@ -30,8 +30,18 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
     return STATUS_OK;
 }
 
+Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool)
+{
+    static const uint64_t plants_seed = 1995; /* the prototypes are the same in every world */
+    Status status = plants_create(&world->plants, plants_seed, pool);
+    if (status == STATUS_OK) status = forest_create(&world->forest, woods, world->plants, config, isa);
+    return status;
+}
+
 void world_close(World *world)
 {
+    forest_destroy(world->forest);
+    plants_destroy(world->plants);
     atmosphere_close(world->atmosphere);
     planck_table_destroy(world->planck_lwir);
     planck_table_destroy(world->planck_mwir);

@@ -366,7 +366,7 @@ bool sky_visibility_open(SkyOpen *out, const SkyVisibility *v, SkyWorker *w, con
     for (int i = 0; i < hits->count; i++) {
         if (!(hits->range_m[i] < INFINITY)) continue;
         if (hits->entity[i]) sky_entities_open(out, i, v, hits);
-        if (hits->entity[i] || !v->scene.landscape) continue;
+        if (hits->kind[i] != hit_ground || !v->scene.landscape) continue;
         find_ground(&w->hit[i], v, w, hits, i, near_count);
         if (!(w->hit[i].weight > 0)) continue;
         sky_box_grow(near_box, hits, i);

@@ -11,7 +11,7 @@ static const struct {
     [SKIP_GROUND_BELOW]  = {"ground_below", "ground below a block of rays that all met parts: rays"},
     [SKIP_GROUND_WALK]   = {"ground_walk", "ground walked together with neighbours: rays"},
     [SKIP_SUN_SPHERE]    = {"sun_sphere", "entities that sun rays miss: ray-entity pairs"},
-    [SKIP_SUN_STOPPED]   = {"sun_stopped", "ground behind the part that stops the sun: rays"},
+    [SKIP_SUN_STOPPED]   = {"sun_stopped", "ground and plants behind what stops the sun: rays"},
     [SKIP_SUN_CLEAR]     = {"sun_clear", "ground too low to stop the sun: rays"},
     [SKIP_AMODAL]        = {"amodal", "entities with nothing behind what was met: ray-entity pairs"},
     [SKIP_CELL]          = {"cell", "samples beside a small target: rays"},

@@ -16,7 +16,7 @@ typedef enum Skip {
     SKIP_GROUND_BELOW,  /* ground that is below all of a block's rays up to the parts they met */
     SKIP_GROUND_WALK,   /* steps of the ground's pyramid that neighbouring rays share */
     SKIP_SUN_SPHERE,    /* an entity, for sun rays that miss its sphere or are stopped already */
-    SKIP_SUN_STOPPED,   /* ground, for sun rays that a part stops */
+    SKIP_SUN_STOPPED,   /* ground and plants, for sun rays that are stopped already */
     SKIP_SUN_CLEAR,     /* ground, for sun rays from where nothing towards the sun is high enough */
     SKIP_AMODAL,        /* the amodal test of an entity, for rays on which none of it is behind the hit */
     SKIP_CELL,          /* rays over a small target's box that miss it */

@@ -42,7 +42,7 @@ static int list_asked(int list[hits_capacity], const int order[hits_capacity], c
 
 /* The shading normal follows the curved surface that the facets approximate; where it faces away from the ray it is
  * turned back to edge-on. */
-static void store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3])
+void visibility_store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3])
 {
     double       n[3] = {n_enu[0], n_enu[1], n_enu[2]};
     const double away = v3_dot(n, d_enu);
@@ -70,6 +70,10 @@ static void clear_hit(Hits *hits, int i)
     hits->model[i]   = 0;
     hits->inside[i]  = 0;
     hits->surface[i] = 0;
+    hits->plant[i]   = 0;
+    hits->albedo[i]  = 1;
+    hits->radius_m[i] = 0;
+    hits->sky[i]     = 1;
 }
 
 static void complete_ground_hit(Hits *hits, int i, const Visibility *v, const GroundHit *hit, const double d[3])
@@ -81,7 +85,7 @@ static void complete_ground_hit(Hits *hits, int i, const Visibility *v, const Gr
         v3_scale(n_geo, -1, n_geo);
         v3_scale(n_enu, -1, n_enu);
     }
-    store_normals(hits, i, n_geo, n_enu, d);
+    visibility_store_normals(hits, i, n_geo, n_enu, d);
 }
 
 static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit,
@@ -92,7 +96,7 @@ static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity
     double             n_geo[3], n_enu[3];
     if (facet->node != &posed->node[hit->node] || facet->triangle != hit->triangle) parts_facet(facet, model, posed, hit);
     parts_facet_normals(n_geo, n_enu, model, facet, o, d, hits->range_m[i]);
-    store_normals(hits, i, n_geo, n_enu, d);
+    visibility_store_normals(hits, i, n_geo, n_enu, d);
     hits->entity[i] = (uint32_t)entity + 1;
     hits->model[i]  = (uint16_t)posed->model;
     hits->inside[i] = v3_dot(facet->geo_enu, d) > 0;
@@ -108,7 +112,7 @@ static void classify_ground(Hits *hits, const Landscape *landscape, const Materi
 {
     double x_m[hits_capacity], y_m[hits_capacity];
     for (int i = 0; i < hits->count; i++) {
-        const bool ground = hits->range_m[i] < INFINITY && hits->entity[i] == 0;
+        const bool ground = hits->range_m[i] < INFINITY && hits->entity[i] == 0 && hits->plant[i] == 0;
         if (ground) hits->kind[i] = hit_ground;
         x_m[i] = ground ? hits->p_enu[0][i] : NAN;
         y_m[i] = ground ? hits->p_enu[1][i] : NAN;
@@ -249,6 +253,7 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
         if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], &facet, o_enu, d_enu);
         else complete_ground_hit(hits, i, v, &ground_hit[i], d_enu);
     }
+    if (ground && v->plants) plants_first_hits(hits, v, rays, hidden, counters);
     if (v->landscape) classify_ground(hits, v->landscape, v->materials);
 }
 
@@ -311,10 +316,39 @@ static void leave_out_clear(uint8_t *ask, const Visibility *v, int count, const 
     }
 }
 
+/* Where a ray from a hit towards d_enu starts; false: the surface faces away. */
+static bool leave_hit(double start[3], const Visibility *v, const Hits *hits, int i, const double d_enu[3])
+{
+    static const double offset_m = 1e-3; /* no self-hits at any range tried, and hidden in any pixel */
+    const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
+    const double cosine = v3_dot(n, d_enu);
+    const bool   through = v->materials && v->materials->material[hits->material[i]].tau[optical_channel_nir] > 0;
+    if (!(cosine > 0) && !(through && cosine < 0)) return false;
+    for (int c = 0; c < 3; c++) start[c] = hits->p_enu[c][i] + (cosine > 0 ? offset_m : -offset_m) * n[c];
+    return true;
+}
+
+/* Plants, for the rays that neither parts nor ground stop. */
+static void shadows_of_plants(uint8_t *shadow, const Visibility *v, const Hits *hits, const int *order,
+                              const double d_enu[3], VisibilityCounters *counters)
+{
+    double start[3][hits_capacity], towards[3][hits_capacity];
+    int    hit_of[hits_capacity], count = 0;
+    for (int k = 0; k < hits->count; k++) {
+        const int i = order[k];
+        double    p_enu[3];
+        if (!(hits->range_m[i] < INFINITY) || (shadow[i] && skips(v->skips_off, SKIP_SUN_STOPPED))) continue;
+        if (!leave_hit(p_enu, v, hits, i, d_enu)) continue;
+        for (int c = 0; c < 3; c++) start[c][count] = p_enu[c], towards[c][count] = d_enu[c];
+        hit_of[count++] = i;
+    }
+    const double *const o[3] = {start[0], start[1], start[2]}, *const d[3] = {towards[0], towards[1], towards[2]};
+    plants_shadow(shadow, v, hits, hit_of, count, o, d, counters);
+}
+
 void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
                        VisibilityCounters *counters)
 {
-    static const double offset_m = 1e-3; /* no self-hits at any range tried, and hidden in any pixel */
     double  start[3][hits_capacity], towards[3][hits_capacity], far_m[hits_capacity], range_m[hits_capacity];
     int     hit_of[hits_capacity], order[hits_capacity], in_turn[hits_capacity], list[hits_capacity], count = 0;
     uint8_t dark[hits_capacity], ask[hits_capacity];
@@ -325,15 +359,12 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
         const int i = order[k];
         shadow[i] = 0;
         if (!(hits->range_m[i] < INFINITY)) continue;
-        const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
-        if (!(v3_dot(n, d_enu) > 0)) {
+        double p_enu[3];
+        if (!leave_hit(p_enu, v, hits, i, d_enu)) {
             shadow[i] = 1;
             continue;
         }
-        for (int c = 0; c < 3; c++) {
-            start[c][count]   = hits->p_enu[c][i] + offset_m * n[c];
-            towards[c][count] = d_enu[c];
-        }
+        for (int c = 0; c < 3; c++) start[c][count] = p_enu[c], towards[c][count] = d_enu[c];
         far_m[count]    = INFINITY;
         dark[count]     = 0;
         in_turn[count]  = count;
@@ -396,6 +427,7 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
     ground_hits(range_m, NULL, v, left, o, d, far_m, counters);
     for (int i = 0; i < left; i++) shadow[hit_of[i]] |= range_m[i] < INFINITY;
     counters->rays_sun_ground += (uint64_t)lit;
+    if (v->plants) shadows_of_plants(shadow, v, hits, order, d_enu, counters);
 }
 
 /* ---- one entity alone --------------------------------------------------------------------- */

@@ -10,6 +10,7 @@
 #define RENDER_VISIBILITY_VISIBILITY_H
 
 #include "entities/table/snapshot.h"
+#include "render/forest/forest.h"
 #include "render/materials/materials.h"
 #include "render/parts/tracer.h"
 #include "render/scene/hits.h"
@@ -26,6 +27,7 @@ typedef struct Visibility Visibility;
 
 typedef struct VisibilityCounters {
     uint64_t rays_ground, rays_parts, rays_sun_ground, rays_sun_parts; /* tests of each tracer */
+    uint64_t rays_plants, rays_sun_plants; /* that entered some plant's box */
     uint64_t skipped_parts, skipped_sun_parts;                        /* ray x entity pairs proven empty */
     uint64_t skipped[SKIP_COUNT];                                     /* in the units of skip_what */
 } VisibilityCounters;
@@ -43,6 +45,11 @@ const struct PosedEntity *visibility_posed(const Visibility *v, int index);
 
 /* The table that Hits.material indexes: set before anything is traced. Without: all 0. It must outlive the frame. */
 void visibility_materials(Visibility *v, const Materials *materials);
+
+/* The plants that rays meet as well: set before anything is traced, after the materials. It must outlive the frame. */
+void visibility_plants(Visibility *v, const ForestFrame *plants);
+/* The same frame without them, in the arena; v itself where there are none. NULL: no memory. */
+const Visibility *visibility_without_plants(const Visibility *v, Arena *arena);
 
 /* A hit's place on its part, in the axes of the part's node: moves with the part. Of hits of kind hit_part. */
 void visibility_place_on_part(double p_node[3], const Visibility *v, const Hits *hits, int i);
@@ -64,17 +71,18 @@ int visibility_block_entities(int *list, const Visibility *v, const View *view, 
                               double column1_px, double row1_px, int hidden,
                               VisibilityCounters *counters);
 
-/* First hits of a block against the ground and the listed entities. A list of count -1 means every entity
+/* First hits of a block against the ground, the plants and the listed entities. A list of count -1 means every entity
  * but `hidden`, culled per ray. Thread-safe; counters are the caller's own. */
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                           int hidden, VisibilityCounters *counters);
 
-/* The same as if there were no ground. */
+/* The same as if there were neither ground nor plants. */
 void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                            VisibilityCounters *counters);
 
-/* 1 where any entity (also the hidden host) or the ground is between the hit and the direction d_enu, else 0; 0 for
- * sky hits. Origins are offset along the geometric normal by 1 mm; surfaces that face away give 1. */
+/* 1 where any entity (also the hidden host), the ground or a plant is between the hit and the direction d_enu, else 0; 0
+ * for sky hits. Origins are offset along the geometric normal by 1 mm; surfaces that face away give 1, but those that
+ * let light through (Material.tau) are lit from either side: their origins are on the side that d_enu leads to. */
 void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
                        VisibilityCounters *counters);
 

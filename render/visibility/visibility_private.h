@@ -30,6 +30,7 @@ struct Visibility {
     const LocalFrame *frame;
     const Snapshot  *snapshot;
     Ground           ground;
+    const ForestFrame *plants;   /* NULL: none */
     unsigned         skips_off;
     int              count, drawable;
     bool            *loose;      /* [count]: may be drawn, as far as is known without its nodes */
@@ -42,6 +43,15 @@ struct Visibility {
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. */
 void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
                       const double *limit_m, const double centre[3], double radius_m);
+
+/* visibility_plants.c. Replaces hits by those of plants that are nearer; count, range_m and kind are set. hidden: the
+ * entity that the rays do not see. */
+void plants_first_hits(Hits *hits, const Visibility *v, const Rays *rays, int hidden, VisibilityCounters *counters);
+/* shadow becomes 1 where a plant is met. hit_of[count]: indices of the rays among the hits. */
+void plants_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const int *hit_of, int count,
+                   const double *const o[3], const double *const d[3], VisibilityCounters *counters);
+/* visibility.c. Unit normals of a hit, the shading normal turned to the ray's side. */
+void visibility_store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3]);
 
 /* visibility_crowd.c. First hits by the tree; limit_m, entity (index + 1) and hit are as if all of the list had been
  * tested one after the other. list: ascending; list_count -1: all but hidden. */
