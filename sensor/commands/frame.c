@@ -231,12 +231,12 @@ int frame_command(int argc, char **argv)
     if (status == STATUS_OK) status = text_read_file(&bytes, &count, "frame", o.path, most_octets);
     if (status == STATUS_OK) status = frame_file_parse(file, (const uint8_t *)bytes, count, o.path, arena);
     if (status == STATUS_OK) describe(file);
-    if (status == STATUS_OK) status = frame_scene_open(scene, file, o.forced, "avx2");
     if (status == STATUS_OK) status = pool_create(&pool, o.threads);
+    if (status == STATUS_OK) status = frame_scene_open(scene, file, o.forced, "avx2", pool);
     if (status == STATUS_OK) status = show(&differ, &o, file, scene, pool, arena);
     if (status == STATUS_NO_MEMORY) log_error("frame: out of memory");
-    pool_destroy(pool);
     if (scene) frame_scene_close(scene);
+    pool_destroy(pool);
     free(bytes);
     arena_destroy(arena);
     return status != STATUS_OK || differ > 0 ? 1 : 0;

@@ -13,6 +13,7 @@ static double value_at(const Plane *plane, size_t i)
     case PLANE_C64: return hypot((double)part[2 * i], (double)part[2 * i + 1]);
     case PLANE_F32: return (double)((const float *)plane->values)[i];
     case PLANE_U32: return ((const uint32_t *)plane->values)[i];
+    case PLANE_U8: return ((const uint8_t *)plane->values)[i];
     case PLANE_F64: break;
     }
     return ((const double *)plane->values)[i];

@@ -42,6 +42,8 @@ typedef struct FrameFile {
     double         rate_px_s[2];     /* image motion of the scene, for detectors */
     bool           at_limit, all_on_ground;
     LandscapeParts ground;
+    bool           planted;          /* the ground has plants, grown again from: */
+    WoodsConfig    woods;            /* its store is the ground's */
     char           frame_sha256[sha256_text_size];
     int            plane_count;
     FramePlane    *plane;

@@ -389,6 +389,29 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
     if (fields_good(f)) photo_fields(f, &g->photo, kept);
 }
 
+/* ---- plants -------------------------------------------------------------------------------------- */
+
+void frame_fields_woods(Fields *f, FrameFile *file)
+{
+    enum { path_octets = 40, most_paths = 1 << 22 };
+    WoodsConfig *w = &file->woods;
+    WoodsPath   *path = (WoodsPath *)w->path; /* written: not changed */
+    file->planted = true;
+    field_real(f, "time of plants", &file->request.t_s, -long_s, long_s);
+    field_real(f, "reach of low plants", &file->request.low_plants_m, 0, 1000);
+    field_u64(f, &w->seed);
+    field_reals(f, "centre of plants", w->centre_m, 2, local_m);
+    field_real(f, "width of plants", &w->half_width_m, 50, 50000);
+    field_int(f, "trees", &w->most_trees, 0, woods_most_trees);
+    if (!field_array(f, "paths", &w->path_count, (void **)&path, sizeof *path, path_octets, most_paths)) return;
+    for (int i = 0; i < w->path_count && fields_good(f); i++) {
+        field_reals(f, "path", path[i].a_m, 2, local_m);
+        field_reals(f, "path", path[i].b_m, 2, local_m);
+        field_real(f, "path", &path[i].half_m, 0, 1e4);
+    }
+    w->path = path;
+}
+
 /* ---- results ------------------------------------------------------------------------------ */
 
 void frame_fields_planes(Fields *f, FrameFile *file)

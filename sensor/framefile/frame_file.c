@@ -10,10 +10,13 @@ typedef void ChunkFields(Fields *f, FrameFile *file);
 static const struct Chunk {
     const char  *name;
     ChunkFields *fields; /* NULL: the ground, which may be a cut-out */
+    bool         of_woods; /* there only where there are plants */
 } chunks[] = {
-    {"about", frame_fields_about},       {"settings", frame_fields_settings}, {"tables", frame_fields_tables},
-    {"models", frame_fields_models},     {"snapshot", frame_fields_snapshot}, {"request", frame_fields_request},
-    {"planes", frame_fields_planes},     {"ground", NULL},
+    {"about", frame_fields_about, false},     {"settings", frame_fields_settings, false},
+    {"tables", frame_fields_tables, false},   {"models", frame_fields_models, false},
+    {"snapshot", frame_fields_snapshot, false}, {"request", frame_fields_request, false},
+    {"planes", frame_fields_planes, false},   {"ground", NULL, false},
+    {"woods", frame_fields_woods, true},
 };
 enum { chunk_kinds = sizeof chunks / sizeof *chunks };
 
@@ -24,6 +27,7 @@ Status frame_file_pack(ByteSink *out, const FrameFile *file, const GroundCutout 
     for (int c = 0; c < chunk_kinds; c++) {
         ByteSink content = {0};
         Fields   f       = {.to = &content, .version = chunks_version};
+        if (chunks[c].of_woods && !file->planted) continue;
         if (chunks[c].fields) chunks[c].fields(&f, &fields);
         else frame_fields_ground(&f, &fields, kept);
         chunks_put(out, chunks[c].name, &content);
@@ -90,6 +94,7 @@ Status frame_file_parse(FrameFile *out, const uint8_t *bytes, size_t count, cons
     *out          = (FrameFile){0};
     Status status = chunks_open(&source, bytes, count, arena);
     if (status == STATUS_OK) status = parse(out, &source, &met, &field);
+    for (int c = 0; c < chunk_kinds; c++) met |= (unsigned)chunks[c].of_woods << c;
     if (status == STATUS_OK && met != (1u << chunk_kinds) - 1) {
         int c = 0;
         while (met >> c & 1) c++;

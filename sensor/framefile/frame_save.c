@@ -82,6 +82,8 @@ static Status gather(FrameFile *file, FrameMade *made, char **settings, const Fr
                         .at_limit = f->record.gimbal_at_limit, .all_on_ground = save->all_on_ground};
     memcpy(file->r_ecef_from_body, f->record.r_ecef_from_body, sizeof file->r_ecef_from_body);
     landscape_parts(&file->ground, f->world->landscape);
+    file->planted = save->woods != NULL;
+    if (file->planted) file->woods = *save->woods;
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
     Status status = frame_tables(&file->tables, save->config, catalog);
     if (status == STATUS_OK) status = write_settings(settings, save->config);
@@ -137,18 +139,21 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Ar
     FrameAgain  *again = arena_alloc(arena, 1, sizeof *again);
     Landscape    landscape = {0};
     World        world = {0};
+    Woods        woods = {0};
     *same = false;
     if (!again) return STATUS_NO_MEMORY;
     Status status = frame_file_parse(&file, bytes->bytes, bytes->count, "the file just made", arena);
     if (status == STATUS_OK) status = frame_ground_open(&landscape, &file.ground);
     if (status == STATUS_OK)
         status = frame_world(&world, save->config, f->world->catalog, &landscape, &file.ground.frame, "avx2");
+    if (status == STATUS_OK) status = frame_ground_plant(&world, &woods, &file, save->config, "avx2", save->pool);
     if (status == STATUS_OK) {
         file.snapshot.effect_table = f->seen.snapshot.effect_table;
         status = frame_again(again, &file, &file.snapshot, &world, save->config, false, save->pool, arena);
     }
     if (status == STATUS_OK) *same = frame_differences(&file, &again->made, false) == 0;
     world_close(&world);
+    woods_destroy(&woods);
     landscape_destroy(&landscape);
     return status;
 }
@@ -164,7 +169,8 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *fil
     Arena              *arena = arena_create();
     bool                same = false;
     Status              status = arena ? STATUS_OK : STATUS_NO_MEMORY;
-    const bool cut = !file->ground.invented && !(file->ground.store && *file->ground.store);
+    /* where plants stand follows from all of the ground */
+    const bool cut = !file->ground.invented && !(file->ground.store && *file->ground.store) && !file->planted;
     if (status == STATUS_OK && cut) status = gather_places(&kept, save->frame, gathered);
     for (size_t r = 0; r < sizeof reaches_m / sizeof *reaches_m && status == STATUS_OK && !same; r++) {
         if (!cut && isfinite(reaches_m[r][0])) continue;

@@ -13,6 +13,7 @@ typedef struct FrameSave {
     double          unix_s; /* Unix time of exercise time 0 */
     bool            all_on_ground;
     Pool           *pool;
+    const WoodsConfig *woods; /* of the world's plants; NULL: none */
 } FrameSave;
 
 /* Writes it only after rendering it again from its own octets to the same bits; with terrain from files it includes

@@ -114,7 +114,7 @@ static Status take_models(FrameScene *s, const FrameFile *file, bool forced)
 
 /* ---- all of it ---------------------------------------------------------------------------------- */
 
-Status frame_scene_open(FrameScene *s, const FrameFile *file, bool forced, const char *isa)
+Status frame_scene_open(FrameScene *s, const FrameFile *file, bool forced, const char *isa, Pool *pool)
 {
     char       catalog[path_size], effects[path_size];
     TablesUsed here;
@@ -133,6 +133,7 @@ Status frame_scene_open(FrameScene *s, const FrameFile *file, bool forced, const
     if (status == STATUS_OK) status = frame_ground_open(&s->landscape, &file->ground);
     if (status == STATUS_OK)
         status = frame_world(&s->world, &s->config, s->catalog, &s->landscape, &file->ground.frame, isa);
+    if (status == STATUS_OK) status = frame_ground_plant(&s->world, &s->woods, file, &s->config, isa, pool);
     s->snapshot.effect_table = &s->effects;
     return status;
 }
@@ -140,6 +141,7 @@ Status frame_scene_open(FrameScene *s, const FrameFile *file, bool forced, const
 void frame_scene_close(FrameScene *s)
 {
     world_close(&s->world);
+    woods_destroy(&s->woods);
     landscape_destroy(&s->landscape);
     catalog_close(s->catalog);
     *s = (FrameScene){0};

@@ -11,6 +11,7 @@ typedef struct FrameScene {
     Sensors     sensors;
     Catalog    *catalog;
     Landscape   landscape;
+    Woods       woods;         /* of the world's plants, if any */
     World       world;
     EffectTable effects;
     Snapshot    snapshot;      /* the file's, with the models of this catalog */
@@ -19,7 +20,7 @@ typedef struct FrameScene {
 
 /* Tables and models that differ from those of the frame are logged by name: STATUS_BAD_VALUE unless forced.
  * frame_scene_close must follow, also on failure. isa: as world_open. */
-Status frame_scene_open(FrameScene *out, const FrameFile *file, bool forced, const char *isa);
+Status frame_scene_open(FrameScene *out, const FrameFile *file, bool forced, const char *isa, Pool *pool);
 void   frame_scene_close(FrameScene *scene);
 
 #endif

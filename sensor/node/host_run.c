@@ -98,7 +98,8 @@ static Status summarise_stages(double out[session_stages][3], const SessionResul
 }
 
 static Status write_run(const Run *run, const char *out, const char *host, const Choices *choices,
-                        const SessionResult *result, const DisCounters *heard, const char *state)
+                        const SessionResult *result, const DisCounters *heard, const WoodsChoice *woods,
+                        const char *state)
 {
     char        path[path_size + 16], settings[config_text_size];
     const char *choice[choices_capacity], *hosts[session_hosts_kept];
@@ -125,6 +126,8 @@ static Status write_run(const Run *run, const char *out, const char *host, const
                    session_stage_name[i], stage_ms[i][0], stage_ms[i][1], stage_ms[i][2]);
     snprintf(path, sizeof path, "%s/run.json", out);
     const DisLogCounters *link = run->link;
+    const WoodsRecord     plants = {.woods = &woods->woods, .paths = woods->config.path_count,
+                                    .entities = woods->entities, .in_trunks = woods->in_trunks};
     const RunRecord       record = {
               .status = state, .planes = run->options.config.publish.files ? run->options.config.publish.planes : NULL,
               .config_sha256 = run->config_sha256, .log_name = run->log_name, .log_sha256 = run->log_sha256,
@@ -145,7 +148,8 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .at_limit = result->at_limit,
               .effects = result->effects, .render = result->counters, .stage_count = session_stages,
               .stage = session_stage_name,
-              .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL};
+              .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL,
+              .woods = woods->on ? &plants : NULL};
     const Status status = record_write_run(path, &record);
     free(hash);
     return status;
@@ -222,11 +226,12 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
 
 /* The recorded truth of the frames rendered, also when it stopped early. */
 static Status conclude(const Run *run, const char *out, const char *host, const Choices *choices,
-                       const SessionResult *result, const DisCounters *heard, const char *state)
+                       const SessionResult *result, const DisCounters *heard, const WoodsChoice *woods,
+                       const char *state)
 {
     const Config *config = &run->options.config;
     const char   *name   = options_command(&run->options);
-    const Status  status = write_run(run, out, host, choices, result, heard, state);
+    const Status  status = write_run(run, out, host, choices, result, heard, woods, state);
     if (run->stopped && !run->live) log_warn("%s: stopped before its last frame; run.json says so", name);
     if (config->publish.files) log_print("%d frames in %s/frames\n", result->frames, out);
     else if (!config->publish.truth) log_print("%d frames; figures in %s/run.json\n", result->frames, out);
@@ -281,7 +286,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .contact = contact, .config_sha256 = run->config_sha256, .publish = run->publish,
                                   .user = run->user, .dis = run->send ? &dis : NULL, .wall_s = run->wall_s,
                                   .clock = run->clock, .save_count = o->save_count, .save = o->save,
-                                  .several = o->host_count > 1};
+                                  .several = o->host_count > 1, .woods = woods.on ? &woods.config : NULL};
     const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
     status = session_open(&session, &shared, &plan, player, out);
     if (status != STATUS_OK) goto done;
@@ -296,7 +301,7 @@ Status run_host(Run *run, const DisEntityId *host)
     if (result.frames > 0 || run->live || run->stopped) {
         const char  *state   = status != STATUS_OK ? "failed" : run->stopped ? "stopped" : "complete";
         const Status written = conclude(run, out, host_text, &choices, &result,
-                                        o->config.causal ? player_counters(player) : &run->survey.counters, state);
+                                        o->config.causal ? player_counters(player) : &run->survey.counters, &woods, state);
         if (status == STATUS_OK) status = written;
     }
 

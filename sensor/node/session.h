@@ -34,6 +34,7 @@ typedef struct SessionShared {
     void          *clock;     /* of wall_s */
     int            save_count; /* frames that are also written as frame files, ascending */
     const int     *save;       /* [save_count] */
+    const WoodsConfig *woods;  /* of the world's plants; NULL: none */
     bool           several;    /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;
 

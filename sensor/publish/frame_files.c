@@ -50,7 +50,8 @@ static int group_planes(FrameArray out[frame_max_planes], const FrameFiles *fram
 {
     static const struct { const char *name; PlaneChoice choice; } truth[] = {
         {"range_m", PLANE_RANGE}, {"entity", PLANE_ENTITY}, {"part", PLANE_PART}, {"material", PLANE_MATERIAL},
-        {"temp_k", PLANE_TEMPERATURE}, {"nx", PLANE_NORMAL}, {"ny", PLANE_NORMAL}, {"nz", PLANE_NORMAL}};
+        {"temp_k", PLANE_TEMPERATURE}, {"nx", PLANE_NORMAL}, {"ny", PLANE_NORMAL}, {"nz", PLANE_NORMAL},
+        {"instance", PLANE_INSTANCE}, {"cover", PLANE_COVER}};
     FrameArray all[frame_max_planes];
     const int  count = frame_planes(all, frame->picture, frame->request);
     int        n     = 0;
@@ -90,6 +91,15 @@ static char *material_names(const Materials *materials)
     char        *text = calloc(size, 1);
     for (int i = 1, n = 0; text && i < materials->count; i++)
         n += snprintf(text + n, size - (size_t)n, "%s%s", i > 1 ? "," : "", materials->material[i].name);
+    return text;
+}
+
+/* Value k of the cover plane is the k-th. */
+static char *surface_names(void)
+{
+    char *text = calloc(SURFACE_COUNT, 64);
+    for (int s = 1, n = 0; text && s < SURFACE_COUNT; s++)
+        n += snprintf(text + n, 64, "%s%.60s", s > 1 ? "," : "", surface_name((SurfaceClass)s));
     return text;
 }
 
@@ -138,7 +148,7 @@ static Status write_exr(const FrameFiles *frame, int band)
     FrameArray     from[frame_max_planes];
     Plane          plane[frame_max_planes];
     ImageAttribute attribute[16];
-    char          *ids = NULL, *names = NULL, *parts = NULL;
+    char          *ids = NULL, *names = NULL, *parts = NULL, *surfaces = NULL;
     int            n      = 0;
     const int      planes = group_planes(from, frame, group, planes_of(frame->config));
     if (planes == 0 || !frame_path(path, frame, "frames", group, "exr")) return STATUS_BAD_VALUE;
@@ -161,6 +171,8 @@ static Status write_exr(const FrameFiles *frame, int band)
         parts          = part_names(frame);
         attribute[n++] = image_string("material_names", names ? names : "");
         attribute[n++] = image_string("part_names", parts ? parts : "");
+        surfaces       = frame->picture->instance ? surface_names() : NULL;
+        if (surfaces) attribute[n++] = image_string("surface_names", surfaces);
     }
     date_time(date, frame->unix_s);
     const Status status =
@@ -168,6 +180,7 @@ static Status write_exr(const FrameFiles *frame, int band)
     free(ids);
     free(names);
     free(parts);
+    free(surfaces);
     return status;
 }
 

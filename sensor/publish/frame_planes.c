@@ -46,6 +46,10 @@ int frame_planes(FrameArray plane[frame_max_planes], const Picture *p, const Ren
     add(&list, truth, PLANE_TRUTH, "entity", "", PLANE_U32, p->entity);
     add(&list, truth, PLANE_TRUTH, "part", "", PLANE_U32, p->part);
     add(&list, truth, PLANE_TRUTH, "material", "", PLANE_U32, p->material);
+    if (p->instance) { /* a world without plants has neither */
+        add(&list, truth, PLANE_TRUTH, "instance", "", PLANE_U32, p->instance);
+        add(&list, truth, PLANE_TRUTH, "cover", "", PLANE_U8, p->cover);
+    }
     add(&list, truth, PLANE_TRUTH, "temp_k", "K", PLANE_F32, p->temp_k);
     for (int k = 0; k < 3; k++) add(&list, truth, PLANE_TRUTH, normal[k], "", PLANE_F32, p->normal[k]);
     if (p->profile)

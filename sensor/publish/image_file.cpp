@@ -127,8 +127,8 @@ static const char *planes_size_error(const Plane *plane, int plane_count)
     if (plane_count < 1 || plane_count > image_max_planes) return "no planes, or too many";
     for (int i = 0; i < plane_count; i++) {
         if (!plane[i].name || !plane[i].name[0]) return "a plane without a name";
-        if (plane[i].type != PLANE_F32 && plane[i].type != PLANE_U32)
-            return "a plane that is neither float32 nor uint32";
+        if (plane[i].type != PLANE_F32 && plane[i].type != PLANE_U32 && plane[i].type != PLANE_U8)
+            return "a plane that is neither float32, uint32 nor uint8";
         if (plane[i].width != plane[0].width || plane[i].height != plane[0].height) return "planes of different size";
         for (int j = 0; j < i; j++)
             if (strcmp(plane[i].name, plane[j].name) == 0) return "two planes of one name";
@@ -155,13 +155,18 @@ static bool write_planes(ImageOutput *out, const Plane *plane, int plane_count)
 {
     const int    width = plane[0].width, height = plane[0].height, band = 16; /* a block of zip */
     const size_t step = (size_t)plane_count;
-    if (plane_count == 1) return out->write_scanlines(0, height, 0, TypeDesc::UNKNOWN, plane[0].values);
+    if (plane_count == 1 && plane->type != PLANE_U8) return out->write_scanlines(0, height, 0, TypeDesc::UNKNOWN, plane[0].values);
     std::vector<uint32_t> pixels(step * (size_t)width * band);
 
     for (int y0 = 0; y0 < height; y0 += band) {
         const int    y1 = std::min(y0 + band, height);
         const size_t first = (size_t)y0 * (size_t)width, count = (size_t)(y1 - y0) * (size_t)width;
         for (size_t c = 0; c < step; c++) {
+            if (plane[c].type == PLANE_U8) {
+                const uint8_t *narrow = (const uint8_t *)plane[c].values + first;
+                for (size_t i = 0; i < count; i++) pixels[i * step + c] = narrow[i];
+                continue;
+            }
             const unsigned char *from = (const unsigned char *)plane[c].values + 4 * first;
             for (size_t i = 0; i < count; i++) memcpy(&pixels[i * step + c], from + 4 * i, 4);
         }
@@ -181,7 +186,7 @@ try {
     spec.channelnames.clear();
     for (int i = 0; i < plane_count; i++) {
         spec.channelnames.push_back(plane[i].name);
-        spec.channelformats.push_back(plane[i].type == PLANE_U32 ? TypeDesc::UINT32 : TypeDesc::FLOAT);
+        spec.channelformats.push_back(plane[i].type == PLANE_F32 ? TypeDesc::FLOAT : TypeDesc::UINT32);
     }
     spec.attribute("compression", compression);
     spec.attribute("DateTime", date_time ? date_time : "1970:01:01 00:00:00");

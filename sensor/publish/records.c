@@ -112,6 +112,11 @@ static json_t *bands_json(const TargetRecord *t)
     return bands;
 }
 
+static const char *occluder_name(TargetOccluder occluder)
+{
+    return occluder == OCCLUDER_GROUND ? "ground" : occluder == OCCLUDER_TREES ? "trees" : "entity";
+}
+
 static json_t *target_json(const TargetRecord *t)
 {
     json_t *target = json_object();
@@ -134,6 +139,7 @@ static json_t *target_json(const TargetRecord *t)
     json_object_set_new(target, "boresight_error_deg", pair_deg(t->boresight_error_rad));
     set_number(target, "pixels", t->pixels);
     set_number(target, "visible_fraction", t->visible_fraction);
+    set_number(target, "foliage_fraction", t->foliage_fraction);
     if (!box_is_empty(t->box)) {
         json_t *box = json_array();
         for (int k = 0; k < 4; k++) json_array_append_new(box, json_integer(t->box[k]));
@@ -143,7 +149,7 @@ static json_t *target_json(const TargetRecord *t)
     if (!dis_entity_id_is_none(t->occluder_id))
         set_id(target, "occluded_by", t->occluder_id);
     else if (t->occluder != OCCLUDER_NONE)
-        json_object_set_new(target, "occluded_by", json_string(t->occluder == OCCLUDER_GROUND ? "ground" : "entity"));
+        json_object_set_new(target, "occluded_by", json_string(occluder_name(t->occluder)));
     set_number(target, "age_s", t->age_s);
     set_number(target, "position_error_m", t->position_error_m);
     json_object_set_new(target, "bands", bands_json(t));
@@ -384,6 +390,29 @@ static json_t *latency_json(const LatencySummary *l)
     return latency;
 }
 
+static json_t *woods_json(const WoodsRecord *r)
+{
+    const Woods *w = r->woods;
+    json_t      *woods = json_object(), *kinds = json_object(), *from = json_object();
+    set_count(woods, "plants", (uint64_t)w->count);
+    for (int k = 0; k < PLANT_STANDING; k++)
+        set_count(kinds, plant_name((PlantKind)k), (uint64_t)w->by_kind[k]);
+    json_object_set_new(woods, "kinds", kinds);
+    set_count(from, "crowns", (uint64_t)w->from_crowns);
+    set_count(from, "canopy", (uint64_t)w->from_canopy);
+    set_count(from, "classes", (uint64_t)w->from_classes);
+    set_count(from, "hedges", (uint64_t)w->from_hedges);
+    json_object_set_new(woods, "from", from);
+    set_count(woods, "left_out", (uint64_t)w->left_out);
+    set_number(woods, "reach_m", w->reach_m);
+    set_count(woods, "paths", (uint64_t)r->paths);
+    set_count(woods, "entities", (uint64_t)r->entities);
+    set_count(woods, "in_trunks", (uint64_t)r->in_trunks);
+    set_number(woods, "list_mb", 1e-6 * (double)((size_t)w->count * sizeof *w->plant +
+                                                 ((size_t)w->nx * (size_t)w->ny + 1) * sizeof *w->first));
+    return woods;
+}
+
 Status record_write_run(const char *path, const RunRecord *r)
 {
     json_t *run = json_object(), *timings = json_object();
@@ -408,6 +437,7 @@ Status record_write_run(const char *path, const RunRecord *r)
     json_t *number = json_array();
     for (int i = 0; i < r->listed; i++) json_array_append_new(number, json_integer(r->frame_number[i]));
     json_object_set_new(run, "frame_number", number);
+    if (r->woods) json_object_set_new(run, "woods", woods_json(r->woods));
     json_object_set_new(run, "counters", counters_json(r));
     for (int i = 0; i < r->stage_count; i++) {
         json_t *stage = json_object();

@@ -14,6 +14,7 @@
 #include "sensor/publish/latency.h"
 #include "sensor/truth/frame_error.h"
 #include "terrain/earth/sun.h"
+#include "terrain/woods/woods.h"
 
 #include <stdio.h>
 
@@ -51,6 +52,13 @@ typedef struct LiveCounters {
     uint64_t frames_late, files_failed, files_left_out;
 } LiveCounters;
 
+/* Plants of a run. */
+typedef struct WoodsRecord {
+    const Woods *woods;
+    int          paths;               /* pieces cleared of plants */
+    int          entities, in_trunks; /* on the ground at their first report; of these within a trunk */
+} WoodsRecord;
+
 typedef struct RunRecord {
     const char *config_sha256, *log_name, *log_sha256, *isa;
     const char *settings;             /* `section.key=value`, lines: the text hashed as config_sha256 */
@@ -81,6 +89,7 @@ typedef struct RunRecord {
     const char *const *stage;
     double (*stage_ms)[3];            /* median, p95, max */
     const LatencySummary *latency;    /* NULL: no ledger was kept */
+    const WoodsRecord *woods;         /* NULL: no plants */
 } RunRecord;
 
 /* The complete file, atomically. */

@@ -6,7 +6,9 @@
 static TargetOccluder occluder_of(const Target *t)
 {
     if (!t->occluder) return OCCLUDER_NONE;
-    return strcmp(t->occluder, "ground") == 0 ? OCCLUDER_GROUND : OCCLUDER_ENTITY;
+    return strcmp(t->occluder, "ground") == 0   ? OCCLUDER_GROUND
+           : strcmp(t->occluder, "trees") == 0 ? OCCLUDER_TREES
+                                               : OCCLUDER_ENTITY;
 }
 
 static TargetRecord record_of(const Target *t, const Snapshot *snapshot, const Catalog *catalog)
@@ -15,7 +17,8 @@ static TargetRecord record_of(const Target *t, const Snapshot *snapshot, const C
     TargetRecord          r = {
                  .index = t->index, .id = entity->id, .type = entity->type, .class_number = target_class(entity->type),
                  .plane_value = t->index + 1, .model = catalog_model(catalog, entity->model)->name, .pixels = t->pixels,
-                 .visible_fraction = t->visible_fraction, .range_m = t->range_m, .closing_mps = t->closing_mps,
+                 .visible_fraction = t->visible_fraction, .foliage_fraction = t->foliage_fraction,
+                 .range_m = t->range_m, .closing_mps = t->closing_mps,
                  .aspect_rad = t->aspect_rad, .depression_rad = t->depression_rad, .los_az_rad = t->los_az_rad,
                  .los_el_rad = t->los_el_rad, .occluder = occluder_of(t), .age_s = entity->age_s,
                  .position_error_m = entity->position_error_m};

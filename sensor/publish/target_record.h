@@ -35,7 +35,7 @@
 #include "sensor/truth/truth.h"
 
 /* The values are those of PitviperMemoryTarget.flags. */
-typedef enum TargetOccluder { OCCLUDER_NONE, OCCLUDER_GROUND, OCCLUDER_ENTITY } TargetOccluder;
+typedef enum TargetOccluder { OCCLUDER_NONE, OCCLUDER_GROUND, OCCLUDER_ENTITY, OCCLUDER_TREES = 4 } TargetOccluder;
 
 /* NaN: not computed. */
 typedef struct TargetRecord {
@@ -50,6 +50,7 @@ typedef struct TargetRecord {
     double        amodal_box[4];
     double        pixels;                  /* area, parts of pixels too */
     double        visible_fraction;        /* of its area on the image */
+    double        foliage_fraction;        /* of it, hidden by plants */
     double        p_ecef[3], v_ecef_mps[3]; /* of the model's origin */
     double        range_m, closing_mps;
     double        aspect_rad;              /* 0: nose on, to its right, below 2 pi */
@@ -58,7 +59,7 @@ typedef struct TargetRecord {
     double        los_rate_rps[2];         /* inertial; camera right and up */
     double        boresight_error_rad[2];  /* camera right and up */
     TargetOccluder occluder;               /* of the most of it */
-    DisEntityId   occluder_id;             /* none: the ground, or not known */
+    DisEntityId   occluder_id;             /* none: the ground, trees, or not known */
     double        age_s, position_error_m; /* of the report that it was extrapolated from; estimate */
     TargetBand    band[BAND_COUNT];
 } TargetRecord;

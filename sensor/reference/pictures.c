@@ -24,6 +24,10 @@ static const ReferenceField exr_fields[] = {
     {"channel truth/part", "uint", "", "from 1, into the parts of its model in part_names; 0: none", "",
      "part of its model"},
     {"channel truth/material", "uint", "", "from 1, into material_names; 0: none", "", "material"},
+    {"channel truth/instance", "uint", "", "from 1; from 2147483648 low plants; 0: none", "with terrain.woods off",
+     "plant: each one has its own number; low plants, which stand only near the sensor, theirs in this frame"},
+    {"channel truth/cover", "uint", "", "from 1, into surface_names; 0: no ground", "with terrain.woods off",
+     "surface class of the ground"},
     {"channel truth/temp_k", "float", "K", "", "", "temperature of the surface; NaN: sky"},
     {"channel truth/nx", "float", "", "ENU at the terrain origin, east", "", "unit normal of the surface"},
     {"channel truth/ny", "float", "", "ENU at the terrain origin, north", "", "the same"},
@@ -46,6 +50,8 @@ static const ReferenceField exr_fields[] = {
      "names of etc/materials.csv"},
     {"header part_names", "string", "", "model:part,part,...;model:... ; the first part is part 1", "except in truth",
      "the parts of the models in this frame"},
+    {"header surface_names", "string", "", "separated by commas; the first is surface 1",
+     "except in truth; with terrain.woods off", "classes of the ground"},
 };
 
 static const ReferenceWord bands[] = {REFERENCE_WORD_BAND};

@@ -8,6 +8,7 @@
 static const char *drop(int i) { return i < DIS_DROP_COUNT ? dis_drop_name((DisDrop)i) : NULL; }
 static const char *skip(int i) { return i < SKIP_COUNT ? skip_name((Skip)i) : NULL; }
 static const char *what_skip(int i) { return skip_what((Skip)i); }
+static const char *kind(int i) { return i < PLANT_STANDING ? plant_name((PlantKind)i) : NULL; }
 static const char *stage(int i) { return i < session_stages ? session_stage_name[i] : NULL; }
 
 static const char *latency(int i) { return i < LATENCY_STAGE_COUNT ? latency_stage_name[i] : NULL; }
@@ -35,6 +36,21 @@ static const ReferenceField fields[] = {
     {"frame_sha256", "list of strings", "", "as frame_number", "with publish.truth false", "SHA-256 of all planes before they are encoded"},
     {"frame_number", "list of integers", "", "from 0", "",
      "numbers of the frames in frame_sha256; of a very long run only the first"},
+    {"woods", "object", "", "", "with terrain.woods off", "plants that stand on the ground"},
+    {"woods.plants", "integer", "", "", "", "trees, bushes and hedges"},
+    {"woods.kinds", "object", "", "", "", "of these, by kind"},
+    {"woods.kinds.KIND", "integer", "", "", "", "plants"},
+    {"woods.from", "object", "", "", "", "by what says where they stand"},
+    {"woods.from.crowns", "integer", "", "", "", "trunks marked in the terrain store"},
+    {"woods.from.canopy", "integer", "", "", "", "its layers of canopy height and cover"},
+    {"woods.from.classes", "integer", "", "", "", "surface classes alone"},
+    {"woods.from.hedges", "integer", "", "", "", "edges of fields"},
+    {"woods.left_out", "integer", "", "", "", "trees beyond terrain.woods_trees"},
+    {"woods.reach_m", "number", "m", "from the aim, when the world was made", "", "within it no tree is left out"},
+    {"woods.paths", "integer", "", "", "", "straight pieces of paths cleared of plants; on real ground none"},
+    {"woods.entities", "integer", "", "", "", "entities on the ground at their first report"},
+    {"woods.in_trunks", "integer", "", "", "", "of these, within a trunk"},
+    {"woods.list_mb", "number", "MB", "", "", "memory of the list of plants, without the ray tracer's"},
     {"counters", "object", "", "", "", "over the whole run"},
     {"counters.datagrams", "integer", "", "", "", "received, of this exercise or another"},
     {"counters.pdus", "object", "", "", "", "by PDU type"},
@@ -131,6 +147,7 @@ static const ReferenceWord words[] = {
     {"TYPE", "the PDU type's number: 1 Entity State, 2 Fire, 3 Detonation ...", NULL, NULL},
     {"REASON", "one of", drop, NULL},
     {"SKIP", "one of", skip, what_skip},
+    {"KIND", "one of", kind, NULL},
     {"STAGE", "one of", stage, NULL},
     {"LATENCY", "one of", latency, NULL},
     REFERENCE_WORD_CONSUMER,

@@ -11,7 +11,8 @@ const Reference reference_products = {
         "    truth.jsonl                      help truth     targets: position, signal; a line per frame\n"
         "    run.json                         help run.json  the run: settings, hashes, choices, counters, times\n"
         "    frames/BAND/NNNNNN.exr           help exr       radiance per pixel\n"
-        "    frames/truth/NNNNNN.exr          help exr       range, entity, part, material, temperature, normal\n"
+        "    frames/truth/NNNNNN.exr          help exr       range, entity, part, material, temperature, normal;\n"
+        "                                                    with terrain.woods: instance, cover\n"
         "    frames/BAND/NNNNNN.png           help png       display images; absent with --no-png\n"
         "    frames/truth/NNNNNN.png          help png       the truth for viewing\n"
         "    latest/BAND.png                  help png       the newest display image; --latest\n"
@@ -112,11 +113,13 @@ static const ReferenceField fields[] = {
     {"targets[].pixels", "number", "px", "", "", "visible area with fractions of pixels; 0: occluded"},
     {"targets[].visible_fraction", "number", "", "0 .. 1", "when no sample hit it",
      "share of its projected area that is not occluded"},
+    {"targets[].foliage_fraction", "number", "", "0 .. 1", "with terrain.woods off; when no sample hit it",
+     "share of its projected area that plants hide"},
     {"targets[].box_px", "list of 4 integers", "px", "image: left, top, right, bottom; from 0, the last two beyond it",
      "when it has no pixel of its own", "bounding box of its visible pixels"},
     {"targets[].amodal_box_px", "list of 4 numbers", "px", "image: left, top, right, bottom", "",
      "bounding box of all its vertices, occluded or not, not cropped by the image"},
-    {"targets[].occluded_by", "string", "", "site:application:entity, or `ground`", "when less than 1 % of it is "
+    {"targets[].occluded_by", "string", "", "site:application:entity, `ground`, or `trees`", "when less than 1 % of it is "
      "occluded",
      "what occludes most of it"},
     {"targets[].age_s", "number", "s", "", "", "since its last Entity State"},

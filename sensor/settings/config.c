@@ -528,7 +528,12 @@ Status config_check(const Config *config)
     if (!plane_choice_parse(&planes, config->publish.planes)) {
         log_error("config: publish.planes: '%s' is not all, none, or a list of range, entity, part, material, "
                   "temperature, "
-                  "normal, for example range,entity", config->publish.planes);
+                  "normal, instance, cover, for example range,entity", config->publish.planes);
+        return STATUS_BAD_VALUE;
+    }
+    const unsigned of_woods = 1u << PLANE_INSTANCE | 1u << PLANE_COVER;
+    if (planes != planes_all && planes & of_woods && strcmp(config->terrain.woods, "on") != 0) {
+        log_error("config: publish.planes: instance and cover are of a world with plants: terrain.woods: on");
         return STATUS_BAD_VALUE;
     }
     if (!*config->sensor.mount) {

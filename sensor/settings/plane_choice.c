@@ -1,7 +1,8 @@
 /* sensor/settings/plane_choice.c: parses a list of names of truth planes. */
 #include "sensor/settings/plane_choice.h"
 
-const char *const plane_choice_name[PLANE_CHOICES] = {"range", "entity", "part", "material", "temperature", "normal"};
+const char *const plane_choice_name[PLANE_CHOICES] = {"range", "entity", "part", "material", "temperature", "normal",
+                                                    "instance", "cover"};
 
 bool plane_choice_parse(unsigned *planes, const char *text)
 {

@@ -6,7 +6,9 @@
 #include "pitviper.h"
 
 typedef enum PlaneChoice {
-    PLANE_RANGE, PLANE_ENTITY, PLANE_PART, PLANE_MATERIAL, PLANE_TEMPERATURE, PLANE_NORMAL, PLANE_CHOICES
+    PLANE_RANGE, PLANE_ENTITY, PLANE_PART, PLANE_MATERIAL, PLANE_TEMPERATURE, PLANE_NORMAL,
+    PLANE_INSTANCE, PLANE_COVER, /* of a world with plants */
+    PLANE_CHOICES
 } PlaneChoice;
 
 enum { planes_none = 0, planes_all = (1 << PLANE_CHOICES) - 1 };

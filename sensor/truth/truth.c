@@ -261,15 +261,17 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
 /* The wheels of an entity on the ground are partly below it: a hidden share below truth_occluded_least is no
  * occlusion, and all of the target counts as visible; otherwise the largest occluder is named, and the fraction is
  * below 1. */
-static void visibility_of(Target *t, const TargetPixels *px)
+static void visibility_of(Target *t, const TargetPixels *px, bool plants)
 {
-    const double hidden = px->occluded_ground + px->occluded_entity;
+    const double ground = px->occluded_ground, entity = px->occluded_entity, trees = px->occluded_plants;
+    const double hidden = ground + entity + trees;
     if (!(px->amodal > 0)) return;
     t->visible_fraction = 1;
+    if (plants) t->foliage_fraction = clamp(trees / px->amodal, 0, 1);
     if (!(hidden >= truth_occluded_least * px->amodal)) return;
     t->visible_fraction = clamp(px->visible / px->amodal, 0, 1);
-    t->occluder         = px->occluded_ground >= px->occluded_entity ? "ground" : "entity";
-    t->occluder_index   = px->occluded_ground >= px->occluded_entity ? -1 : px->occluder;
+    t->occluder = trees > ground && trees > entity ? "trees" : ground >= entity ? "ground" : "entity";
+    if (*t->occluder == 'e') t->occluder_index = px->occluder;
 }
 
 int truth_targets(Target *out, const Picture *picture, const World *world, const Snapshot *snapshot,
@@ -279,14 +281,15 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
     for (int i = 0; i < snapshot->count; i++) {
         const TargetPixels *px = &picture->target[i];
         if (i == eye->host_index || !(px->projected || px->amodal > 0)) continue;
-        Target t = {.index = i, .pixels = px->visible, .visible_fraction = NAN, .occluder_index = -1};
+        Target t = {.index = i, .pixels = px->visible, .visible_fraction = NAN, .foliage_fraction = NAN,
+                    .occluder_index = -1};
         t.range_m = t.closing_mps = t.aspect_rad = t.depression_rad = t.los_az_rad = t.los_el_rad = NAN;
         for (int b = 0; b < BAND_COUNT; b++)
             t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN, NAN};
         for (int b = BAND_OPTICAL; b <= BAND_LWIR && px->visible > 0; b++)
             if (request->bands >> b & 1) t.band[b].veil_transmittance = 1 - px->veiled[b];
         line_of_sight(&t, &snapshot->entity[i], catalog_model(world->catalog, snapshot->entity[i].model), eye);
-        visibility_of(&t, px);
+        visibility_of(&t, px, picture->instance != NULL);
         memcpy(t.box, px->box, sizeof t.box);
         for (int k = 0; k < 4; k++) t.amodal_box[k] = px->projected ? px->projected_box[k] : px->amodal_box[k];
         radiometry(&t, px, picture, world, request, noise);

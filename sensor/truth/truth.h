@@ -29,7 +29,8 @@ typedef struct Target {
     double visible_fraction;                /* of its area on the image; 1: an occluder is not named; NaN: no sample */
     int    box[4];                          /* visible pixels; empty: all 0 */
     double amodal_box[4];                   /* of its vertices, not clipped to the image */
-    const char *occluder;                   /* "ground", "entity" with occluder_index >= 0, or NULL */
+    double foliage_fraction;                /* of its area on the image, hidden by plants; NaN: there are none */
+    const char *occluder;                   /* "ground", "trees", "entity" with occluder_index >= 0, or NULL */
     int    occluder_index;
     TargetBand band[BAND_COUNT];
 } Target;

@@ -13,7 +13,7 @@ static void fill_target(PitviperMemoryTarget *out, const TargetRecord *t)
     *out = (PitviperMemoryTarget){
         .site = t->id.site, .application = t->id.application, .entity = t->id.entity,
         .class_number = (uint16_t)t->class_number, .plane_value = (uint32_t)t->plane_value,
-        .flags = t->occluder == OCCLUDER_ENTITY ? 2 : t->occluder == OCCLUDER_GROUND, .range_m = t->range_m,
+        .flags = (uint32_t)t->occluder, .range_m = t->range_m,
         .closing_mps = t->closing_mps, .aspect_rad = t->aspect_rad, .depression_rad = t->depression_rad,
         .los_az_rad = t->los_az_rad, .los_el_rad = t->los_el_rad, .pixels = t->pixels,
         .visible_fraction = t->visible_fraction, .age_s = t->age_s, .position_error_m = t->position_error_m};
