@@ -7,6 +7,7 @@
 #include "sensor/quality/quality.h"
 #include "sensor/settings/band_choice.h"
 #include "sensor/node/shape_choice.h"
+#include "sensor/node/woods_choice.h"
 
 #include <stdlib.h>
 
@@ -187,8 +188,8 @@ static void report_air_temp(Choices *choices, const Config *config, const Atmosp
 }
 
 /* The world, with its messages. */
-static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, GroundContact *contact, Choices *choices, Run *run,
-                     const DisEntityId *host)
+static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, GroundContact *contact, WoodsChoice *woods,
+                     Choices *choices, Run *run, const DisEntityId *host)
 {
     const Options *o     = &run->options;
     World         *world = &run->world;
@@ -203,8 +204,12 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     if (status == STATUS_OK) status = choose_time(unix_s, choices, &run->survey, &o->config, &frame);
     if (status == STATUS_OK)
         status = choose_ground(landscape, contact, choices, &run->survey, &o->config, &frame, run->catalog, plan);
+    if (status == STATUS_OK)
+        status = choose_woods(woods, choices, &run->survey, &o->config, landscape, run->catalog, plan, run->pool);
     if (status == STATUS_OK) choose_shapes(choices, &run->survey, run->catalog);
     if (status == STATUS_OK) status = frame_world(world, &o->config, run->catalog, landscape, &frame, o->isa);
+    if (status == STATUS_OK)
+        status = frame_world_plant(world, woods->on ? &woods->woods : NULL, &o->config, o->isa, run->pool);
     if (status != STATUS_OK) return status;
     report_visibility(choices, &o->config, world->atmosphere);
     report_air_temp(choices, &o->config, world->atmosphere, elevation_height(&landscape->elevation, 0, 0, NULL));
@@ -248,6 +253,7 @@ Status run_host(Run *run, const DisEntityId *host)
     Session       *session   = NULL;
     double         unix_s    = 0;
     GroundContact  contact   = GROUND_CONTACT_NONE;
+    WoodsChoice    woods     = {0};
     char           out[run_folder_size], host_text[dis_id_text_size];
 
     if (host) {
@@ -255,7 +261,7 @@ Status run_host(Run *run, const DisEntityId *host)
         else dis_entity_id_text(host_text, *host);
         log_print("host: %s (--host)\n", host_text);
     }
-    Status status = choose(&plan, &unix_s, &landscape, &contact, &choices, run, host);
+    Status status = choose(&plan, &unix_s, &landscape, &contact, &woods, &choices, run, host);
     if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.causal);
     if (status == STATUS_OK) status = player_add_log(player, &run->view);
     if (status != STATUS_OK) goto done;
@@ -298,6 +304,7 @@ done:
     session_result_free(&result);
     player_destroy(player);
     world_close(&run->world);
+    woods_choice_free(&woods);
     landscape_destroy(&landscape);
     return status;
 }

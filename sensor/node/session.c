@@ -23,7 +23,7 @@ static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *pi
 
 /* ---- one frame ------------------------------------------------------------------------------ */
 
-static void make_request(RenderRequest *request, const Session *s, const Eye *eye)
+static void make_request(RenderRequest *request, const Session *s, const Eye *eye, double t_s)
 {
     const Config *config = s->shared->config;
     *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands,
@@ -32,6 +32,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
                                .sky_samples = config->sensor.sky_samples,
                                .sky_visibility = strcmp(config->sensor.sky_visibility, "on") == 0,
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
+                               .t_s = t_s, .low_plants_m = s->shared->world->forest ? config->terrain.woods_low_m : 0,
                                .budget = strcmp(config->quality.budget, "on") == 0,
                                .skips_off = s->shared->no_skip ? skips_all_off : 0};
     for (int b = 0; b < BAND_COUNT; b++) request->hand_over_cells |= s->shared->sensors->has[b];
@@ -143,7 +144,7 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     const double  *p_ecef = eye.state.p_ecef;
     const FrameEye at = {f->unix_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &eye.view, shared->bands};
     status = frame_light(&air, &f->sun, r_host_from_enu, shared->world, shared->config, &at, shared->pool, f->arena);
-    make_request(&f->request, s, &eye);
+    make_request(&f->request, s, &eye, t_s);
     const double posed_s = wall_clock_s();
     if (status == STATUS_OK) status = look(&f->seen, s, &f->request, &air, r_host_from_enu, f->arena);
     if (status == STATUS_OK && s->wants & WANT_WITHOUT) status = look_without(f, s, &air, r_host_from_enu, eye.hidden);

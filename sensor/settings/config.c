@@ -8,6 +8,7 @@
 #include "sensor/settings/plane_choice.h"
 #include "sensor/settings/span.h"
 #include "sensor/settings/video_choice.h"
+#include "terrain/woods/woods.h"
 
 #include <errno.h>
 #include <strings.h>
@@ -226,6 +227,21 @@ static const Setting keys[] = {
      "inconsistent with it"},
     {"terrain.detail", SETTING_TEXT, AT(terrain.detail), 0, 0, "on|off", "",
      "noise of the ground within each surface class (etc/ground_detail.csv); off: classes of one value"},
+    {"terrain.woods", SETTING_TEXT, AT(terrain.woods), 0, 0, "on|off", "",
+     "trees, bushes, hedges and low plants, by canopy layers, marked trunks or surface classes; off: bare ground"},
+    {"terrain.woods_trees", SETTING_INT, AT(terrain.woods_trees), 0, woods_most_trees, NULL, "",
+     "most trees; beyond, those farthest from the aim are left out"},
+    {"terrain.woods_half_m", SETTING_DOUBLE, AT(terrain.woods_half_m), 0, 50000, NULL, "m",
+     "half width of the square about the aim in which plants stand; below 50: the extent of the entities and 4 km about "
+     "it"},
+    {"terrain.woods_leaves", SETTING_TEXT, AT(terrain.woods_leaves), 0, 0, "on|off", "",
+     "leaves of deciduous trees; off: bare, as in winter"},
+    {"terrain.woods_sway", SETTING_DOUBLE, AT(terrain.woods_sway), 0, 5, NULL, "",
+     "how far plants sway in the wind of weather.wind_mps: 1 as they do, 0 not at all"},
+    {"terrain.woods_level1_px", SETTING_DOUBLE, AT(terrain.woods_level1_px), 0, 1000, NULL, "px",
+     "plants lower than this in the image are traced with fewer, larger leaves; 0: none, all in full detail"},
+    {"terrain.woods_low_m", SETTING_DOUBLE, AT(terrain.woods_low_m), 0, 1000, NULL, "m",
+     "distance from the sensor within which grass, reeds, crops and stones stand; 0: none"},
     {"observer.range_m", SETTING_DOUBLE, AT(observer.range_m), 10, 100000, NULL, "m",
      "ground distance of the stand-off observer from its aim point"},
     {"observer.height_m", SETTING_DOUBLE, AT(observer.height_m), 1, 20000, NULL, "m",
@@ -342,6 +358,10 @@ Config config_default(void)
     strcpy(c.terrain.vertical, "auto");
     strcpy(c.terrain.ground, "auto");
     strcpy(c.terrain.detail, "on");
+    strcpy(c.terrain.woods, "off");
+    strcpy(c.terrain.woods_leaves, "on");
+    c.terrain.woods_trees           = 300000;
+    c.terrain.woods_low_m           = 60;
     c.observer.range_m              = 600;
     c.observer.height_m             = 250;
     c.observer.rate_dps             = 2;

@@ -104,6 +104,11 @@ typedef struct Config {
         char   orthophoto[config_paths_size];
         char   ground[8];
         char   detail[8];          /* on or off: noise of the ground */
+        char   woods[8], woods_leaves[8]; /* on or off: trees and other plants; their leaves in winter */
+        int    woods_trees;        /* at most */
+        double woods_half_m;       /* half width of the square in which they stand; 0: chosen */
+        double woods_low_m;        /* reach of low plants about the eye; 0: none */
+        double woods_sway, woods_level1_px;
     } terrain;
     struct {
         double range_m, height_m, rate_dps; /* the stand-off observer */

@@ -1,4 +1,4 @@
-/* sensor/world/frame_world.c: opens a world with the atmosphere and the radar of the settings. */
+/* sensor/world/frame_world.c: opens a world with the atmosphere, the radar and the plants of the settings. */
 #include "sensor/world/frame_world.h"
 
 Status frame_world(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
@@ -14,4 +14,11 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
         out->detail = NULL;
     }
     return status;
+}
+
+Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool)
+{
+    const ForestConfig forest = {.leaves = strcmp(config->terrain.woods_leaves, "on") == 0,
+                                 .level1_px = config->terrain.woods_level1_px, .sway = config->terrain.woods_sway};
+    return woods ? world_plant(world, woods, &forest, isa, pool) : STATUS_OK;
 }

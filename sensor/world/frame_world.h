@@ -8,5 +8,7 @@
 /* Borrows catalog and landscape. On failure the only valid call is world_close. */
 Status frame_world(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
                    const LocalFrame *frame, const char *isa);
+/* Its plants, as terrain.woods_* say. woods must outlive the world; NULL: there are none. */
+Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool);
 
 #endif
