@@ -221,6 +221,15 @@ static void take_coarse(ProbeTask *t, const float *value, int plane)
     }
 }
 
+/* Change when no plant is simplified. */
+static void take_full_plants(ProbeTask *t, const float *value, int plane)
+{
+    for (int p = 0; p < t->count; p++) {
+        const double apart = (double)(value[p] - t->base[plane][p]);
+        if (candidate_of(t, p)->planes >> plane & 1) t->detail[plane] += t->probe[p].stands_for * apart * apart;
+    }
+}
+
 static void take_tables(ProbeTask *t, const float *value, int plane)
 {
     for (int p = 0; p < t->count; p++) {
@@ -308,6 +317,12 @@ static void probe_task(void *user, int worker, int index)
     block_light(w, job);
     for (int plane = 0; plane < picture_plane_count; plane++)
         if ((value = block_values(w, job, plane))) take_coarse(t, value, plane);
+    if (job->scene.full == job->scene.visibility) return;
+    Job full = *job;
+    full.scene.visibility = job->scene.full;
+    shade_pixels(w, &full, t, 1, listed);
+    for (int plane = 0; plane < picture_plane_count; plane++)
+        if ((value = block_values(w, &full, plane))) take_full_plants(t, value, plane);
 }
 
 /* ---- the whole ---------------------------------------------------------------------------------- */

@@ -16,7 +16,7 @@ enum { picture_optical, picture_mwir = picture_optical + 3, picture_lwir, pictur
 typedef struct ErrorBudget {
     double mean[picture_plane_count];            /* of the plane, estimated from the candidate pixels */
     double sampling[picture_plane_count];        /* rays a pixel, edges, small targets */
-    double level_of_detail[picture_plane_count]; /* posts of the ground. Facets of models: sensor/truth/frame_error.h */
+    double level_of_detail[picture_plane_count]; /* posts of the ground, simplified plants. Facets of models: sensor/truth/frame_error.h */
     double tables[picture_plane_count];          /* air and shading; radar: 0, it has none */
     int    probes;                               /* re-sampled pixels */
     double ms;                                   /* wall time */

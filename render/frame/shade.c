@@ -12,7 +12,7 @@ static Status open_plants(ShadeScene *scene, Visibility *visibility, const Rende
     const double   wind_mps[2] = {-weather->wind_mps * sin(weather->wind_from_rad),
                                   -weather->wind_mps * cos(weather->wind_from_rad)};
     if (!scene->world->forest) {
-        scene->bare = visibility;
+        scene->bare = scene->full = visibility;
         return STATUS_OK;
     }
     const Status status = forest_frame_open(&scene->plants, scene->world->forest, request->view.p_enu,
@@ -21,7 +21,8 @@ static Status open_plants(ShadeScene *scene, Visibility *visibility, const Rende
     if (status != STATUS_OK) return status;
     visibility_plants(visibility, &scene->plants);
     scene->bare = visibility_without_plants(visibility, arena);
-    return scene->bare ? STATUS_OK : STATUS_NO_MEMORY;
+    scene->full = visibility_with_full_plants(visibility, arena);
+    return scene->bare && scene->full ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *snapshot, const Air *air,

@@ -20,6 +20,7 @@ typedef struct ShadeScene {
     const Air        *air;
     const Visibility *visibility;
     const Visibility *bare;          /* the same without plants */
+    const Visibility *full;          /* the same with every plant at its full detail */
     ForestFrame       plants;        /* where visibility has some */
     EffectScene       effects;       /* smoke, dust, flames and bursts */
     SurfaceLight      surface_light;

@@ -50,6 +50,8 @@ void visibility_materials(Visibility *v, const Materials *materials);
 void visibility_plants(Visibility *v, const ForestFrame *plants);
 /* The same frame without them, in the arena; v itself where there are none. NULL: no memory. */
 const Visibility *visibility_without_plants(const Visibility *v, Arena *arena);
+/* The same frame with every plant at its full detail; v itself where no plant is simplified. NULL: no memory. */
+const Visibility *visibility_with_full_plants(const Visibility *v, Arena *arena);
 
 /* A hit's place on its part, in the axes of the part's node: moves with the part. Of hits of kind hit_part. */
 void visibility_place_on_part(double p_node[3], const Visibility *v, const Hits *hits, int i);

@@ -14,6 +14,17 @@ const Visibility *visibility_without_plants(const Visibility *v, Arena *arena)
     return bare;
 }
 
+const Visibility *visibility_with_full_plants(const Visibility *v, Arena *arena)
+{
+    Visibility *full;
+    if (!v->plants || !forest_simplifies(v->plants->forest)) return v;
+    full = arena_alloc(arena, 1, sizeof *full);
+    if (!full) return NULL;
+    *full             = *v;
+    full->full_plants = true;
+    return full;
+}
+
 /* ---- rays near entities ----------------------------------------------------------------------- */
 
 typedef struct NearEntities {
@@ -88,7 +99,8 @@ void plants_first_hits(Hits *hits, const Visibility *v, const Rays *rays, int hi
     uint8_t             real[hits_capacity];
     for (int i = 0; i < hits->count; i++)
         nearer_m[i] = limit_m[i] = hits->range_m[i] < rays->far_m[i] ? hits->range_m[i] : rays->far_m[i];
-    if (simplified) find_near(real, v, rays, hidden);
+    if (v->full_plants) memset(real, 1, (size_t)hits->count);
+    else if (simplified) find_near(real, v, rays, hidden);
     counters->rays_plants +=
         forest_first_hits(nearer_m, plant, v->plants, hits->count, o, d, simplified ? real : NULL);
     for (int i = 0; i < hits->count; i++) {
@@ -107,7 +119,7 @@ void plants_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const
     for (int k = 0; k < count; k++) {
         far_m[k] = INFINITY;
         dark[k]  = 0;
-        real[k]  = hits->entity[hit_of[k]] != 0; /* what falls on entities is that of real plants */
+        real[k]  = v->full_plants || hits->entity[hit_of[k]] != 0; /* what falls on entities is that of real plants */
     }
     counters->rays_sun_plants += forest_any_hits(dark, v->plants, count, o, d, far_m, real);
     for (int k = 0; k < count; k++) shadow[hit_of[k]] |= dark[k];

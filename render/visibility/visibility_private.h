@@ -31,6 +31,7 @@ struct Visibility {
     const Snapshot  *snapshot;
     Ground           ground;
     const ForestFrame *plants;   /* NULL: none */
+    bool             full_plants; /* none is simplified */
     unsigned         skips_off;
     int              count, drawable;
     bool            *loose;      /* [count]: may be drawn, as far as is known without its nodes */
