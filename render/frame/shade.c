@@ -287,8 +287,10 @@ static const float *light_around(float room[hits_capacity], const Shader *shader
         b >= AIR_MWIR ? air->light.ground_w_m2_sr[b] * pi_rad : optical_ground_w_m2((int)b, air, &scene->world->materials);
     for (int i = 0; i < s->hits.count; i++) {
         const double n_enu[3] = {s->hits.n_enu[0][i], s->hits.n_enu[1][i], s->hits.n_enu[2][i]};
-        room[i] = (float)((double)shader->open.factor[b][i] *
-                          (daylight_on_plane(&air->light, b, n_enu) + level_w_m2 * 0.5 * (1 - n_enu[2])));
+        const double through = material_through(&scene->world->materials.material[s->hits.material[i]], (int)b);
+        double       both = daylight_on_plane(&air->light, b, n_enu) + level_w_m2 * 0.5 * (1 - n_enu[2]);
+        if (through > 0) both += through * daylight_far_side(&air->light, b, n_enu, level_w_m2);
+        room[i] = (float)((double)shader->open.factor[b][i] * both);
     }
     return room;
 }

@@ -4,7 +4,7 @@
  * (G = 1/2), let through 2 E3(G L) of an even sky (Monsi & Saeki 1953; Ross 1981). What leaves scatter onwards is light
  * as well: in a band where they absorb 1 - w the layers count as sqrt(1 - w) of their area (Goudriaan 1977). L comes from
  * a grid of cells over the woods, between crown base and top a share of it. A hit on a plant has the less of this and
- * of what its own plant leaves it (PlantQuad.sky): an estimate. Thermal bands: leaves radiate as much as they hide, and
+ * of what its own plant leaves it (PlantQuad.sky): an estimate, the same for both sides of a leaf. Thermal bands: leaves radiate as much as they hide, and
  * the factor is 1. Trunks, and the side from which light comes, are left out. */
 #ifndef RENDER_LIGHT_CANOPY_H
 #define RENDER_LIGHT_CANOPY_H

@@ -8,7 +8,7 @@
 #include "render/light/thermal.h"
 
 enum { bounces = 2, change_bounces = 3, stream_first = 40, stream_next = 41,
-       stream_change = 42 }; /* streams of random numbers, used here only */
+       stream_change = 42, stream_side = 43 }; /* streams of random numbers, used here only */
 
 static const double golden_ratio = 0.61803398874989485, leave_offset_m = 1e-3; /* the latter as visibility_shadow's */
 
@@ -101,17 +101,27 @@ static int leave_base(Rays *rays, const Base *base, double u, const double turn[
     return at;
 }
 
-/* Adds a ray that leaves hit `from` of hits; u, v in [0, 1). */
-static int leave(Rays *rays, const Hits *hits, int from, double u, double v)
+/* Adds a ray that leaves hit `from` of hits, of a leaf from its far side; u, v in [0, 1). */
+static int leave(Rays *rays, const Hits *hits, int from, bool far, double u, double v)
 {
     Base base;
     base_at(&base, hits, from);
+    for (int k = 0; far && k < 3; k++) {
+        base.n_enu[k] = -base.n_enu[k], base.n_geo[k] = -base.n_geo[k];
+        base.o_enu[k] = hits->p_enu[k][from] + leave_offset_m * base.n_geo[k];
+    }
     return leave_base(rays, &base, u, (const double[2]){cos(2 * pi_rad * v), sin(2 * pi_rad * v)});
 }
 
 static double reflectance(const Material *m, AirBand band)
 {
     return band == AIR_MWIR ? m->rho_mwir : band == AIR_LWIR ? m->rho_lwir : m->rho[band];
+}
+
+/* Half of the paths that meet a leaf continue on its far side, and count double. */
+static float side_share(const Material *m, AirBand band, bool far)
+{
+    return 2 * (far ? (float)material_through(m, (int)band) : 1);
 }
 
 /* What all paths of a block met: materials, temperatures, shadows. */
@@ -152,13 +162,17 @@ static double met(double *rho, const Paths *p, int i, const HemisphereScene *sce
     const Material *m = &scene->materials->material[p->hits.material[i]];
     const double n_enu[3] = {p->hits.n_enu[0][i], p->hits.n_enu[1][i], p->hits.n_enu[2][i]};
     *rho = reflectance(m, band);
+    const double tau = *rho * material_through(m, (int)band);
     double radiance = 0;
     if (band >= AIR_MWIR)
         radiance =
-            (1 - *rho) * planck_table_radiance(band == AIR_MWIR ? air->light.planck_mwir : air->light.planck_lwir, p->temp_k[i]);
+            (1 - *rho - tau) * planck_table_radiance(band == AIR_MWIR ? air->light.planck_mwir : air->light.planck_lwir, p->temp_k[i]);
     if (p->sun[i] > 0 && band != AIR_LWIR)
         radiance += *rho / pi_rad * air->light.sun_w_m2[band] * fmax(v3_dot(n_enu, air->light.sun_d_enu), 0) * (double)p->sun[i];
+    if (tau > 0 && p->sun[i] > 0 && band != AIR_LWIR)
+        radiance += tau / pi_rad * air->light.sun_w_m2[band] * fmax(-v3_dot(n_enu, air->light.sun_d_enu), 0) * (double)p->sun[i];
     if (last) radiance += *rho * (daylight_on_plane(&air->light, band, n_enu) / pi_rad + ground * 0.5 * (1 - n_enu[2]));
+    if (last && tau > 0) radiance += tau / pi_rad * daylight_far_side(&air->light, band, n_enu, ground * pi_rad);
     return radiance;
 }
 
@@ -193,11 +207,13 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const He
             if (!(p->hits.range_m[i] < INFINITY)) continue;
             const uint64_t to = key[p->of_hit[i]];
             const uint32_t draw = (uint32_t)(2 * p->of_sample[i]);
-            const int at = leave(&p->rays, &p->hits, i, random_uniform(0, stream_next, draw, to),
+            const Material *m = &scene->materials->material[p->hits.material[i]];
+            const bool leaf = material_is_leaf(m), far = leaf && random_uniform(0, stream_side, draw, to) < 0.5;
+            const int at = leave(&p->rays, &p->hits, i, far, random_uniform(0, stream_next, draw, to),
                                  random_uniform(0, stream_next, draw + 1, to));
             p->of_hit[at] = p->of_hit[i], p->of_sample[at] = p->of_sample[i], p->of_path[at] = p->of_path[i];
             for (int b = 0; b < AIR_BAND_COUNT; b++)
-                if (bands >> b & 1) p->share[b][at] = p->share[b][i] * rho[b][i];
+                if (bands >> b & 1) p->share[b][at] = p->share[b][i] * rho[b][i] * (leaf ? side_share(m, (AirBand)b, far) : 1);
         }
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++)
@@ -215,11 +231,14 @@ void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const 
     for (int i = 0; i < hits->count; i++) {
         if (!(hits->range_m[i] < INFINITY)) continue;
         const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);
-        for (int k = 0; k < samples; k++) {
+        const Material *m = &scene->materials->material[hits->material[i]];
+        for (int n = 0; n < (material_is_leaf(m) ? 2 * samples : samples); n++) {
+            const bool   far = n >= samples;
+            const int    k = far ? n - samples : n;
             const double v = v0 + k * golden_ratio;
-            const int at = leave(&paths.rays, hits, i, (k + u0) / samples, v - floor(v));
-            paths.of_hit[at] = i, paths.of_sample[at] = k;
-            for (int b = 0; b < AIR_BAND_COUNT; b++) paths.share[b][at] = 1;
+            const int at = leave(&paths.rays, hits, i, far, (k + u0) / samples, v - floor(v));
+            paths.of_hit[at] = i, paths.of_sample[at] = n;
+            for (int b = 0; b < AIR_BAND_COUNT; b++) paths.share[b][at] = far ? (float)material_through(m, b) : 1;
             if (paths.rays.count < hits_capacity) continue;
             follow(sum, &paths, scene, bands, key, counters);
             paths.rays.count = 0;
@@ -361,7 +380,7 @@ static void follow_change(Change *sum, Paths *p, const HemisphereScene *scene, u
             if (bounce == change_bounces - 1 || (p->of_sample[i] >> bounce & 1)) continue;
             const uint64_t to = key[of];
             const uint32_t draw = (uint32_t)(2 * (p->of_sample[i] * change_bounces + bounce));
-            const int at = leave(&p->rays, &p->hits, i, random_uniform(0, stream_change, draw, to),
+            const int at = leave(&p->rays, &p->hits, i, false, random_uniform(0, stream_change, draw, to),
                                  random_uniform(0, stream_change, draw + 1, to));
             /* from the ground, too, only parts change the light */
             if (!p->hits.entity[i] && !ray_may_meet(scene, &p->rays, at, reach_m, list, listed)) {

@@ -23,7 +23,8 @@ typedef struct HemisphereScene {
 } HemisphereScene;
 
 typedef struct HemisphereLight {
-    float w_m2[AIR_BAND_COUNT][hits_capacity]; /* irradiance on the hit's own shading normal; 0 for sky */
+    float w_m2[AIR_BAND_COUNT][hits_capacity]; /* irradiance on the hit's own shading normal; 0 for sky. Of leaves: and
+                                                * that on their far side, material_through of it */
 } HemisphereLight;
 
 /* bands: 1 << AirBand, those to fill. samples: 1 .. hemisphere_samples_max directions a hit, spread evenly over the

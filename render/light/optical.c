@@ -50,7 +50,11 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
         }
         const Material *m = &materials->material[material[i]];
         const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
-        const double rho = fmin(m->rho[channel] * texture[i], 1);
+        double rho = fmin(m->rho[channel] * texture[i], 1), tau = 0;
+        if (m->tau[channel] > 0) { /* a bright leaf returns no more than it gets */
+            const double bright = fmin(texture[i], 1 / ((double)m->rho[channel] + (double)m->tau[channel]));
+            rho = m->rho[channel] * bright, tau = m->tau[channel] * bright;
+        }
         const double lit = sun ? (double)sun[i] : 1, n_sun = lit > 0 ? fmax(v3_dot(n_enu, sun_d_enu), 0) : 0;
         const double around =
             around_w_m2 ? around_w_m2[i]
@@ -60,11 +64,11 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
         double radiance;
         if (!(m->gloss > 0)) {
             radiance = rho * irradiance_w_m2 / pi_rad;
-            if (m->tau[channel] > 0) /* a leaf: what falls on its far side shines through */
-                radiance += fmin(m->tau[channel] * texture[i], 1) / pi_rad *
-                            (sun_w_m2 * (lit > 0 ? fmax(-v3_dot(n_enu, sun_d_enu), 0) : 0) * lit +
-                             daylight_far_side(&air->light, band, n_enu, ground_w_m2,
-                                               around_w_m2 ? (double)hits->sky[i] : 1));
+            if (tau > 0) { /* a leaf: what falls on its far side shines through */
+                const double behind =
+                    around_w_m2 ? 0 : daylight_far_side(&air->light, band, n_enu, ground_w_m2);
+                radiance += tau / pi_rad * (sun_w_m2 * lit * fmax(-v3_dot(n_enu, sun_d_enu), 0) + behind);
+            }
         } else {
             const double n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
             double diffuse, lobe_rho;

@@ -25,7 +25,7 @@ double leaf_temp_k(const Daylight *light, const Material *m, double air_temp_k, 
     double       slope;
     const double e = saturation_pa(&slope, air_temp_k);
     const double emissivity = 1 - (double)m->rho_lwir - (double)m->tau_lwir;
-    const double gain = (double)m->solar_absorptance * sun_w_m2 - emissivity * light->longwave_loss_w_m2 * 0.5 * open -
+    const double gain = (double)m->solar_absorptance * sun_w_m2 - emissivity * light->longwave_loss_w_m2 * open -
                         vapour_j_mol * vapour * (1 - humidity) * e / pressure_pa;
     const double loss = 2 * heat_j_mol_k * layer + 2 * emission_w_m2_k(emissivity, air_temp_k) +
                         vapour_j_mol * vapour * slope / pressure_pa;

@@ -7,7 +7,7 @@
 
 /* A leaf: the steady balance of what it absorbs of sun and sky with what it radiates, gives to the air and transpires;
  * leaves follow within a minute. open: share of the sun and of the sky that its place in the crown receives, 0 .. 1: the
- * mean of sunlit and shaded leaves there.
+ * mean of sunlit and shaded leaves there. Its two sides together face all of the sky, whatever its tilt.
  *
  *   boundary layer  0.135 sqrt(wind / d) mol/(m2 s) each side, d = 0.72 of a leaf 5 cm wide, 1.4 in turbulent wind
  *   stomata         0.2 mol/(m2 s) in full sun, a twentieth in the dark: broad leaves well supplied with water

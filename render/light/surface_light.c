@@ -226,11 +226,11 @@ static inline void material_rows(F32x8 out[8], float (*table)[surface_light_band
 /* The far side of leaves: what shines through them. */
 typedef struct FarSide {
     bool  any;           /* some of the eight lets light through; else the rest is not set */
-    F32x8 tau[8], plane[8], n_sun, below, sky;
+    F32x8 tau[8], plane[8], n_sun, below, leaf;
 } FarSide;
 
-static inline void far_side(FarSide *far, const SurfaceLight *light, const SurfaceBlock *b, int i,
-                            const uint16_t material[8], bool same, Three n, Three sun, F32x8 lit)
+static inline void far_side(FarSide *far, const SurfaceLight *light, const uint16_t material[8], bool same, Three n,
+                            Three sun, F32x8 lit)
 {
     far->any = false;
     if (!light->tau) return;
@@ -242,7 +242,7 @@ static inline void far_side(FarSide *far, const SurfaceLight *light, const Surfa
     light_on_plane(far->plane, light, back, sun);
     far->n_sun = f32x8_and(f32x8_max(dot(back, sun), zero()), lit);
     far->below = f32x8_set(0.5 * pi_rad) * (one() + n.z);
-    far->sky = f32x8_and(f32x8_load(b->hits->sky + i), through);
+    far->leaf = through;
 }
 
 static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *b, int i)
@@ -271,7 +271,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     light_on_plane(plane, light, n, sun);
 
     FarSide far;
-    far_side(&far, light, b, i, material, same, n, sun, lit);
+    far_side(&far, light, material, same, n, sun, lit);
 
     F32x8 sees_sky = zero(), glint = zero(), water_eye = zero(), water_half = zero(), half = zero();
     if (glossy) {
@@ -291,8 +291,18 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
         const AirPaths *veil = &b->veils[band];
         const F32x8 level = _mm256_set1_ps(light->level_w_m2_sr[band]),
                     sun_w_m2 = _mm256_set1_ps(light->sun_w_m2[band]);
-        const F32x8 all_rho =
+        F32x8 all_rho =
             band >= AIR_MWIR ? rho[band] : f32x8_min(rho[band] * f32x8_load(b->texture[band] + i), one());
+        F32x8 through = zero();
+        if (far.any) { /* a bright leaf returns no more than it gets */
+            through = far.tau[band];
+            if (band < AIR_MWIR) {
+                const F32x8 both = f32x8_max(rho[band] + through, f32x8_set(1e-6));
+                const F32x8 bright = f32x8_min(f32x8_load(b->texture[band] + i), one() / both);
+                all_rho = f32x8_select(far.leaf, rho[band] * bright, all_rho);
+                through = through * bright;
+            }
+        }
         F32x8 around =
             b->around_w_m2[band] ? f32x8_load(b->around_w_m2[band] + i) : f32x8_fma(level, below, plane[band]);
         if (b->open[band]) around = around * f32x8_load(b->open[band] + i);
@@ -308,11 +318,9 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
         }
         F32x8 reflected = f32x8_fma(diffuse * per_pi, around, mirrored);
         F32x8 sunlit = f32x8_fma(diffuse * per_pi, n_sun, flash) * (sun_w_m2 * arrives);
-        F32x8 through = zero();
         if (far.any) {
-            through = band >= AIR_MWIR ? far.tau[band] : f32x8_min(far.tau[band] * f32x8_load(b->texture[band] + i), one());
-            F32x8 behind = f32x8_fma(level, far.below, far.plane[band]);
-            if (b->around_w_m2[band] || b->open[band]) behind = behind * far.sky;
+            F32x8 behind = b->around_w_m2[band] ? zero() : f32x8_fma(level, far.below, far.plane[band]);
+            if (b->open[band]) behind = behind * f32x8_load(b->open[band] + i);
             reflected = f32x8_fma(through * per_pi, behind, reflected);
             sunlit = f32x8_fma(through * per_pi * far.n_sun, sun_w_m2 * arrives, sunlit);
         }

@@ -34,9 +34,10 @@ typedef struct SurfaceBlock {
     const float   *texture[AIR_BAND_COUNT];     /* of the optical bands: brightness over the material's */
     const float   *temp_k;                      /* thermal bands */
     const float   *sun;                         /* share of the direct sun that arrives, 0 .. 1 */
-    const float   *around_w_m2[AIR_BAND_COUNT]; /* from hemisphere sampling; NULL: sky and ground by the slope alone */
-    const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h, canopy.h); NULL: 1. The
-                                          * far side of a leaf: Hits.sky where this or around_w_m2 is given, else 1 */
+    const float   *around_w_m2[AIR_BAND_COUNT]; /* from hemisphere sampling; NULL: sky and ground by the slope alone. Of
+                                                 * leaves: of both sides, as HemisphereLight */
+    const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h, canopy.h); NULL: 1. Of
+                                          * leaves: of both sides */
     const AirPaths   *veils;                       /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
 

@@ -177,9 +177,8 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
                                           : daylight_plane_there(&air->light, air_band, &facing->plane[i]) / pi_rad +
                                                 ground_w_m2_sr * 0.5 * (1 - n_enu[2]);
         double reflected = diffuse * around;
-        if (tau > 0)
-            reflected += tau / pi_rad * daylight_far_side(&air->light, air_band, n_enu, ground_w_m2_sr * pi_rad,
-                                                          around_w_m2 ? (double)hits->sky[i] : 1);
+        if (tau > 0 && !around_w_m2)
+            reflected += tau / pi_rad * daylight_far_side(&air->light, air_band, n_enu, ground_w_m2_sr * pi_rad);
         if (lobe_rho > 0) {
             double mirror_enu[3];
             v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);

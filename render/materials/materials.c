@@ -76,6 +76,11 @@ static Status read_tau(Material *material, const Table *table, int row)
                       table->line[row + 1], wanted);
             return STATUS_BAD_VALUE;
         }
+        if (value > 0 && (!(*rho > 0) || material->gloss > 0)) {
+            log_error("materials: what lets light through reflects some as well, and has no gloss: file=%s line=%d "
+                      "column=%s", table->path, table->line[row + 1], wanted);
+            return STATUS_BAD_VALUE;
+        }
         *(float *)((char *)material + tau_columns[i].offset) = (float)value;
     }
     return STATUS_OK;

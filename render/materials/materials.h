@@ -60,6 +60,17 @@ static inline int material_of_part(const Materials *m, int model, int part, int 
     return m->part[model][part];
 }
 
+/* Transmittance over reflectance in a band (AirBand): what the light on a leaf's far side counts of that on its near
+ * one; 0: opaque. */
+static inline double material_through(const Material *m, int band)
+{
+    const float tau = band == SPECTRAL_MWIR ? m->tau_mwir : band == SPECTRAL_LWIR ? m->tau_lwir : m->tau[band];
+    const float rho = band == SPECTRAL_MWIR ? m->rho_mwir : band == SPECTRAL_LWIR ? m->rho_lwir : m->rho[band];
+    return rho > 0 ? (double)tau / (double)rho : 0;
+}
+
+static inline bool material_is_leaf(const Material *m) { return m->tau[optical_channel_nir] > 0; }
+
 /* Whether some material lets light through. */
 bool materials_let_through(const Materials *m);
 
