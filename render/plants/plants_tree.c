@@ -37,6 +37,8 @@ static const Habit habits[PLANT_TREES] = {
 
 enum { trunk_pieces = 12, branch_pieces = 4, sub_pieces = 2 };
 static const double golden_rad = 2.39996322972865332;
+static const double twigs_too = 1.85; /* radius of a sub-branch at level 1, which stands for its twigs as well: bare silhouettes
+                                      * then agree (tests/render/test_plants.c) */
 static const double leaf_layers = 4, outline_share = 0.5; /* of a card; about */
 
 /* Radius of the crown at a height in it, 0 .. 1, over its largest. */
@@ -105,7 +107,7 @@ static void grow_sub(Growth *g, const Habit *h, const double at[3], const double
     memcpy(d, toward, sizeof d);
     bend(p, d, g, sub_pieces, length, 0.4 * h->rise, h->crooked);
     if (g->level == 0) pieces_along(g, p, sub_pieces, radius, 0.5 * radius, 6, 1);
-    else pieces_along(g, p, sub_pieces, radius, 0.5 * radius, 3, sub_pieces);
+    else pieces_along(g, p, sub_pieces, twigs_too * radius, 0.7 * twigs_too * radius, 3, sub_pieces);
     for (int t = 0; t < h->twigs; t++) {
         const double share = (t + grow_draw(g, 0.4, 1)) / h->twigs;
         const int    k = share * sub_pieces >= 1 ? 1 : 0;

@@ -1,4 +1,4 @@
-/*/* sensor/node/woods_choice.c: the square in which plants stand, paths that are cleared of them, and what there is. */
+/* sensor/node/woods_choice.c: the square in which plants stand, paths that are cleared of them, and what there is. */
 #include "sensor/node/woods_choice.h"
 
 #include "dis/enumerations.h"
