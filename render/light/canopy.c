@@ -27,7 +27,7 @@ struct Canopy {
 /* 2 E3(x) = 2 int_0^1 mu exp(-x / mu) d mu, by the midpoint rule in u = mu^2. */
 double canopy_gap(double x)
 {
-    enum { steps = 400 };
+    enum { steps = 1000 };
     double sum = 0;
     if (!(x > 0)) return 1;
     for (int k = 0; k < steps; k++) {

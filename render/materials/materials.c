@@ -317,24 +317,27 @@ Status materials_open(Materials *out, const char *path, const char *surfaces_pat
 
 /* ---- plants --------------------------------------------------------------------------------- */
 
+/* What a kind consists of. */
+static bool has_organ(PlantKind kind, PlantOrgan organ)
+{
+    if (kind == PLANT_ROCK) return organ == PLANT_STONE;
+    return organ == PLANT_LEAF || (organ == PLANT_BARK && kind < PLANT_STANDING);
+}
+
 /* Rows by kind and organ: leaf_KIND, bark_KIND, stone_KIND. */
 static Status find_plants(Materials *m, const char *path)
 {
     static const char *const organ_name[PLANT_ORGANS] = {"bark", "leaf", "stone"};
-    for (int kind = 0; kind < PLANT_KINDS; kind++) {
-        bool any = false;
+    for (int kind = 0; kind < PLANT_KINDS; kind++)
         for (int organ = 0; organ < PLANT_ORGANS; organ++) {
             char name[64];
             snprintf(name, sizeof name, "%s_%s", organ_name[organ], plant_name((PlantKind)kind));
             const int row = materials_find(m, name);
             m->plant[kind][organ] = row > 0 ? row : 0;
-            any |= row > 0;
+            if (row > 0 || !has_organ((PlantKind)kind, (PlantOrgan)organ)) continue;
+            log_error("materials: row missing: file=%s name=%s", path, name);
+            return STATUS_BAD_VALUE;
         }
-        if (any) continue;
-        log_error("materials: neither leaf_%s nor bark_%s nor stone_%s: file=%s", plant_name((PlantKind)kind),
-                  plant_name((PlantKind)kind), plant_name((PlantKind)kind), path);
-        return STATUS_BAD_VALUE;
-    }
     return STATUS_OK;
 }
 

@@ -244,6 +244,84 @@ static void metal_and_glass_have_no_diffuse_share(void **state)
     materials_close(&m);
 }
 
+/* ---- plants --------------------------------------------------------------------------------- */
+
+enum { table_most = 1 << 16 };
+
+/* The product's own table of plants, with one piece of it replaced. */
+static Status add_plants(Materials *m, const char *from, const char *to)
+{
+    static char text[table_most], changed[table_most];
+    char        table[512], surface_table[512], optics[512], ground[512], path[text_file_size];
+    CHECK(etc_path(table, sizeof table, "materials.csv") && etc_path(surface_table, sizeof surface_table, "surfaces.csv"));
+    CHECK(etc_path(optics, sizeof optics, "plant_optics.csv") && etc_path(ground, sizeof ground, "woods.csv"));
+    CHECK(materials_open(m, table, surface_table, NULL) == STATUS_OK);
+    FILE *file = fopen(optics, "r");
+    CHECK(file != NULL);
+    text[fread(text, 1, sizeof text - 1, file)] = 0;
+    fclose(file);
+    const char *at = strstr(text, from);
+    CHECK(at != NULL);
+    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
+    text_file(path, changed);
+    const Status status = materials_add_plants(m, path, ground);
+    remove(path);
+    return status;
+}
+
+/* Healthy leaves are dark in red, bright beyond it and let about as much through; all rows keep their energy. */
+static void leaves_are_as_leaves_are(void **state)
+{
+    (void)state;
+    Materials m;
+    CHECK(add_plants(&m, "name,", "name,") == STATUS_OK);
+    for (int kind = 0; kind < PLANT_KINDS; kind++) {
+        if (kind == PLANT_ROCK) continue;
+        const Material *leaf = &m.material[m.plant[kind][PLANT_LEAF]];
+        CHECK(m.plant[kind][PLANT_LEAF] > 0 && material_is_leaf(leaf));
+        if (kind != PLANT_DRY_GRASS) CHECK(leaf->rho[optical_channel_nir] > 4 * leaf->rho[optical_channel_r]);
+        const double through = (double)leaf->tau[optical_channel_nir] / (double)leaf->rho[optical_channel_nir];
+        CHECK(through > 0.6 && through < 1.15);
+        CHECK_NEAR(material_through(leaf, optical_channel_nir), through, 1e-12);
+        for (int c = 0; c < optical_channel_count; c++) CHECK((double)leaf->rho[c] + (double)leaf->tau[c] < 0.95);
+        CHECK((double)leaf->rho_lwir + (double)leaf->tau_lwir < 0.07);
+        if (kind < PLANT_STANDING) CHECK(m.plant[kind][PLANT_BARK] > 0 && !material_is_leaf(&m.material[m.plant[kind][PLANT_BARK]]));
+    }
+    CHECK(m.plant[PLANT_ROCK][PLANT_STONE] > 0 && materials_let_through(&m));
+    /* the ground beneath a wood is its litter, that of a meadow still grass */
+    CHECK(m.surface[SURFACE_FOREST_BROADLEAF] == materials_find(&m, "leaf_litter"));
+    CHECK(m.surface[SURFACE_GRASS] == materials_find(&m, "grass_green"));
+    materials_close(&m);
+}
+
+static void bad_plants_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *from, *to, *said;
+    } bad[] = {
+        {"tau_nir", "tau_near", "tau_nir"},          /* a column */
+        {"rho_mwir,rho_lwir", "rho_mw,rho_lw", "rho_mwir"},
+        {",0.3172,", ",0.6,", "tau_nir"},            /* of pine: with 0.4661, more than all */
+        {",0.3172,", ",-0.1,", "tau_nir"},
+        {",0.3172,", ",nan,", "tau_nir"},
+        {"0.5839,0,0.6", "0.5839,0.2,0.6", "gloss"}, /* glossy, and lets light through */
+        {"leaf_pine,0.0441", "leaf_pine,0", "reflects"},
+        {"leaf_pine", "leaf_fir", "leaf_pine"},      /* kinds without their rows */
+        {"bark_hedge", "bark_wall", "bark_hedge"},
+        {"stone_boulder", "stone_age", "stone_boulder"},
+        {"leaf_alder", "leaf_pine", "leaf_pine"},    /* twice */
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        Materials m;
+        last_error[0] = 0;
+        const Status status = add_plants(&m, bad[i].from, bad[i].to);
+        if (status != STATUS_BAD_VALUE || !strstr(last_error, bad[i].said))
+            fail_msg("case %zu: status %s, said \"%s\", want \"%s\"", i, status_name(status), last_error, bad[i].said);
+        materials_close(&m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -255,6 +333,8 @@ int main(void)
         cmocka_unit_test(reflectance_stays_between_its_ends),
         cmocka_unit_test(glass_is_a_dielectric),
         cmocka_unit_test(metal_and_glass_have_no_diffuse_share),
+        cmocka_unit_test(leaves_are_as_leaves_are),
+        cmocka_unit_test_setup_teardown(bad_plants_are_refused, listen, stop_listening),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

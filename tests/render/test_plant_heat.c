@@ -1,0 +1,154 @@
+/* Temperatures of leaves against the full, non-linear balance solved by bisection; of branches against conduction in a
+ * cylinder over a day, step by step. */
+#include "tests/check.h"
+
+#include "render/light/plant_heat.h"
+
+static Material leaf_row(void)
+{
+    return (Material){.name = "leaf", .rho_lwir = 0.03f, .solar_absorptance = 0.51f, .conductivity_w_mk = 0.3f,
+                      .density_kg_m3 = 700, .heat_capacity_j_kgk = 3500};
+}
+
+static Material bark_row(void)
+{
+    return (Material){.name = "bark", .rho_lwir = 0.05f, .solar_absorptance = 0.8f, .conductivity_w_mk = 0.2f,
+                      .density_kg_m3 = 550, .heat_capacity_j_kgk = 2000};
+}
+
+static Daylight day(double direct_w_m2, double diffuse_w_m2, double loss_w_m2, double wind_mps)
+{
+    Daylight light = {.solar_direct_w_m2 = direct_w_m2, .solar_diffuse_w_m2 = diffuse_w_m2, .longwave_loss_w_m2 = loss_w_m2};
+    light.weather = weather_default();
+    light.weather.wind_mps = wind_mps;
+    light.sun_d_enu[2] = direct_w_m2 > 0 ? 1 : -1;
+    return light;
+}
+
+/* Saturation of water vapour by the Magnus form of Alduchov & Eskridge (J. Appl. Meteor. 35, 601, 1996), Pa. */
+static double magnus_pa(double temp_k)
+{
+    const double c = temp_k - 273.15;
+    return 610.94 * exp(17.625 * c / (243.04 + c));
+}
+
+/* What a leaf at temp_k gains, W per m2 of leaf, one side counted: Campbell & Norman (1998), eq. 14.1, each term in full. */
+static double leaf_gain(const Daylight *light, const Material *m, double air_k, double open, double temp_k)
+{
+    const double wind = fmax(light->weather.wind_mps, 0.3), sigma = 5.670374419e-8, emissivity = 1 - (double)m->rho_lwir;
+    const double layer = 1.4 * 0.135 * sqrt(wind / (0.72 * 0.05)), wet_layer = 1.4 * 0.147 * sqrt(wind / (0.72 * 0.05));
+    const double sun = open * (0.5 * light->solar_direct_w_m2 + light->solar_diffuse_w_m2);
+    const double stomata = 0.2 * (0.05 + 0.95 * fmin(sun / 250, 1)), wet = stomata * wet_layer / (stomata + wet_layer);
+    return (double)m->solar_absorptance * sun - emissivity * open * light->longwave_loss_w_m2 -
+           2 * emissivity * sigma * (pow(temp_k, 4) - pow(air_k, 4)) - 2 * 29.3 * layer * (temp_k - air_k) -
+           44000 * wet * (magnus_pa(temp_k) - 0.6 * magnus_pa(air_k)) / 101325;
+}
+
+static double leaf_by_bisection(const Daylight *light, const Material *m, double air_k, double open)
+{
+    double low = air_k - 60, high = air_k + 60;
+    for (int k = 0; k < 60; k++) {
+        const double middle = 0.5 * (low + high);
+        if (leaf_gain(light, m, air_k, open, middle) > 0) low = middle;
+        else high = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+static void leaf_is_in_balance(void **state)
+{
+    (void)state;
+    const Material m = leaf_row();
+    const double   wind[] = {0.1, 1, 3, 10}, air_k[] = {268, 288, 303}, direct[] = {0, 400, 900}, open[] = {0, 0.3, 1};
+    double         most = 0, coldest = 0, warmest = 0;
+    for (int k = 0; k < 4 * 3 * 3 * 3; k++) {
+        const double   sun = direct[k % 3], air = air_k[k / 3 % 3], share = open[k / 9 % 3];
+        const Daylight light = day(sun, sun / 6, 90, wind[k / 27]);
+        const double   found = leaf_temp_k(&light, &m, air, share), expected = leaf_by_bisection(&light, &m, air, share);
+        most = fmax(most, fabs(found - expected));
+        warmest = fmax(warmest, found - air), coldest = fmin(coldest, found - air);
+        CHECK_NEAR(found, expected, 0.05 + 0.05 * fabs(expected - air));
+    }
+    print_message("worst %.2f K; leaves %.1f to %.1f K above the air\n", most, coldest, warmest);
+    CHECK(warmest < 15 && coldest > -8);
+    /* by day warmer in calm air than in wind, and in the open than in the shade; by night colder than the air */
+    const Daylight calm = day(800, 120, 90, 0.5), windy = day(800, 120, 90, 8), night = day(0, 0, 90, 2);
+    CHECK(leaf_temp_k(&calm, &m, 295, 1) > leaf_temp_k(&windy, &m, 295, 1));
+    CHECK(leaf_temp_k(&calm, &m, 295, 1) > leaf_temp_k(&calm, &m, 295, 0.1));
+    CHECK(leaf_temp_k(&night, &m, 285, 1) < 285);
+}
+
+enum { shells_most = 40 };
+
+/* Amplitude of the surface's temperature of a long cylinder whose gain has an amplitude of 1 W/m2 over a day, loss_w_m2_k
+ * of it given off: conduction in shells by explicit steps until the days are alike. *lag_s: of its peak. */
+static double cylinder_amplitude(double *lag_s, const Material *m, double radius_m, double loss_w_m2_k)
+{
+    const int    shells = radius_m > 0.1 ? shells_most : 12, days = radius_m > 0.1 ? 12 : radius_m > 0.03 ? 4 : 2;
+    const double per_s = 7.292e-5, day_s = 2 * pi_rad / per_s, dr = radius_m / shells;
+    const double k = (double)m->conductivity_w_mk, c = (double)m->density_kg_m3 * (double)m->heat_capacity_j_kgk;
+    const int    steps = (int)ceil(day_s / (0.2 * c / (k / (dr * dr) + loss_w_m2_k / dr)));
+    const double dt = day_s / steps;
+    double       t[shells_most] = {0}, most = -INFINITY;
+    for (int n = 0; n < days * steps; n++) {
+        double flow = 0; /* inwards through the inner face of a shell, W per m of length and radian */
+        for (int s = 0; s < shells; s++) {
+            const double surface = t[s], area = (s + 0.5) * dr * dr;
+            const double out = s + 1 < shells ? k * (s + 1) * (t[s + 1] - t[s])
+                                              : radius_m * (sin(per_s * dt * n) - loss_w_m2_k * surface);
+            t[s] += dt * (out - flow) / (c * area);
+            flow = out;
+        }
+        if (n >= (days - 1) * steps && t[shells - 1] > most) {
+            most = t[shells - 1];
+            *lag_s = dt * (n - (days - 1) * steps) - day_s / 4;
+        }
+    }
+    return most;
+}
+
+/* The steady form with its term for the wood, against conduction. */
+static void branches_swing_as_conduction_says(void **state)
+{
+    (void)state;
+    const Material m = bark_row();
+    const double   radius_m[] = {0.005, 0.02, 0.06, 0.2}, wind[] = {0.5, 3};
+    for (int w = 0; w < 2; w++) {
+        /* the sun in the zenith on a surface that faces it, over no sun: the amplitude of a gain of 0.8 x 500 W/m2 */
+        const Daylight lit = day(500, 0, 0, wind[w]), dark = day(0, 0, 0, wind[w]);
+        const double   up[3] = {0, 0, 1}, loss = 5.7 + 3.8 * wind[w] + 4 * 0.95 * 5.670374419e-8 * pow(290, 3);
+        for (int k = 0; k < 4; k++) {
+            double       lag_s = 0;
+            const double swing = bark_temp_k(&lit, &m, 290, up, radius_m[k], 1) - bark_temp_k(&dark, &m, 290, up, radius_m[k], 1);
+            const double exact = 400 * cylinder_amplitude(&lag_s, &m, radius_m[k], loss);
+            print_message("r %5.3f m, %.1f m/s: %.2f K, conduction %.2f K, %.1f h late\n", radius_m[k], wind[w], swing,
+                          exact, lag_s / 3600);
+            CHECK_NEAR(swing, exact, 0.1 * exact);
+            CHECK(lag_s < 3600); /* what is left out */
+        }
+    }
+}
+
+static void bark_without_sun_and_sky_has_the_air_s_temperature(void **state)
+{
+    (void)state;
+    const Material m = bark_row();
+    const Daylight night = day(0, 0, 90, 2);
+    const double   up[3] = {0, 0, 1}, down[3] = {0, 0, -1}, side[3] = {1, 0, 0};
+    CHECK(bark_temp_k(&night, &m, 280, up, 0.1, 0) == 280);
+    CHECK(bark_temp_k(&night, &m, 280, down, 0.1, 1) == 280);
+    CHECK(bark_temp_k(&night, &m, 280, up, 0.1, 1) < bark_temp_k(&night, &m, 280, side, 0.1, 1));
+    CHECK(bark_temp_k(&night, &m, 280, side, 0.1, 1) < 280);
+    /* thick ones cool less */
+    CHECK(bark_temp_k(&night, &m, 280, up, 0.2, 1) > bark_temp_k(&night, &m, 280, up, 0.002, 1));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(leaf_is_in_balance),
+        cmocka_unit_test(branches_swing_as_conduction_says),
+        cmocka_unit_test(bark_without_sun_and_sky_has_the_air_s_temperature),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

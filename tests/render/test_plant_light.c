@@ -1,0 +1,202 @@
+/* Light on leaves: between even skies they vanish, lit from behind they shine, and quick and plain forms agree. */
+#include "tests/render/hand_world.h"
+
+#include "render/light/hemisphere.h"
+#include "render/light/optical.h"
+#include "render/light/surface_light.h"
+#include "render/light/thermal.h"
+
+enum { leaf_count = 64 };
+
+static Hits     hits;
+static Rays     rays;
+static AirPaths veils[AIR_BAND_COUNT];
+static float    texture[hits_capacity], sun[hits_capacity], temp_k[hits_capacity];
+static uint64_t key[hits_capacity];
+static Material rows[2];
+static Materials materials;
+
+static int open_world(void **state)
+{
+    (void)state;
+    for (uint64_t i = 0; i < hits_capacity; i++) key[i] = i;
+    return hand_open(false);
+}
+
+/* A leaf of the same optics in all bands. */
+static void set_leaf(float rho, float tau)
+{
+    Material *m = &rows[1];
+    *m = (Material){.name = "leaf", .rho_mwir = rho, .rho_lwir = rho, .tau_mwir = tau, .tau_lwir = tau,
+                    .solar_absorptance = 1 - rho - tau, .roughness = 1, .conductivity_w_mk = 0.3f, .density_kg_m3 = 700,
+                    .heat_capacity_j_kgk = 3500};
+    for (int c = 0; c < optical_channel_count; c++) m->rho[c] = rho, m->tau[c] = tau;
+    materials = (Materials){.count = 2, .material = rows};
+}
+
+/* Leaves of every tilt a little above z = 0, seen from their lit or unlit side. */
+static void random_leaves(void)
+{
+    hits.count = rays.count = leaf_count;
+    for (int i = 0; i < leaf_count; i++) {
+        double n[3];
+        const double up = hand_uniform(-1, 1), turn = hand_uniform(0, 2 * pi_rad), flat = sqrt(1 - up * up);
+        n[0] = flat * cos(turn), n[1] = flat * sin(turn), n[2] = up;
+        for (int k = 0; k < 3; k++) {
+            hits.n_enu[k][i] = hits.n_geo[k][i] = (float)n[k];
+            rays.d_enu[k][i] = -n[k];
+            hits.p_enu[k][i] = k == 2 ? 5 : 0;
+            rays.o_enu[k][i] = hits.p_enu[k][i] + 10 * n[k];
+        }
+        hits.range_m[i] = 10;
+        hits.kind[i] = hit_plant, hits.plant[i] = 1, hits.material[i] = 1;
+        hits.albedo[i] = hits.sky[i] = texture[i] = sun[i] = 1;
+        temp_k[i] = 300;
+    }
+}
+
+/* The quick form, and the largest relative difference of the plain one from it. */
+static double shade(float quick[AIR_BAND_COUNT][hits_capacity], const float *const around[AIR_BAND_COUNT])
+{
+    static SurfaceLight light;
+    static float        plain[hits_capacity];
+    double              most = 0;
+    float              *out[AIR_BAND_COUNT];
+    assert_int_equal(surface_light_prepare(&light, &hand.air, &materials, hand.air_arena), STATUS_OK);
+    air_paths_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
+    SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = hits.material, .temp_k = temp_k, .sun = sun, .veils = veils};
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        out[b] = quick[b], block.texture[b] = texture;
+        if (around) block.around_w_m2[b] = around[b];
+    }
+    surface_light_shade(out, &light, &block);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        const float *gathered = around ? around[b] : NULL;
+        if (b < optical_channel_count)
+            optical_shade(plain, b, &hand.air, &materials, &hits, &rays, hits.material, texture, sun, gathered, &veils[b], NULL);
+        else
+            thermal_shade(plain, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, &hand.air, &materials, &hits, &rays, hits.material,
+                          temp_k, sun, gathered, &veils[b], NULL);
+        for (int i = 0; i < leaf_count; i++)
+            most = fmax(most, fabs((double)quick[b][i] - (double)plain[i]) / fmax((double)plain[i], 1e-9));
+    }
+    return most;
+}
+
+/* Air of one radiance from everywhere, the ground included. */
+static void even_air(double w_m2_sr, double sun_w_m2, const double sun_enu[3])
+{
+    double sky[AIR_BAND_COUNT];
+    for (int b = 0; b < AIR_BAND_COUNT; b++) sky[b] = w_m2_sr;
+    air_even(&hand.air, sun_enu, sun_w_m2, sky, 0, hand.world.planck_mwir, hand.world.planck_lwir);
+    for (int c = 0; c < optical_channel_count; c++) materials.ground_rho[c] = 1;
+}
+
+/* A leaf that absorbs nothing, between surroundings of radiance 3: nothing else can be seen, whatever its tilt. */
+static void white_leaf_vanishes(void **state)
+{
+    (void)state;
+    static float           quick[AIR_BAND_COUNT][hits_capacity];
+    static HemisphereLight gathered;
+    const double           down[3] = {0, 0, -1};
+    VisibilityCounters     counters = {0};
+    Visibility            *visibility = NULL;
+    hand_draw = 3;
+    arena_reset(hand.arena), arena_reset(hand.air_arena);
+    hand_clear();
+    set_leaf(0.55f, 0.45f);
+    even_air(3, 0, down);
+    random_leaves();
+    CHECK(shade(quick, NULL) < 3e-5);
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        for (int i = 0; i < leaf_count; i++) CHECK_NEAR(quick[b][i], 3, 3e-4);
+
+    assert_int_equal(visibility_create(&visibility, hand.world.tracer, NULL, &hand.world.frame, &hand.snapshot, false,
+                                       hand.arena), STATUS_OK);
+    visibility_materials(visibility, &materials);
+    const HemisphereScene scene = {visibility, &hand.air, &materials, hand.catalog, &hand.snapshot};
+    const float          *around[AIR_BAND_COUNT];
+    hemisphere_light(&gathered, &scene, &hits, (1 << AIR_BAND_COUNT) - 1, 16, key, &counters);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) around[b] = gathered.w_m2[b];
+    CHECK(shade(quick, around) < 3e-5);
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        for (int i = 0; i < leaf_count; i++) CHECK_NEAR(quick[b][i], 3, 3e-4);
+}
+
+/* Under a sun of 200 W/m2 alone a leaf returns rho cos / pi on the sunlit side and tau cos / pi on the other one; both,
+ * over all directions, and what it absorbs are what it receives. */
+static void sun_on_either_side(void **state)
+{
+    (void)state;
+    static float quick[AIR_BAND_COUNT][hits_capacity];
+    const double sun_w_m2 = 200, rho = 0.3, tau = 0.2;
+    double       sun_enu[3];
+    CHECK(v3_normalize(sun_enu, (const double[3]){0.3, -0.5, 0.6}));
+    hand_draw = 4;
+    arena_reset(hand.air_arena);
+    set_leaf((float)rho, (float)tau);
+    even_air(0, sun_w_m2, sun_enu);
+    for (int c = 0; c < optical_channel_count; c++) materials.ground_rho[c] = 0;
+    random_leaves();
+    CHECK(shade(quick, NULL) < 3e-5);
+    for (int i = 0; i < leaf_count; i++) {
+        const double n[3] = {hits.n_enu[0][i], hits.n_enu[1][i], hits.n_enu[2][i]}, along = v3_dot(n, sun_enu);
+        const double expected = (along > 0 ? rho * along : -tau * along) * hand.air.light.sun_w_m2[AIR_NIR] / pi_rad;
+        CHECK_NEAR(quick[AIR_NIR][i], expected, 1e-4 * fmax(expected, 0.1));
+    }
+    /* the other side of the same leaves */
+    static float other[AIR_BAND_COUNT][hits_capacity];
+    for (int i = 0; i < leaf_count; i++)
+        for (int k = 0; k < 3; k++) {
+            hits.n_enu[k][i] = -hits.n_enu[k][i], hits.n_geo[k][i] = -hits.n_geo[k][i];
+            rays.d_enu[k][i] = -rays.d_enu[k][i];
+            rays.o_enu[k][i] = hits.p_enu[k][i] - 10 * rays.d_enu[k][i];
+        }
+    CHECK(shade(other, NULL) < 3e-5);
+    for (int i = 0; i < leaf_count; i++) {
+        const double n[3] = {hits.n_enu[0][i], hits.n_enu[1][i], hits.n_enu[2][i]};
+        const double incident = fabs(v3_dot(n, sun_enu)) * hand.air.light.sun_w_m2[AIR_R];
+        const double left = pi_rad * ((double)quick[AIR_R][i] + (double)other[AIR_R][i]);
+        CHECK_NEAR(left + (1 - rho - tau) * incident, incident, 1e-4 * fmax(incident, 0.1));
+    }
+    /* in the shade: nothing; and a leaf twice as bright as its kind returns all, not more */
+    for (int i = 0; i < leaf_count; i++) sun[i] = 0;
+    CHECK(shade(quick, NULL) < 3e-5);
+    for (int i = 0; i < leaf_count; i++) CHECK(quick[AIR_NIR][i] == 0);
+    set_leaf(0.5f, 0.4f);
+    even_air(3, 0, (const double[3]){0, 0, -1});
+    for (int i = 0; i < leaf_count; i++) texture[i] = 2;
+    CHECK(shade(quick, NULL) < 3e-5);
+    for (int i = 0; i < leaf_count; i++) CHECK_NEAR(quick[AIR_NIR][i], 3, 3e-4);
+}
+
+/* Under the atmosphere's own sun and sky, of every tilt and brightness. */
+static void quick_and_plain_forms_agree(void **state)
+{
+    (void)state;
+    static float quick[AIR_BAND_COUNT][hits_capacity];
+    const double suns[2][3] = {{-0.48, 0.36, 0.8}, {0.6, 0.7, -0.4}};
+    for (int run = 0; run < 2; run++) {
+        double sun_enu[3];
+        CHECK(v3_normalize(sun_enu, suns[run]));
+        arena_reset(hand.air_arena);
+        hand_air_on(sun_enu, 300);
+        set_leaf(0.4f, 0.3f);
+        for (int c = 0; c < optical_channel_count; c++) materials.ground_rho[c] = 0.2f;
+        random_leaves();
+        for (int i = 0; i < leaf_count; i++) texture[i] = (float)hand_uniform(0.6, 1.6), sun[i] = (float)hand_uniform(0, 1);
+        const double most = shade(quick, NULL);
+        print_message("sun %d: %.1e\n", run, most);
+        CHECK(most < 3e-5);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(white_leaf_vanishes),
+        cmocka_unit_test(sun_on_either_side),
+        cmocka_unit_test(quick_and_plain_forms_agree),
+    };
+    return cmocka_run_group_tests(tests, open_world, hand_close);
+}
