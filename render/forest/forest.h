@@ -47,6 +47,7 @@ enum { forest_low_bit = 1u << 31 };
 
 typedef struct ForestHit {
     uint32_t plant;    /* index in Woods.plant; with forest_low_bit: a low plant, by a number of its own */
+    uint32_t place;    /* in its list */
     uint32_t quad;     /* of its shape */
     uint8_t  kind, level, organ;
     bool     back;     /* met from the inner side of its surface (leaves: the card's back) */

@@ -1,0 +1,358 @@
+/* render/forest/forest_trace.c: rays against plants: from a plant's box to its prototype's axes, to the quads there. */
+#include "render/forest/forest_private.h"
+
+/* A ray through a list of plants. */
+typedef struct ListRay {
+    struct RTCIntersectContext base; /* first: Embree passes it to the callbacks */
+    const ForestFrame *frame;
+    bool      real;
+    double    o_enu[3], d_enu[3];
+    double    limit_m;       /* of what may still be nearer */
+    bool      met;
+    uint64_t  entered;       /* plants' boxes */
+    ForestHit hit;
+} ListRay;
+
+/* The same in the axes of a prototype, about the middle of its box, from where it enters that. */
+typedef struct QuadRay {
+    struct RTCIntersectContext base;
+    const ShapeScene *shape;
+    double   o[3], d[3];
+    double   limit_m;        /* from there */
+    double   nearest_m;      /* INFINITY: nothing was met */
+    uint32_t quad;
+    float    uv[2];
+} QuadRay;
+
+/* ---- a plant's frame -------------------------------------------------------------------------- */
+
+static void foot_of(double foot_enu[3], const PlantList *list, const Plant *plant)
+{
+    for (int c = 0; c < 3; c++) foot_enu[c] = list->origin_enu[c] + (double)plant->p_m[c];
+}
+
+/* Transform of a plant as it stands in this frame. */
+static void transform_of(double m[9], const ForestFrame *frame, const Plant *plant)
+{
+    double sway_rad[2];
+    if (!(frame->forest->config.sway > 0)) {
+        plant_transform(m, plant, NULL);
+        return;
+    }
+    forest_sway(sway_rad, frame, plant, (double)plant->p_m[0], (double)plant->p_m[1]);
+    plant_transform(m, plant, sway_rad);
+}
+
+/* The columns of m are at right angles: its inverse is its transpose over their squared lengths. */
+static void invert(double inverse[9], const double m[9])
+{
+    for (int k = 0; k < 3; k++) {
+        const double square = m[k] * m[k] + m[3 + k] * m[3 + k] + m[6 + k] * m[6 + k];
+        for (int c = 0; c < 3; c++) inverse[3 * k + c] = m[3 * c + k] / square;
+    }
+}
+
+void plant_box(const struct RTCBoundsFunctionArguments *a)
+{
+    static const double room_m = 0.02; /* of a float 16 km from the origin, twenty times */
+    const PlantList  *list = a->geometryUserPtr;
+    const Plant      *plant = &list->plant[a->primID];
+    const ShapeScene *level[plant_levels] = {&list->forest->shape[plant->kind][0], &list->forest->shape[plant->kind][1]};
+    const double      swing_m = list->forest->config.sway > 0 ? most_sway_rad * 1.1 * plant_height_m(plant) : 0;
+    double            m[9], low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    float            *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
+    plant_transform(m, plant, NULL);
+    for (int l = 0; l < plant_levels; l++) {
+        double centre[3];
+        m3_mul_v3(centre, m, level[l]->centre);
+        for (int c = 0; c < 3; c++) {
+            const double half = fabs(m[3 * c]) * level[l]->half[0] + fabs(m[3 * c + 1]) * level[l]->half[1] +
+                                fabs(m[3 * c + 2]) * level[l]->half[2] + room_m + swing_m;
+            low[c] = fmin(low[c], centre[c] - half), high[c] = fmax(high[c], centre[c] + half);
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        bound[0][c] = (float)((double)plant->p_m[c] + low[c]);
+        bound[1][c] = (float)((double)plant->p_m[c] + high[c]);
+    }
+}
+
+/* The ray in the prototype's axes; false: it misses the box, or is stopped before. start_m: of the new origin. */
+static bool enter_plant(QuadRay *q, double *start_m, const ListRay *ray, const PlantList *list, uint32_t place)
+{
+    const Plant *plant = &list->plant[place];
+    double       foot_enu[3], from[3], m[9], inverse[9], o[3], in = 0, out = ray->limit_m;
+    foot_of(foot_enu, list, plant);
+    const int level = !ray->real && forest_is_low_in_picture(ray->frame, plant, foot_enu);
+    q->shape = &list->forest->shape[plant->kind][level];
+    if (!q->shape->scene) return false;
+    transform_of(m, ray->frame, plant);
+    invert(inverse, m);
+    v3_sub(from, ray->o_enu, foot_enu);
+    m3_mul_v3(o, inverse, from);
+    m3_mul_v3(q->d, inverse, ray->d_enu);
+    for (int c = 0; c < 3; c++) {
+        const double half = q->shape->half[c], to = q->shape->centre[c] - o[c], per = 1 / q->d[c];
+        double       a = (to - half) * per, b = (to + half) * per;
+        if (q->d[c] == 0) {
+            if (fabs(to) > half) return false;
+            continue;
+        }
+        in = fmax(in, fmin(a, b)), out = fmin(out, fmax(a, b));
+    }
+    if (!(in <= out)) return false;
+    for (int c = 0; c < 3; c++) q->o[c] = o[c] - q->shape->centre[c] + in * q->d[c];
+    *start_m = in;
+    q->limit_m = ray->limit_m - in;
+    q->nearest_m = INFINITY;
+    return true;
+}
+
+/* ---- quads ------------------------------------------------------------------------------------ */
+
+typedef struct QuadPlane {
+    double a[3], u[3], v[3], n[3]; /* a corner, two sides from it, and their product */
+} QuadPlane;
+
+static void plane_of(QuadPlane *out, const PlantQuad *quad)
+{
+    for (int c = 0; c < 3; c++) {
+        out->a[c] = (double)quad->corner[0][c];
+        out->u[c] = (double)quad->corner[1][c] - out->a[c];
+        out->v[c] = (double)quad->corner[3][c] - out->a[c];
+    }
+    v3_cross(out->n, out->u, out->v);
+    if (v3_dot(out->n, out->n) > 0) return;
+    for (int c = 0; c < 3; c++) out->v[c] = (double)quad->corner[2][c] - out->a[c]; /* a triangle: corners 0 and 3, or 0
+                                                                                       * and 1, are one */
+    v3_cross(out->n, out->u, out->v);
+}
+
+/* Distance and place of the ray's hit on the quad's plane, in double; of leaves, false beside the outline. Which quads
+ * a ray passes through is Embree's word. */
+static bool test_quad(double *at_m, float uv[2], const QuadRay *q, uint32_t index)
+{
+    const PlantQuad *quad = &q->shape->shape->quad[index];
+    QuadPlane        plane;
+    double           to_a[3], p[3], side[3];
+    plane_of(&plane, quad);
+    for (int c = 0; c < 3; c++) to_a[c] = plane.a[c] - q->shape->centre[c] - q->o[c];
+    const double facing = v3_dot(plane.n, q->d), square = v3_dot(plane.n, plane.n);
+    const double t = v3_dot(plane.n, to_a) / facing;
+    if (!(fabs(t) < INFINITY) || !(t >= 0)) return false;
+    for (int c = 0; c < 3; c++) p[c] = t * q->d[c] - to_a[c];
+    v3_cross(side, p, plane.v);
+    uv[0] = (float)(v3_dot(side, plane.n) / square);
+    v3_cross(side, plane.u, p);
+    uv[1] = (float)(v3_dot(side, plane.n) / square);
+    *at_m = t;
+    return quad->organ != PLANT_LEAF || plants_within_outline(&q->shape->outline[quad->outline], uv[0], uv[1]);
+}
+
+void quad_intersect(const struct RTCFilterFunctionNArguments *a)
+{
+    QuadRay       *q = (QuadRay *)a->context;
+    const uint32_t index = ((const struct RTCHit *)a->hit)->primID;
+    double         at_m;
+    float          uv[2];
+    if (!test_quad(&at_m, uv, q, index)) {
+        a->valid[0] = 0;
+        return;
+    }
+    if (at_m < q->nearest_m || (at_m == q->nearest_m && index < q->quad)) {
+        q->nearest_m = at_m;
+        q->quad = index;
+        q->uv[0] = uv[0], q->uv[1] = uv[1];
+    }
+}
+
+void quad_occlude(const struct RTCFilterFunctionNArguments *a)
+{
+    QuadRay       *q = (QuadRay *)a->context;
+    const uint32_t index = ((const struct RTCHit *)a->hit)->primID;
+    double         at_m;
+    float          uv[2];
+    if (test_quad(&at_m, uv, q, index) && at_m < q->limit_m) q->nearest_m = at_m;
+    else a->valid[0] = 0;
+}
+
+static void fill_ray(struct RTCRay *ray, const double o[3], const double d[3], double far)
+{
+    *ray = (struct RTCRay){.org_x = (float)o[0], .org_y = (float)o[1], .org_z = (float)o[2], .dir_x = (float)d[0],
+                           .dir_y = (float)d[1], .dir_z = (float)d[2], .tfar = (float)far, .mask = ~0u};
+}
+
+/* ---- plants ----------------------------------------------------------------------------------- */
+
+static const double past = 1 + 1e-6; /* a float's distance may be that much short */
+
+void plant_intersect(const struct RTCIntersectFunctionNArguments *a)
+{
+    const PlantList    *list = a->geometryUserPtr;
+    ListRay            *ray = (ListRay *)a->context;
+    struct RTCRayHit    inner;
+    QuadRay             q;
+    double              start_m;
+    if (!a->valid[0]) return;
+    ray->entered++;
+    if (!enter_plant(&q, &start_m, ray, list, a->primID)) return;
+    rtcInitIntersectContext(&q.base);
+    fill_ray(&inner.ray, q.o, q.d, q.limit_m * past);
+    inner.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(q.shape->scene, &q.base, &inner);
+    const double at_m = start_m + q.nearest_m;
+    if (!(q.nearest_m < INFINITY) || !(at_m <= ray->limit_m)) return;
+    if (at_m == ray->limit_m && !(ray->met && a->primID < ray->hit.place)) return;
+    const Plant     *plant = &list->plant[a->primID];
+    const PlantQuad *quad = &q.shape->shape->quad[q.quad];
+    ray->limit_m = at_m;
+    ray->met     = true;
+    ray->hit = (ForestHit){.plant = list->number ? list->number[a->primID] : a->primID, .place = a->primID,
+                           .quad = q.quad, .kind = plant->kind, .organ = quad->organ,
+                           .level = q.shape == &list->forest->shape[plant->kind][1], .uv = {q.uv[0], q.uv[1]},
+                           .back = (double)quad->n[0][0] * q.d[0] + (double)quad->n[0][1] * q.d[1] +
+                                       (double)quad->n[0][2] * q.d[2] > 0};
+    ((struct RTCRayHit *)a->rayhit)->ray.tfar = (float)(at_m * past);
+}
+
+void plant_occlude(const struct RTCOccludedFunctionNArguments *a)
+{
+    const PlantList *list = a->geometryUserPtr;
+    ListRay         *ray = (ListRay *)a->context;
+    struct RTCRay    inner;
+    QuadRay          q;
+    double           start_m;
+    if (!a->valid[0]) return;
+    ray->entered++;
+    if (!enter_plant(&q, &start_m, ray, list, a->primID)) return;
+    rtcInitIntersectContext(&q.base);
+    fill_ray(&inner, q.o, q.d, q.limit_m * past);
+    rtcOccluded1(q.shape->scene, &q.base, &inner);
+    if (!(q.nearest_m < INFINITY)) return;
+    ray->met = true;
+    ((struct RTCRay *)a->ray)->tfar = -INFINITY;
+}
+
+/* ---- rays ------------------------------------------------------------------------------------- */
+
+static void open_ray(ListRay *ray, const ForestFrame *frame, const double *const o_enu[3], const double *const d_enu[3],
+                     int i, double limit_m, bool real)
+{
+    rtcInitIntersectContext(&ray->base);
+    ray->frame = frame, ray->real = real, ray->limit_m = limit_m, ray->met = false;
+    for (int c = 0; c < 3; c++) ray->o_enu[c] = o_enu[c][i], ray->d_enu[c] = d_enu[c][i];
+}
+
+static void start_of(double o[3], const ListRay *ray, const PlantList *list)
+{
+    v3_sub(o, ray->o_enu, list->origin_enu);
+}
+
+uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count, const double *const o_enu[3],
+                           const double *const d_enu[3], const uint8_t *real)
+{
+    const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
+    ListRay          ray = {.entered = 0};
+    for (int i = 0; i < count; i++) {
+        open_ray(&ray, frame, o_enu, d_enu, i, range_m[i], real && real[i]);
+        for (int k = 0; k < 2; k++) {
+            struct RTCRayHit outer;
+            double           o[3];
+            if (!lists[k] || !lists[k]->scene) continue;
+            start_of(o, &ray, lists[k]);
+            fill_ray(&outer.ray, o, ray.d_enu, ray.limit_m * past);
+            outer.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect1(lists[k]->scene, &ray.base, &outer);
+        }
+        if (!ray.met) continue;
+        range_m[i] = ray.limit_m;
+        hit[i]     = ray.hit;
+    }
+    return ray.entered;
+}
+
+uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, const double *const o_enu[3],
+                         const double *const d_enu[3], const double *far_m, const uint8_t *real)
+{
+    const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
+    ListRay          ray = {.entered = 0};
+    for (int i = 0; i < count; i++) {
+        if (dark[i]) continue;
+        open_ray(&ray, frame, o_enu, d_enu, i, far_m[i], real && real[i]);
+        for (int k = 0; k < 2 && !ray.met; k++) {
+            struct RTCRay outer;
+            double        o[3];
+            if (!lists[k] || !lists[k]->scene) continue;
+            start_of(o, &ray, lists[k]);
+            fill_ray(&outer, o, ray.d_enu, ray.limit_m * past);
+            rtcOccluded1(lists[k]->scene, &ray.base, &outer);
+        }
+        dark[i] = ray.met;
+    }
+    return ray.entered;
+}
+
+/* ---- surfaces --------------------------------------------------------------------------------- */
+
+/* A normal of the prototype, in ENU. */
+static void turn_normal(double out[3], const double m[9], const double n[3])
+{
+    double scaled[3];
+    for (int k = 0; k < 3; k++) scaled[k] = n[k] / (m[k] * m[k] + m[3 + k] * m[3 + k] + m[6 + k] * m[6 + k]);
+    m3_mul_v3(out, m, scaled);
+    if (!v3_normalize(out, out)) out[0] = out[1] = 0, out[2] = 1;
+}
+
+/* The corners' normals, mixed, and bent by relief: slopes about and along the branch, whose sides are u and v. */
+static void bark_normal(double n[3], const PlantQuad *quad, const QuadPlane *plane, const float uv[2],
+                        const float slope[2])
+{
+    const double u = clamp((double)uv[0], 0, 1), v = clamp((double)uv[1], 0, 1);
+    const double share[4] = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
+    double       along[3] = {0}, about[3] = {0};
+    for (int c = 0; c < 3; c++) {
+        n[c] = 0;
+        for (int k = 0; k < 4; k++) n[c] += share[k] * (double)quad->n[k][c];
+    }
+    if (slope[0] == 0 && slope[1] == 0) return;
+    v3_normalize(n, n);
+    if (v3_normalize(along, plane->v)) v3_add_scaled(n, n, -(double)slope[0], along);
+    if (v3_normalize(about, plane->u)) v3_add_scaled(n, n, -(double)slope[1], about);
+}
+
+void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHit *hit, const double o_enu[3],
+                    const double d_enu[3], double range_m, float footprint_m)
+{
+    const PlantList *list = hit->plant & forest_low_bit ? low_plants_list(frame) : &frame->forest->standing;
+    const Plant     *plant = &list->plant[hit->place];
+    const PlantShape *shape = frame->forest->shape[hit->kind][hit->level].shape;
+    const PlantQuad *quad = &shape->quad[hit->quad];
+    const double     height_m = plant_height_m(plant);
+    double           m[9], n[3];
+    QuadPlane        plane;
+    transform_of(m, frame, plant);
+    plane_of(&plane, quad);
+    turn_normal(out->n_geo, m, plane.n);
+    const double side = v3_dot(out->n_geo, d_enu) > 0 ? -1 : 1;
+    v3_scale(out->n_geo, side, out->n_geo);
+    *out = (ForestSurface){.n_geo = {out->n_geo[0], out->n_geo[1], out->n_geo[2]}, .sky = quad->sky,
+                           .radius_m = (float)(quad->radius * height_m), .height_m = (float)height_m};
+    double foot_enu[3], from[3], inverse[9], p[3];
+    foot_of(foot_enu, list, plant);
+    v3_sub(from, o_enu, foot_enu);
+    v3_add_scaled(from, from, range_m, d_enu);
+    invert(inverse, m);
+    m3_mul_v3(p, inverse, from);
+    out->height_share = (float)clamp(p[2], 0, 1);
+    if (quad->organ == PLANT_LEAF) {
+        memcpy(out->n_enu, out->n_geo, sizeof out->n_enu);
+        out->albedo = plants_leaf_albedo((PlantKind)hit->kind, hit->plant, quad->piece);
+        return;
+    }
+    const float p_m[3] = {(float)(p[0] * height_m), (float)(p[1] * height_m), (float)(p[2] * height_m)};
+    float       slope[2] = {0, 0};
+    plants_bark(&out->albedo, slope, (PlantKind)hit->kind, hit->plant, p_m, footprint_m);
+    bark_normal(n, quad, &plane, hit->uv, slope);
+    turn_normal(out->n_enu, m, n);
+    if (v3_dot(out->n_enu, out->n_geo) < 0) v3_scale(out->n_enu, -1, out->n_enu);
+}
