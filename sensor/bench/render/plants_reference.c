@@ -55,7 +55,10 @@ static void place_corner(long double out[3], const Placed *p, const long double 
                  (long double)p->m[3 * c + 2] * at[2];
 }
 
-static long double dot(const long double a[3], const long double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static long double dot(const long double a[3], const long double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /* The outline in the prototype's axes; returns its corners. */
 static int outline_of(long double at[plant_outline_corners_most][3], const Plants *plants, PlantKind kind,
@@ -67,16 +70,18 @@ static int outline_of(long double at[plant_outline_corners_most][3], const Plant
     for (int i = 0; i < count; i++)
         for (int c = 0; c < 3; c++) {
             const long double a = quad->corner[0][c];
-            at[i][c] = leaf ? a + outline->uv[i][0] * (quad->corner[1][c] - a) + outline->uv[i][1] * (quad->corner[3][c] - a)
-                            : (long double)quad->corner[i][c];
+            at[i][c] = quad->corner[i % 4][c];
+            if (leaf)
+                at[i][c] =
+                    a + outline->uv[i][0] * (quad->corner[1][c] - a) + outline->uv[i][1] * (quad->corner[3][c] - a);
         }
     return count;
 }
 
-/* Distance of the ray from the outline, across it, above 0 within; and the range of the plane. False: edge-on to the last
- * digit, or behind. */
-static bool passes(long double *inside_m, long double *range_m, long double *facing, const Plants *plants, PlantKind kind,
-                   const PlantQuad *quad, const Placed *placed)
+/* Distance of the ray from the outline, across it, above 0 within; range of the plane, and cosine to its normal. False:
+ * edge-on to the last digit, or behind. */
+static bool passes(long double *inside_m, long double *range_m, long double *facing, const Plants *plants,
+                   PlantKind kind, const PlantQuad *quad, const Placed *placed)
 {
     long double at[plant_outline_corners_most][3], p[plant_outline_corners_most][3], n[3], one[3], two[3];
     long double x[plant_outline_corners_most], y[plant_outline_corners_most], corner[4][3], nearest2 = INFINITY;
@@ -98,13 +103,19 @@ static bool passes(long double *inside_m, long double *range_m, long double *fac
         long double c[3] = {quad->corner[i][0], quad->corner[i][1], quad->corner[i][2]};
         place_corner(corner[i], placed, c);
     }
-    for (int c = 0; c < 3; c++) one[c] = corner[2][c] - corner[0][c], two[c] = corner[3][c] - corner[1][c];
+    /* a card is given by three of its corners; sides of bark are flat but for the rounding of their corners */
+    const bool leaf = quad->organ == PLANT_LEAF;
+    for (int c = 0; c < 3; c++) {
+        one[c] = corner[leaf ? 1 : 2][c] - corner[0][c];
+        two[c] = corner[3][c] - corner[leaf ? 0 : 1][c];
+    }
     for (int c = 0; c < 3; c++)
         n[c] = one[(c + 1) % 3] * two[(c + 2) % 3] - one[(c + 2) % 3] * two[(c + 1) % 3];
     const long double length = sqrtl(dot(n, n)), rate = dot(n, placed->d);
     *inside_m = within ? sqrtl(nearest2) : -sqrtl(nearest2);
     if (!(length > 0) || rate == 0) return false;
-    for (int c = 0; c < 3; c++) one[c] = 0.25L * (corner[0][c] + corner[1][c] + corner[2][c] + corner[3][c]);
+    for (int c = 0; c < 3; c++)
+        one[c] = leaf ? corner[0][c] : 0.25L * (corner[0][c] + corner[1][c] + corner[2][c] + corner[3][c]);
     *range_m = dot(n, one) / rate;
     *facing  = fabsl(rate) / length;
     return *range_m > 0;
@@ -129,6 +140,21 @@ static bool meets_box(const PlantShape *shape, const double o[3], const double d
     return from <= to;
 }
 
+/* Whether the sphere about the foot that holds the whole plant, whatever its lean, is passed before limit_m. */
+static bool meets_plant(const Plant *plant, const PlantShape *shape, const long double foot[3], const double d[3],
+                        double limit_m)
+{
+    double corner[3], from[3], across[3];
+    for (int c = 0; c < 3; c++) {
+        corner[c] = fmax(fabs((double)shape->low[c]), fabs((double)shape->high[c]));
+        from[c]   = (double)foot[c];
+    }
+    const double radius_m = plant_height_m(plant) * fmax(1, plant->width / 128.0) * v3_length(corner) + spare_m;
+    const double along_m = v3_dot(from, d);
+    v3_add_scaled(across, from, -along_m, d);
+    return v3_length(across) <= radius_m && along_m >= -radius_m && along_m - radius_m <= limit_m;
+}
+
 void plants_judge(PlantErrors *worst, const Woods *woods, const Plants *plants, const PlantSpheres *spheres,
                   const double o_enu[3], const double d_enu[3], double range_m, const ForestHit *hit)
 {
@@ -150,11 +176,11 @@ void plants_judge(PlantErrors *worst, const Woods *woods, const Plants *plants, 
         const PlantShape *shape = &plants->shape[plant->kind][0];
         const float      *sphere = spheres->sphere[plant->kind];
         double            o[3], d[3];
-        plant_transform(placed.m, plant, NULL);
         for (int c = 0; c < 3; c++)
             placed.foot[c] = (long double)woods->origin_enu[c] + plant->p_m[c] - (long double)o_enu[c];
-        const double *m = placed.m, least = fmin(m[0] * m[0] + m[3] * m[3] + m[6] * m[6], m[2] * m[2] + m[5] * m[5] + m[8] * m[8]);
-        const double  spare = spare_m / sqrt(least);
+        if (!meets_plant(plant, shape, placed.foot, d_enu, range_m + 1e-3)) continue;
+        plant_transform(placed.m, plant, NULL);
+        const double *m = placed.m, spare = spare_m / (plant_height_m(plant) * fmin(1, plant->width / 128.0));
         for (int k = 0; k < 3; k++) {
             const double size2 = m[k] * m[k] + m[3 + k] * m[3 + k] + m[6 + k] * m[6 + k];
             o[k] = d[k] = 0;
@@ -169,7 +195,8 @@ void plants_judge(PlantErrors *worst, const Woods *woods, const Plants *plants, 
             const double along = v3_dot(to, d), reach = (double)sphere[3] + spare;
             long double  inside_m, at_m, facing;
             if (!mine && v3_dot(to, to) * d2 - along * along > reach * reach * d2) continue;
-            const bool crossed = passes(&inside_m, &at_m, &facing, plants, (PlantKind)plant->kind, &shape->quad[q], &placed);
+            const bool crossed =
+                passes(&inside_m, &at_m, &facing, plants, (PlantKind)plant->kind, &shape->quad[q], &placed);
             if (mine) {
                 own = true;
                 if (inside_m < 0) worst->past_m = fmax(worst->past_m, (double)-inside_m);
