@@ -361,7 +361,9 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
     field_real(f, "longitude of the origin", &g->frame.origin.lon_rad, -4, 4);
     field_real(f, "height of the origin", &g->frame.origin.h_m, -earth_m, earth_m);
     const Geodetic origin = g->frame.origin;
-    if (f->from && fields_good(f) && local_frame_at(&g->frame, &origin) != STATUS_OK) f->fault = "origin";
+    const Status   placed = f->from && fields_good(f) ? local_frame_at(&g->frame, &origin) : STATUS_OK;
+    if (placed == STATUS_NO_MEMORY) f->no_memory = true;
+    else if (placed != STATUS_OK) f->fault = "origin";
     field_u64(f, &g->config.seed);
     field_real(f, "relief", &g->config.relief_m, 0, 200);
     field_real(f, "spacing of the ground", &g->config.spacing_m, 0, 1e5);

@@ -1,4 +1,4 @@
-/* sensor/node/woods_choice.c: the square in which plants stand, the paths that are cleared of them, and what there is. */
+/*/* sensor/node/woods_choice.c: the square in which plants stand, paths that are cleared of them, and what there is. */
 #include "sensor/node/woods_choice.h"
 
 #include "dis/enumerations.h"
@@ -87,10 +87,11 @@ static double half_of(const Model *model, DisEntityType type)
 }
 
 /* From report to report on the ground. The pieces between are straight: a report in less than step_m of the last that
- * was taken is within its path. Reports that no drive joins are places. */
+ * was taken is within its path. Reports that no drive joins are places. A platform begins and ends in the open. */
 static void add_track(Paths *p, const Track *track, const bool *fixed, double half_m)
 {
-    static const double step_m = 1, jump_m = 500;
+    static const double step_m = 1, jump_m = 500, open_m = 15;
+    const bool          opens = track->type.kind == dis_kind_platform;
     double              last[3], here[3];
     bool                any = false;
     for (int n = 0; n < track->count; n++) {
@@ -99,6 +100,7 @@ static void add_track(Paths *p, const Track *track, const bool *fixed, double ha
             continue;
         }
         enu_of(here, p->landscape, track->point[n].p_ecef);
+        if (opens && (n == 0 || n == track->count - 1)) add_path(p, here, here, fmax(open_m, half_m));
         const double d_m = any ? hypot(here[0] - last[0], here[1] - last[1]) : INFINITY;
         if (any && d_m < step_m) continue;
         add_path(p, any && d_m < jump_m ? last : here, here, half_m);
@@ -107,28 +109,22 @@ static void add_track(Paths *p, const Track *track, const bool *fixed, double ha
     }
 }
 
-/* Of a flight the parts that are lower than the highest trees. */
-static void add_flight(Paths *p, const Track *track)
+/* Of a flight, or of the sight of a shot that hit, the parts that are lower than the highest trees. */
+static void add_line(Paths *p, const ClearLine *line)
 {
-    static const double tree_m = 35, half_m = 3, step_m = 25, jump_m = 5000;
-    double              a[3], b[3];
-    for (int n = 0; n + 1 < track->count; n++) {
-        enu_of(a, p->landscape, track->point[n].p_ecef);
-        enu_of(b, p->landscape, track->point[n + 1].p_ecef);
-        const double d_m = hypot(b[0] - a[0], b[1] - a[1]);
-        if (!(d_m < jump_m)) continue;
-        const int pieces = 1 + (int)(d_m / step_m);
-        double    from[3], to[3];
-        bool      low = false;
-        for (int k = 0; k <= pieces; k++) { /* neighbouring low pieces become one */
-            double at[3];
-            for (int c = 0; c < 3; c++) at[c] = a[c] + (b[c] - a[c]) * k / pieces;
-            const bool below = at[2] - elevation_height(&p->landscape->elevation, at[0], at[1], NULL) < tree_m;
-            if (below && !low) memcpy(from, at, sizeof from);
-            if (below) memcpy(to, at, sizeof to);
-            if ((low && !below) || (below && k == pieces)) add_path(p, from, to, half_m);
-            low = below;
-        }
+    static const double tree_m = 35, half_m = 8 /* of a wide crown, about it */, step_m = 25;
+    const double *const a = line->a_enu, *const b = line->b_enu;
+    const int           pieces = 1 + (int)(hypot(b[0] - a[0], b[1] - a[1]) / step_m);
+    double              from[3] = {0}, to[3] = {0};
+    bool                low = false;
+    for (int k = 0; k <= pieces; k++) { /* neighbouring low pieces become one */
+        double at[3];
+        for (int c = 0; c < 3; c++) at[c] = a[c] + (b[c] - a[c]) * k / pieces;
+        const bool below = at[2] - elevation_height(&p->landscape->elevation, at[0], at[1], NULL) < tree_m;
+        if (below && !low) memcpy(from, at, sizeof from);
+        if (below) memcpy(to, at, sizeof to);
+        if ((low && !below) || (below && k == pieces)) add_path(p, from, to, half_m);
+        low = below;
     }
 }
 
@@ -142,8 +138,8 @@ static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalo
         const bool  *fixed = e->fixed + e->first[t];
         if (e->stance[t] == STANCE_GROUND || e->stance[t] == STANCE_LANDED)
             add_track(p, track, fixed, half_of(model, track->type));
-        if (e->stance[t] == STANCE_FLIES || e->stance[t] == STANCE_LANDED) add_flight(p, track);
     }
+    for (int i = 0; i < e->said.line_count && !p->no_memory; i++) add_line(p, &e->said.line[i]);
     for (int i = 0; i < survey->shot_count; i++) {
         const Shot *shot = &survey->shot[i];
         double      p_enu[3];
@@ -216,7 +212,7 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
                    woods->left_out, woods->reach_m);
     if (!real)
         choice_add(choices, "woods: cleared along the paths of %d entit%s on the ground, where %d shot%s hit it, and "
-                   "under low flights (terrain.woods)", w->entities, w->entities == 1 ? "y" : "ies", impacts,
+                   "under low flights and sights (terrain.woods)", w->entities, w->entities == 1 ? "y" : "ies", impacts,
                    impacts == 1 ? "" : "s");
     else if (w->config.store && *w->config.store)
         choice_add(choices, "woods: %d from marked trunks, %d by the canopy's height, %d by surface classes",
@@ -249,7 +245,9 @@ Status choose_woods(WoodsChoice *out, Choices *choices, const Survey *survey, co
     out->path              = paths.path;
     out->config.path       = paths.path;
     out->config.path_count = paths.count;
+    const double begun_s = wall_clock_s();
     status = paths.no_memory ? STATUS_NO_MEMORY : woods_create(&out->woods, landscape, &out->config, pool);
+    log_detail("woods: placed in %.0f ms, %d pieces of paths", 1e3 * (wall_clock_s() - begun_s), paths.count);
     if (status == STATUS_OK) {
         count_in_trunks(out, survey, landscape, catalog, &e);
         report(choices, out, config, real, impacts);

@@ -1,8 +1,8 @@
 /* sensor/node/woods_choice.h: where plants stand in a run: about the aim, clear of what the exercise says.
  *
- * On invented ground no plant stands on the path of anything on the ground, where a burst hit it, or where a flight
- * passes low: paths that are known when the world is made (terrain.woods). Real trees stay; entities that begin within
- * a trunk are counted. */
+ * On invented ground no plant stands on the path of anything on the ground, where a burst hit it, or where a flight or
+ * the line of sight of a shot that hit passes low, as far as these are known when the world is made. Real trees stay;
+ * entities that begin within a trunk are counted. */
 #ifndef SENSOR_NODE_WOODS_CHOICE_H
 #define SENSOR_NODE_WOODS_CHOICE_H
 

@@ -5,7 +5,7 @@
  *
  *     name          its bytes, then one octet 0
  *     width, height two uint32, little-endian
- *     type          four octets: "f32\0", "u32\0" or "f64\0"
+ *     type          four octets: "f32\0", "u32\0", "f64\0", "c64\0" or "u8\0\0"
  *     values        rows top down, left to right, little-endian; every NaN of f32 as 0x7fc00000, of f64 as
  *                   0x7ff8000000000000; all other values bit for bit (so -0 and 0 differ)
  *

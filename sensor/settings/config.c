@@ -232,8 +232,8 @@ static const Setting keys[] = {
     {"terrain.woods_trees", SETTING_INT, AT(terrain.woods_trees), 0, woods_most_trees, NULL, "",
      "most trees; beyond, those farthest from the aim are left out"},
     {"terrain.woods_half_m", SETTING_DOUBLE, AT(terrain.woods_half_m), 0, 50000, NULL, "m",
-     "half width of the square about the aim in which plants stand; below 50: the extent of the entities and 4 km about "
-     "it"},
+     "half width of the square about the aim in which plants stand; below 50: the extent of the entities and 4 km "
+     "about it"},
     {"terrain.woods_leaves", SETTING_TEXT, AT(terrain.woods_leaves), 0, 0, "on|off", "",
      "leaves of deciduous trees; off: bare, as in winter"},
     {"terrain.woods_sway", SETTING_DOUBLE, AT(terrain.woods_sway), 0, 5, NULL, "",

@@ -20,5 +20,9 @@ Status frame_world_plant(World *world, const Woods *woods, const Config *config,
 {
     const ForestConfig forest = {.leaves = strcmp(config->terrain.woods_leaves, "on") == 0,
                                  .level1_px = config->terrain.woods_level1_px, .sway = config->terrain.woods_sway};
-    return woods ? world_plant(world, woods, &forest, isa, pool) : STATUS_OK;
+    if (!woods) return STATUS_OK;
+    const double begun_s = wall_clock_s();
+    const Status status  = world_plant(world, woods, &forest, isa, pool);
+    log_detail("woods: grown in %.0f ms", 1e3 * (wall_clock_s() - begun_s));
+    return status;
 }

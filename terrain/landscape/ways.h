@@ -33,6 +33,9 @@ int landscape_way_vertices(double (*out)[2], WayKind *kind, const Landscape *lan
 void ways_detail(const GroundDetail *detail, const Landscape *landscape, int count, const uint8_t *surface,
                  const double *x_m, const double *y_m, const float *footprint_m);
 
+/* Moves a place of a field with rows (crops, furrows) onto the middle of its row; false: the class has none. */
+bool landscape_row(double place_m[2], const Landscape *landscape, SurfaceClass surface, double x_m, double y_m);
+
 /* A village's plot: a rectangle beside its lane, with a place for a house. */
 typedef struct HousePlot {
     double x_m, y_m;           /* middle of the plot */

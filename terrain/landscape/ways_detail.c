@@ -157,6 +157,23 @@ static void rows_detail(const GroundDetail *out, int first, const Landscape *lan
     }
 }
 
+bool landscape_row(double place_m[2], const Landscape *landscape, SurfaceClass surface, double x_m, double y_m)
+{
+    const Cover *cover = landscape->cover;
+    double       x[8], y[8];
+    float        across_x[8], across_y[8];
+    for (size_t r = 0; cover && r < sizeof rows_of_class / sizeof *rows_of_class; r++) {
+        if (rows_of_class[r].class != surface) continue;
+        for (int k = 0; k < 8; k++) x[k] = x_m, y[k] = y_m;
+        across_rows(across_x, across_y, cover->seed, x, y, 1);
+        const double rows = (x_m * (double)across_x[0] + y_m * (double)across_y[0]) / rows_of_class[r].apart_m;
+        const double off_m = (round(rows) - rows) * rows_of_class[r].apart_m;
+        place_m[0] = x_m + off_m * (double)across_x[0], place_m[1] = y_m + off_m * (double)across_y[0];
+        return true;
+    }
+    return false;
+}
+
 /* ---- both ------------------------------------------------------------------------------------- */
 
 void ways_detail(const GroundDetail *detail, const Landscape *landscape, int count, const uint8_t *surface,

@@ -4,14 +4,15 @@
 static const struct {
     const char *name;
     bool        deciduous;
+    double      crown;
 } kinds[PLANT_KINDS] = {
-    [PLANT_PINE] = {"pine", false},           [PLANT_ALDER] = {"alder", true},
-    [PLANT_BIRCH] = {"birch", true},          [PLANT_ENGLISH_OAK] = {"english_oak", true},
-    [PLANT_SESSILE_OAK] = {"sessile_oak", true}, [PLANT_RED_OAK] = {"red_oak", true},
-    [PLANT_WHITE_OAK] = {"white_oak", true},  [PLANT_BUSH] = {"bush", true},
-    [PLANT_HEDGE] = {"hedge", true},          [PLANT_REED] = {"reed", false},
-    [PLANT_GRASS] = {"grass_tuft", false},    [PLANT_DRY_GRASS] = {"dry_tuft", false},
-    [PLANT_CROP] = {"crop_plant", false},     [PLANT_ROCK] = {"boulder", false},
+    [PLANT_PINE] = {"pine", false, 0.16},           [PLANT_ALDER] = {"alder", true, 0.18},
+    [PLANT_BIRCH] = {"birch", true, 0.22},          [PLANT_ENGLISH_OAK] = {"english_oak", true, 0.29},
+    [PLANT_SESSILE_OAK] = {"sessile_oak", true, 0.24}, [PLANT_RED_OAK] = {"red_oak", true, 0.24},
+    [PLANT_WHITE_OAK] = {"white_oak", true, 0.32},  [PLANT_BUSH] = {"bush", true, 0.49},
+    [PLANT_HEDGE] = {"hedge", true, 0.44},          [PLANT_REED] = {"reed", false, 0.17},
+    [PLANT_GRASS] = {"grass_tuft", false, 0.75},    [PLANT_DRY_GRASS] = {"dry_tuft", false, 0.66},
+    [PLANT_CROP] = {"crop_plant", false, 0.22},     [PLANT_ROCK] = {"boulder", false, 0.65},
 };
 
 const char *plant_name(PlantKind kind) { return kind >= 0 && kind < PLANT_KINDS ? kinds[kind].name : "none"; }
@@ -24,6 +25,8 @@ PlantKind plant_find(const char *name)
 }
 
 bool plant_is_deciduous(PlantKind kind) { return kind >= 0 && kind < PLANT_KINDS && kinds[kind].deciduous; }
+
+double plant_crown_share(PlantKind kind) { return kind >= 0 && kind < PLANT_KINDS ? kinds[kind].crown : 0; }
 
 /* The shortest turn from up to the leaning axis a (Rodrigues): columns of R = I + [w] + [w]^2 / (1 + a_z), w = up x a. */
 void plant_transform(double m_enu_from_plant[9], const Plant *plant, const double sway_rad[2])

@@ -19,6 +19,8 @@ typedef enum PlantKind {
 const char *plant_name(PlantKind kind);   /* "pine", "english_oak", "hedge" ... */
 PlantKind   plant_find(const char *name); /* PLANT_KINDS: no such kind */
 static inline bool plant_is_tree(PlantKind kind) { return kind < PLANT_TREES; }
+/* Radius of its prototype's crown over its height, about (tests/render/test_plants.c). */
+double      plant_crown_share(PlantKind kind);
 /* Whether it drops its leaves in winter. */
 bool        plant_is_deciduous(PlantKind kind);
 

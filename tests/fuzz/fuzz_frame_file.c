@@ -14,8 +14,8 @@ const int fuzz_rounds = 3000;
 
 static void identity(double r[9]) { m3_identity(r); }
 
-/* Two entities, a puff; ground of two nested levels with cover and a photograph, or invented. */
-static void small_file(ByteSink *out, bool invented)
+/* Two entities, a puff; ground of two nested levels with cover and a photograph, or invented; with plants or without. */
+static void small_file(ByteSink *out, bool invented, bool planted)
 {
     static uint16_t stored[elevation_tile_posts];
     static ElevationTile tile[1] = {{-elevation_base_unit, 2}};
@@ -63,13 +63,16 @@ static void small_file(ByteSink *out, bool invented)
         file.ground.photo    = (Photo){.mips = 2, .nx = {2, 1}, .ny = {2, 1}, .cell_m = 8,
                                        .block = {&block[0], &block[1]}};
     }
+    static const WoodsPath path[2] = {{{1, 2}, {3, 4}, 5}, {{6, 7}, {6, 7}, 8}};
+    file.planted = planted;
+    if (planted) file.woods = (WoodsConfig){.half_width_m = 500, .most_trees = 70, .path_count = 2, .path = path};
     if (frame_file_pack(out, &file, NULL) != STATUS_OK) abort();
 }
 
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     ByteSink file = {0};
-    small_file(&file, index % 2 == 0);
+    small_file(&file, index % 2 == 0, index / 2 % 2 == 1);
     const size_t size = file.count;
     if (size > fuzz_seed_octets) abort();
     memcpy(out, file.bytes, size);
@@ -92,6 +95,10 @@ static bool parse(const uint8_t *data, size_t size)
             if (!v3_is_finite(s->entity[e].p_ecef) || s->entity[e].first_node > s->node_count) abort();
         if (file->request.hidden_entity >= s->count || file->eye.host_index >= s->count) abort();
         if (!(file->request.view.focal_px > 0) || file->plane_count > frame_max_planes) abort();
+        const WoodsConfig *w = &file->woods;
+        if (file->planted && !(w->half_width_m >= 50 && w->most_trees <= woods_most_trees)) abort();
+        for (int i = 0; i < w->path_count; i++)
+            if (!isfinite(w->path[i].a_m[0] + w->path[i].b_m[1]) || !(w->path[i].half_m >= 0)) abort();
         Landscape   landscape = {0};
         const char *why = NULL;
         size_t      posts = 0;
@@ -121,9 +128,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static bool begun = false;
     log_set_level((LogLevel)(LOG_ERROR + 1));
-    for (int k = 0; k < 2 && !begun; k++) { /* an undamaged file is accepted, or nothing here is tried */
+    for (int k = 0; k < 4 && !begun; k++) { /* an undamaged file is accepted, or nothing here is tried */
         ByteSink whole = {0};
-        small_file(&whole, k == 0);
+        small_file(&whole, k % 2 == 0, k >= 2);
         if (!parse(whole.bytes, whole.count)) abort();
         sink_free(&whole);
     }
@@ -137,7 +144,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     ByteSink    seed = {0};
     Arena      *arena = arena_create();
     if (!arena) abort();
-    small_file(&seed, size % 2 == 0);
+    small_file(&seed, size % 2 == 0, size / 2 % 2 == 0);
     if (chunks_open(&chunks, seed.bytes, seed.count, arena) != STATUS_OK) abort();
     chunks_begin(&again);
     for (int c = 0; chunks_next(&chunks, name, &content) == STATUS_OK && *name; c++) {
@@ -146,7 +153,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         sink_bytes(&plain, content.at, octets);
         /* four octets say: which chunk, where, what */
         for (size_t i = 0; i + 3 < size && i < 24; i += 4)
-            if (octets > 0 && data[i] % 8 == c)
+            if (octets > 0 && data[i] % 9 == c)
                 plain.bytes[(data[i + 1] | (size_t)data[i + 2] << 8) % octets] ^= data[i + 3];
         chunks_put(&again, name, &plain);
         sink_free(&plain);

@@ -38,6 +38,12 @@ static void what_is_wrong_is_said_and_nothing_applied(void **state)
         {"sensor:\n  width_px: 1,5\n", ":2: sensor.width_px: '1,5' is not a whole number in 8 .. 8192 px"},
         {"sensor:\n  width_px: 7\n", "in 8 .. 8192"},
         {"terrain:\n  detail: maybe\n", ":2: terrain.detail: 'maybe' is not"},
+        {"terrain:\n  woods: yes\n", ":2: terrain.woods: 'yes' is not one of on|off"},
+        {"terrain:\n  woods_trees: 4000001\n", "is not a whole number in 0 .. 4000000"},
+        {"terrain:\n  woods_leaves: few\n", "terrain.woods_leaves: 'few' is not one of on|off"},
+        {"terrain:\n  woods_sway: 6\n", "in 0 .. 5"},
+        {"terrain:\n  woods_level1_px: -1\n", "in 0 .. 1000 px"},
+        {"terrain:\n  woods_half_m: 50001\n", "in 0 .. 50000 m"},
         {"sensor:\n  hfov_deg: nan\n", "sensor.hfov_deg: 'nan' is not a number in 0.01 .. 120 deg"},
         {"sensor:\n  width_px: 320\n  width_px: 321\n", ":3: sensor.width_px is given twice"},
         {"sensor:\n  optical: sepia\n", "'sepia' is not one of rgb|pan|nir"},
@@ -128,6 +134,26 @@ static void a_store_is_the_whole_ground(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* Planes that a world without plants lacks cannot be asked for; `all` takes what there is. */
+static void planes_of_plants_need_plants(void **state)
+{
+    (void)state;
+    static const char *const planes[] = {"instance", "range,cover", "all", "range"};
+    for (int woods = 0; woods < 2; woods++)
+        for (int k = 0; k < 4; k++) {
+            Config c = config_default();
+            assert_string_equal(c.terrain.woods, "off");
+            assert_int_equal(config_set(&c, "terrain.woods", woods ? "on" : "off", "test"), STATUS_OK);
+            assert_int_equal(config_set(&c, "publish.planes", planes[k], "test"), STATUS_OK);
+            *check_said = 0;
+            log_set_sink(check_listen, NULL);
+            const Status status = config_check(&c);
+            log_set_sink(NULL, NULL);
+            assert_int_equal(status, woods || k >= 2 ? STATUS_OK : STATUS_BAD_VALUE);
+            CHECK(status == STATUS_OK || strstr(check_said, "terrain.woods"));
+        }
+}
+
 static void where_it_comes_from_and_goes_to_is_not_hashed(void **state)
 {
     (void)state;
@@ -136,7 +162,7 @@ static void where_it_comes_from_and_goes_to_is_not_hashed(void **state)
                                           {"publish.files", "false"}, {"record.path", "a.pcapng"},
                                           {"exercise.port", "4000"},
                                           {"exercise.to_s", "12"}},
-                             *const other[][2] = {{"seed", "2"}, {"exercise.listen_s", "3"}, {"node.site", "7"}};
+                             *const other[][2] = {{"seed", "2"}, {"terrain.woods", "on"}, {"exercise.listen_s", "3"}, {"node.site", "7"}};
     static char plain[16384], text[16384];
     Config      config = config_default();
     config_text(plain, sizeof plain, &config);
@@ -162,6 +188,7 @@ int main(void)
         cmocka_unit_test(what_was_given_is_known),
         cmocka_unit_test(ranges_of_several_keys_are_checked),
         cmocka_unit_test(a_store_is_the_whole_ground),
+        cmocka_unit_test(planes_of_plants_need_plants),
         cmocka_unit_test(where_it_comes_from_and_goes_to_is_not_hashed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

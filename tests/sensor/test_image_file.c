@@ -122,6 +122,25 @@ static void exr_round_trip_is_exact(void **state)
     }
 }
 
+/* Octets are widened to uint32, which the format has; alone and among others. */
+static void octets_become_uint32(void **state)
+{
+    (void)state;
+    static uint8_t  cover[pixels];
+    static uint32_t u[pixels];
+    fill();
+    for (int i = 0; i < pixels; i++) cover[i] = (uint8_t)(37 * i);
+    const Plane plane[] = {{"cover", PLANE_U8, width, height, cover}, plane_u32("entity", width, height, entity)};
+    const char *path = in_folder("cover.exr");
+    for (int planes = 1; planes <= 2; planes++) {
+        assert_int_equal(image_write_exr(path, plane, planes, NULL, NULL, 0), STATUS_OK);
+        assert_int_equal(image_read_u32(u, path, "cover"), STATUS_OK);
+        for (int i = 0; i < pixels; i++) assert_int_equal(u[i], (uint8_t)(37 * i));
+    }
+    assert_int_equal(image_read_u32(u, path, "entity"), STATUS_OK);
+    assert_memory_equal(u, entity, sizeof u);
+}
+
 /* Lines that shrink and lines that do not, in one file: noise below a constant sky, and a sky again; the last band of
  * lines is not whole. The sky costs next to nothing, noise no more than its size. */
 static void lines_shrink_or_stay(void **state)
@@ -354,6 +373,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exr_round_trip_is_exact),
+        cmocka_unit_test(octets_become_uint32),
         cmocka_unit_test(lines_shrink_or_stay),
         cmocka_unit_test(reading_never_converts),
         cmocka_unit_test(attributes_come_back),

@@ -136,9 +136,10 @@ static void shape_name_and_type_count(void **state)
     (void)state;
     static const float zero[8];
     const Plane one[] = {plane_f32("a", 2, 3, zero), plane_f32("a", 3, 2, zero), plane_f32("b", 2, 3, zero),
-                         plane_u32("a", 2, 3, (const uint32_t *)zero), plane_f32("a", 1, 6, zero)};
-    char text[5][sha256_text_size];
-    for (int i = 0; i < 5; i++) {
+                         plane_u32("a", 2, 3, (const uint32_t *)zero), plane_f32("a", 1, 6, zero),
+                         {"a", PLANE_U8, 2, 3, zero}};
+    char text[6][sha256_text_size];
+    for (int i = 0; i < 6; i++) {
         assert_int_equal(plane_hash(text[i], &one[i], 1), STATUS_OK);
         for (int j = 0; j < i; j++) assert_string_not_equal(text[i], text[j]);
     }

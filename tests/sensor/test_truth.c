@@ -264,6 +264,35 @@ static void an_occluder_is_named_where_the_fraction_shows_it(void **state)
             }
 }
 
+/* A pixel's area of trees before the target: the share, and who is named, by whichever hides most. */
+static void plants_hide_a_share_of_a_target(void **state)
+{
+    (void)state;
+    static const struct {
+        double      ground, entity, trees;
+        const char *by;
+    } in_the_way[] = {{0, 0, 6, "trees"}, {3, 2, 4, "trees"}, {4, 2, 3, "ground"}, {2, 4, 3, "entity"},
+                      {0, 0, 0.1, NULL},  {5, 0, 0, "ground"}};
+    static uint32_t instance[width * height];
+    for (size_t i = 0; i < sizeof in_the_way / sizeof *in_the_way; i++) {
+        const double ground = in_the_way[i].ground, entity = in_the_way[i].entity, trees = in_the_way[i].trees;
+        Target       t[2];
+        scene();
+        f.picture.instance = instance;
+        f.pixels[1] = (TargetPixels){.projected = true, .visible = 12 - ground - entity - trees, .amodal = 12,
+                                     .occluded_ground = ground, .occluded_entity = entity, .occluded_plants = trees,
+                                     .occluder = entity > 0 ? 0 : -1};
+        assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
+        CHECK_NEAR(t[0].foliage_fraction, trees / 12, 1e-12);
+        CHECK_NEAR(t[0].visible_fraction, in_the_way[i].by ? 1 - (ground + entity + trees) / 12 : 1, 1e-12);
+        CHECK(in_the_way[i].by ? t[0].occluder && strcmp(t[0].occluder, in_the_way[i].by) == 0 : !t[0].occluder);
+        CHECK(t[0].occluder_index == (in_the_way[i].by && *in_the_way[i].by == 'e' ? 0 : -1));
+        f.picture.instance = NULL; /* a world without plants says nothing of them */
+        assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
+        CHECK(isnan(t[0].foliage_fraction));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -273,6 +302,7 @@ int main(void)
         cmocka_unit_test(a_small_target_is_judged_by_its_samples),
         cmocka_unit_test(hidden_targets_are_listed_and_the_host_never),
         cmocka_unit_test(an_occluder_is_named_where_the_fraction_shows_it),
+        cmocka_unit_test(plants_hide_a_share_of_a_target),
     };
     return cmocka_run_group_tests(tests, open_fixture, close_fixture);
 }

@@ -48,6 +48,9 @@ command_of() {
         replay) pv replay "$tmp/demo.pcap" --config "$tmp/config.yaml" --threads 1 --out out ;;
         sensor) pv replay "$tmp/demo.pcap" --config "$tmp/config.yaml" --threads 1 --out out --bands lwir \
             --set sensor.preset=staring_lwir --from 1362 --to 1363 --set sensor.rate_hz=1 ;;
+        woods) pv replay "$tmp/demo.pcap" --config "$tmp/config.yaml" --threads 1 --out out --bands lwir --from 1366 --to 1366 \
+            --save-frame 4 --set sensor.rate_hz=1 --set terrain.woods=on --set terrain.woods_half_m=100 \
+            --set terrain.woods_trees=200 ;;
         inspect) pv inspect "$tmp/demo.pcap" ;;
         model) pv model info "$tmp/etc/box.obj" ;;
         rays) pv probe rays truck <"$tmp/rays.csv" ;;
@@ -83,7 +86,7 @@ export -f pv command_of outcome row_says_why one
 
 # ---- where each command allocates
 mkdir "$tmp/places"
-names="replay sensor inspect model rays air geoid exercise"
+names="replay sensor woods inspect model rays air geoid exercise"
 for name in $names; do
     mkdir -p "$tmp/good"
     (

@@ -41,7 +41,8 @@ run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --from 1366 --to 1366
     --set sensor.preset=staring_lwir,staring_mwir,tv --set sensor.lens_k1=-0.1 --set sensor.lateral_r=0.001
 check "all products" [ $code = 0 ] || cat "$tmp/stderr"
 run replay "$tmp/demo.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 --bands optical --host observer \
-    --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png
+    --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png \
+    --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=5000
 check "other products" [ $code = 0 ] || cat "$tmp/stderr"
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
 run replay "$tmp/demo.pcap" --out "$tmp/sweep" "${small[@]}" --from 1366 --to 1366 --bands lwir --coco --sweep "$tmp/sweep.yaml"

@@ -1,0 +1,251 @@
+/* terrain/woods/woods.c: all squares of the woods, and queries of what stands where. */
+#include "terrain/woods/woods_private.h"
+
+#include "terrain/landscape/ways.h"
+
+#include <stdlib.h>
+
+/* ---- sources ---------------------------------------------------------------------------------- */
+
+static void free_source(WoodsSource *s)
+{
+    if (!s) return;
+    woods_clearings_free(&s->clearings);
+    free(s->crowns.first), free(s->crowns.item);
+    if (s->has_store) store_close(&s->store);
+    free(s);
+}
+
+static bool crown_square(size_t *n, const WoodsSource *s, const Crown *crown)
+{
+    const double i = floor((double)crown->x_m / woods_square_m) - (double)s->i0;
+    const double j = floor((double)crown->y_m / woods_square_m) - (double)s->j0;
+    if (!(i >= 0 && j >= 0 && i < s->nx && j < s->ny)) return false;
+    *n = (size_t)j * (size_t)s->nx + (size_t)i;
+    return true;
+}
+
+static Status sort_crowns(WoodsSource *s)
+{
+    const size_t squares = (size_t)s->nx * (size_t)s->ny;
+    WoodsCrowns *c = &s->crowns;
+    size_t       n;
+    if (!s->has_store || s->store.crown_count == 0) return STATUS_OK;
+    c->first = calloc(squares + 2, sizeof *c->first);
+    c->item  = calloc(s->store.crown_count, sizeof *c->item);
+    if (!c->first || !c->item) return STATUS_NO_MEMORY;
+    for (int k = 0; k < 2; k++) c->low[k] = INFINITY, c->high[k] = -INFINITY;
+    for (uint64_t k = 0; k < s->store.crown_count; k++) {
+        const Crown *crown = &s->store.crown[k];
+        const double p[2] = {(double)crown->x_m, (double)crown->y_m};
+        for (int a = 0; a < 2; a++) c->low[a] = fmin(c->low[a], p[a]), c->high[a] = fmax(c->high[a], p[a]);
+        if (crown_square(&n, s, crown)) c->first[n + 2]++;
+    }
+    for (size_t q = 1; q <= squares; q++) c->first[q + 1] += c->first[q];
+    for (uint64_t k = 0; k < s->store.crown_count; k++)
+        if (crown_square(&n, s, &s->store.crown[k])) c->item[c->first[n + 1]++] = (uint32_t)k;
+    return STATUS_OK;
+}
+
+static Status open_source(WoodsSource **out, const Landscape *landscape, const WoodsConfig *config)
+{
+    char         path[512];
+    WoodsSource *s = calloc(1, sizeof *s);
+    Status       status = STATUS_OK;
+    if (!s) return STATUS_NO_MEMORY;
+    s->seed = config->seed, s->landscape = landscape;
+    double end[2];
+    for (int k = 0; k < 2; k++) {
+        s->centre_m[k] = config->centre_m[k];
+        end[k] = ceil((config->centre_m[k] + config->half_width_m) / woods_square_m);
+    }
+    s->i0 = (int64_t)floor((config->centre_m[0] - config->half_width_m) / woods_square_m);
+    s->j0 = (int64_t)floor((config->centre_m[1] - config->half_width_m) / woods_square_m);
+    s->nx = (int)(end[0] - (double)s->i0), s->ny = (int)(end[1] - (double)s->j0);
+    s->origin_enu[0] = (double)s->i0 * woods_square_m, s->origin_enu[1] = (double)s->j0 * woods_square_m;
+    const double z_m = elevation_height(&landscape->elevation, config->centre_m[0], config->centre_m[1], NULL);
+    s->origin_enu[2] = isfinite(z_m) ? rint(z_m) : 0;
+    if (!etc_path(path, sizeof path, "woods.csv")) {
+        log_error("woods: path of the tables is too long; set PITVIPER_ETC to a shorter one");
+        status = STATUS_BAD_VALUE;
+    }
+    if (status == STATUS_OK) status = woods_table_read(&s->table, path);
+    if (status == STATUS_OK && config->store && *config->store) {
+        status = store_open(&s->store, config->store);
+        s->has_store = status == STATUS_OK;
+    }
+    if (status == STATUS_OK) status = sort_crowns(s);
+    if (status == STATUS_OK) status = woods_clearings_create(&s->clearings, s, config);
+    if (status != STATUS_OK) {
+        free_source(s);
+        return status;
+    }
+    *out = s;
+    return STATUS_OK;
+}
+
+/* ---- squares ---------------------------------------------------------------------------------- */
+
+typedef struct Filling {
+    const WoodsSource *source;
+    SquarePlants      *square; /* [nx * ny] */
+} Filling;
+
+static void fill_row(void *user, int worker, int j)
+{
+    Filling *f = user;
+    (void)worker;
+    for (int i = 0; i < f->source->nx; i++)
+        woods_fill_square(&f->square[(size_t)j * (size_t)f->source->nx + (size_t)i], f->source, i, j);
+}
+
+typedef struct SquareAway {
+    double   away_m;
+    uint32_t square;
+} SquareAway;
+
+static int compare_away(const void *a, const void *b)
+{
+    const SquareAway *p = a, *q = b;
+    if (p->away_m != q->away_m) return p->away_m < q->away_m ? -1 : 1;
+    return (p->square > q->square) - (p->square < q->square);
+}
+
+/* Empties the squares farthest from the centre until at most `most` plants are left. */
+static Status keep_nearest(Woods *out, const WoodsSource *s, SquarePlants *square, int most)
+{
+    const size_t squares = (size_t)s->nx * (size_t)s->ny;
+    SquareAway  *away = malloc(squares * sizeof *away);
+    int64_t      kept = 0;
+    if (!away) return STATUS_NO_MEMORY;
+    for (size_t n = 0; n < squares; n++) {
+        const double x_m = s->origin_enu[0] + ((double)(n % (size_t)s->nx) + 0.5) * woods_square_m;
+        const double y_m = s->origin_enu[1] + ((double)(n / (size_t)s->nx) + 0.5) * woods_square_m;
+        away[n] = (SquareAway){hypot(x_m - s->centre_m[0], y_m - s->centre_m[1]), (uint32_t)n};
+    }
+    qsort(away, squares, sizeof *away, compare_away);
+    out->reach_m = away[squares - 1].away_m;
+    bool full = false;
+    for (size_t k = 0; k < squares; k++) {
+        SquarePlants *one = &square[away[k].square];
+        if (!full && kept + one->count > most) {
+            full = true;
+            out->reach_m = fmax(away[k].away_m - 0.7072 * woods_square_m, 0);
+        }
+        if (full) {
+            out->left_out += one->count;
+            one->count = 0;
+        }
+        kept += one->count;
+    }
+    free(away);
+    return STATUS_OK;
+}
+
+static Status gather(Woods *out, const WoodsSource *s, const SquarePlants *square)
+{
+    const size_t squares = (size_t)s->nx * (size_t)s->ny;
+    size_t       all = 0;
+    for (size_t n = 0; n < squares; n++) all += (size_t)square[n].count;
+    out->first = malloc((squares + 1) * sizeof *out->first);
+    out->plant = malloc((all + 1) * sizeof *out->plant);
+    if (!out->first || !out->plant) return STATUS_NO_MEMORY;
+    all = 0;
+    for (size_t n = 0; n < squares; n++) {
+        const SquarePlants *one = &square[n];
+        out->first[n] = (uint32_t)all;
+        if (one->count == 0) continue;
+        memcpy(out->plant + all, one->plant, (size_t)one->count * sizeof *one->plant);
+        for (int k = 0; k < one->count; k++) out->by_kind[one->plant[k].kind]++;
+        all += (size_t)one->count;
+        out->from_crowns += one->from_crowns, out->from_canopy += one->from_canopy;
+        out->from_classes += one->from_classes, out->from_hedges += one->from_hedges;
+    }
+    out->first[squares] = (uint32_t)all;
+    out->count = (int)all;
+    return STATUS_OK;
+}
+
+static bool config_is_good(const WoodsConfig *c)
+{
+    bool good = c->half_width_m >= 50 && c->half_width_m <= 50000 && c->most_trees >= 0 &&
+                c->most_trees <= woods_most_trees && c->path_count >= 0;
+    for (int k = 0; k < 2; k++) good = good && fabs(c->centre_m[k]) < 1e6;
+    for (int n = 0; good && n < c->path_count; n++)
+        for (int k = 0; k < 2; k++)
+            good = good && fabs(c->path[n].a_m[k]) < 1e7 && fabs(c->path[n].b_m[k]) < 1e7 && c->path[n].half_m >= 0 &&
+                   c->path[n].half_m < 1e4;
+    if (!good) log_error("woods: centre, half width, number of trees or a path is out of range");
+    return good;
+}
+
+Status woods_create(Woods *out, const Landscape *landscape, const WoodsConfig *config, Pool *pool)
+{
+    WoodsSource *source = NULL;
+    Woods        woods = {.landscape = landscape};
+    if (!config_is_good(config)) return STATUS_BAD_VALUE;
+    Status status = open_source(&source, landscape, config);
+    if (status != STATUS_OK) return status;
+    const size_t squares = (size_t)source->nx * (size_t)source->ny;
+    Filling      filling = {source, calloc(squares, sizeof *filling.square)};
+    if (!filling.square) {
+        status = STATUS_NO_MEMORY;
+    } else {
+        if (pool) pool_run(pool, source->ny, fill_row, &filling);
+        else for (int j = 0; j < source->ny; j++) fill_row(&filling, 0, j);
+        for (size_t n = 0; n < squares; n++)
+            if (filling.square[n].lost) status = STATUS_NO_MEMORY;
+        if (status == STATUS_OK) status = keep_nearest(&woods, source, filling.square, config->most_trees);
+        if (status == STATUS_OK) status = gather(&woods, source, filling.square);
+        for (size_t n = 0; n < squares; n++) free(filling.square[n].plant);
+    }
+    free(filling.square);
+    memcpy(woods.origin_enu, source->origin_enu, sizeof woods.origin_enu);
+    woods.nx = source->nx, woods.ny = source->ny;
+    woods.low = source;
+    if (status != STATUS_OK) {
+        woods_destroy(&woods);
+        return status;
+    }
+    *out = woods;
+    return STATUS_OK;
+}
+
+void woods_destroy(Woods *woods)
+{
+    free(woods->first), free(woods->plant);
+    free_source(woods->low);
+    memset(woods, 0, sizeof *woods);
+}
+
+/* ---- queries ---------------------------------------------------------------------------------- */
+
+double woods_trunk_m(const Plant *plant)
+{
+    /* of the prototypes: 1 to 3 hundredths of the height (render/plants/plants_tree.c) */
+    static const double share[PLANT_TREES] = {0.016, 0.014, 0.011, 0.028, 0.024, 0.024, 0.030};
+    return plant_is_tree((PlantKind)plant->kind) ? share[plant->kind] * plant_height_m(plant) * plant->width / 128 : 0;
+}
+
+int woods_near(int *index, int most, const Woods *woods, double x_m, double y_m, double radius_m)
+{
+    static const double widest_m = 2; /* trunk */
+    int                 found = 0;
+    const double        x = x_m - woods->origin_enu[0], y = y_m - woods->origin_enu[1], reach_m = radius_m + widest_m;
+    const double        from_i = clamp(floor((x - reach_m) / woods_square_m), 0, woods->nx);
+    const double        from_j = clamp(floor((y - reach_m) / woods_square_m), 0, woods->ny);
+    const double        end_i = clamp(floor((x + reach_m) / woods_square_m) + 1, 0, woods->nx);
+    const double        end_j = clamp(floor((y + reach_m) / woods_square_m) + 1, 0, woods->ny);
+    for (int j = (int)from_j; j < (int)end_j; j++)
+        for (int i = (int)from_i; i < (int)end_i; i++) {
+            const size_t n = (size_t)j * (size_t)woods->nx + (size_t)i;
+            for (uint32_t k = woods->first[n]; k < woods->first[n + 1]; k++) {
+                const Plant *p = &woods->plant[k];
+                const double trunk_m = woods_trunk_m(p);
+                if (!(trunk_m > 0) || hypot((double)p->p_m[0] - x, (double)p->p_m[1] - y) > radius_m + trunk_m) continue;
+                if (found < most) index[found] = (int)k;
+                found++;
+            }
+        }
+    return found;
+}

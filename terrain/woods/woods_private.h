@@ -1,0 +1,72 @@
+/* terrain/woods/woods_private.h: what placing plants needs, shared by the files of terrain/woods. */
+#ifndef TERRAIN_WOODS_WOODS_PRIVATE_H
+#define TERRAIN_WOODS_WOODS_PRIVATE_H
+
+#include "terrain/store/store.h"
+#include "terrain/woods/woods.h"
+#include "terrain/woods/woods_table.h"
+
+/* Pieces of paths, and vehicles' places, by the squares of woods_square_m that they reach into. */
+typedef struct WoodsClearings {
+    int        count;
+    WoodsPath *path;     /* [count] */
+    int64_t    i0, j0;
+    int        nx, ny;
+    uint32_t  *first;    /* [nx * ny + 1] */
+    uint32_t  *item;
+} WoodsClearings;
+
+/* Crowns of a terrain store by squares. */
+typedef struct WoodsCrowns {
+    uint32_t *first;     /* [nx * ny + 1] of the woods' squares; NULL: none */
+    uint32_t *item;
+    double    low[2], high[2]; /* where crowns were looked for: about all of them */
+} WoodsCrowns;
+
+typedef struct WoodsSource {
+    uint64_t         seed;
+    const Landscape *landscape;
+    WoodsTable       table;
+    TerrainStore     store;
+    bool             has_store;
+    WoodsClearings   clearings;
+    WoodsCrowns      crowns;
+    double           origin_enu[3];
+    int64_t          i0, j0; /* of the first square */
+    int              nx, ny;
+    double           centre_m[2];
+} WoodsSource;
+
+/* Well mixed bits of a seed and three numbers, and a number in [0, 1) from them (Stafford's thirteenth variant of the
+ * finaliser, "Better bit mixing", 2011). */
+static inline uint64_t woods_hash(uint64_t seed, int64_t a, int64_t b, uint64_t c)
+{
+    uint64_t h = seed + (uint64_t)a * 0x9e3779b97f4a7c15u + (uint64_t)b * 0xd1b54a32d192ed03u + c * 0x8cb92ba72f3d8dd7u;
+    h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
+    h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
+    return h ^ (h >> 31);
+}
+static inline double woods_unit(uint64_t hash) { return (double)(hash >> 11) * 0x1p-53; }
+/* Smooth noise, -1 .. 1, of waves of length_m. */
+double woods_noise(uint64_t seed, uint64_t stream, double x_m, double y_m, double length_m);
+
+/* Fills in all but p_m: kind and height are given; lean, twist and width drawn. */
+Plant  woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double width);
+/* Whether the ground there bears a trunk: none on roads, tracks, water, roofs, in clearings. Many places of one square at a
+ * time; bears[count]: 1 or 0. */
+void   woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *x_m, const double *y_m, double room_m);
+
+Status woods_clearings_create(WoodsClearings *out, const WoodsSource *s, const WoodsConfig *config);
+bool   woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double room_m);
+void   woods_clearings_free(WoodsClearings *c);
+
+/* Standing plants of one square; positions from the woods' origin. */
+typedef struct SquarePlants {
+    Plant *plant;
+    int    count, room;
+    int    from_crowns, from_canopy, from_classes, from_hedges;
+    bool   lost;
+} SquarePlants;
+void   woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j);
+
+#endif

@@ -1,0 +1,254 @@
+/* terrain/woods/woods_square.c: the standing plants of one square.
+ *
+ * A square is a lattice of cells of 4 m; each has a candidate at a random place of it. A candidate becomes a plant with
+ * the probability that gives its class its number per hectare, or a store's canopy layer its cover: discs of the crowns'
+ * size at random cover 1 - exp(-number x area). Crowns that a store has marked stand as they are, and no other tree does
+ * where they were looked for. */
+#include "terrain/woods/woods_private.h"
+
+#include "terrain/landscape/hedges.h"
+
+#include <stdlib.h>
+
+enum { side_cells = 16, square_cells = side_cells * side_cells };
+static const double cell_m = 4;
+static const double grove_m = 140, patch_m = 70; /* waves of species, and of density */
+static const double hedges_reach_m = 3000;       /* from the centre: farther off they are the colour of their ground */
+
+double woods_noise(uint64_t seed, uint64_t stream, double x_m, double y_m, double length_m)
+{
+    const double  x = x_m / length_m, y = y_m / length_m, i = floor(x), j = floor(y);
+    const double  u = x - i, v = y - j, s = u * u * (3 - 2 * u), t = v * v * (3 - 2 * v);
+    const int64_t a = (int64_t)i, b = (int64_t)j;
+    const double  sw = woods_unit(woods_hash(seed, a, b, stream)), se = woods_unit(woods_hash(seed, a + 1, b, stream));
+    const double  nw = woods_unit(woods_hash(seed, a, b + 1, stream)), ne = woods_unit(woods_hash(seed, a + 1, b + 1, stream));
+    const double  south = sw + s * (se - sw), north = nw + s * (ne - nw);
+    return 2 * (south + t * (north - south)) - 1;
+}
+
+/* Lean: 3 degrees rms each way (two uniform numbers make a bell), within 15. */
+Plant woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double width)
+{
+    Plant p = {.kind = (uint8_t)kind, .twist = (uint16_t)hash};
+    for (int k = 0; k < 2; k++) {
+        const double u = woods_unit(woods_hash(hash, k, 1, 0)) + woods_unit(woods_hash(hash, k, 2, 0)) - 1;
+        p.lean[k] = (int8_t)lrint(clamp(u * 62, -89, 89)); /* both at once stay within 15 degrees */
+    }
+    p.height = (uint16_t)clamp(lrint(height_m / plant_height_step_m), 1, 65535);
+    p.width  = (uint8_t)clamp(lrint(128 * width), 16, 255);
+    return p;
+}
+
+/* Heavier towards the tall end of a stand. */
+static double height_of(uint64_t hash, double low_m, double high_m)
+{
+    return low_m + (high_m - low_m) * sqrt(woods_unit(woods_hash(hash, 3, 0, 0)));
+}
+
+/* By the class's shares, each kind more where its own noise is high: groves. */
+static PlantKind kind_at(const WoodsSource *s, const double share[PLANT_STANDING], double x_m, double y_m, uint64_t hash)
+{
+    double weight[PLANT_STANDING], sum = 0;
+    for (int k = 0; k < PLANT_STANDING; k++) {
+        weight[k] = share[k] > 0 ? share[k] * exp(3 * woods_noise(s->seed, 40 + (uint64_t)k, x_m, y_m, grove_m)) : 0;
+        sum += weight[k];
+    }
+    double left = sum * woods_unit(woods_hash(hash, 4, 0, 0));
+    int    last = 0;
+    for (int k = 0; k < PLANT_STANDING; k++) {
+        if (!(weight[k] > 0)) continue;
+        last = k;
+        if (left < weight[k]) break;
+        left -= weight[k];
+    }
+    return (PlantKind)last;
+}
+
+/* Denser and thinner in patches; mean 1. */
+static double patch_at(const WoodsSource *s, double x_m, double y_m)
+{
+    return 1 + 0.7 * woods_noise(s->seed, 30, x_m, y_m, patch_m) + 0.3 * woods_noise(s->seed, 31, x_m, y_m, 4 * patch_m);
+}
+
+static void add_plant(SquarePlants *out, const WoodsSource *s, Plant plant, double x_m, double y_m)
+{
+    if (out->count == out->room) {
+        const int room = out->room ? 2 * out->room : 64;
+        Plant    *larger = realloc(out->plant, (size_t)room * sizeof *larger);
+        if (!larger) {
+            out->lost = true;
+            return;
+        }
+        out->plant = larger, out->room = room;
+    }
+    const double z_m = elevation_height(&s->landscape->elevation, x_m, y_m, NULL);
+    if (!isfinite(z_m)) return;
+    plant.p_m[0] = (float)(x_m - s->origin_enu[0]), plant.p_m[1] = (float)(y_m - s->origin_enu[1]);
+    plant.p_m[2] = (float)(z_m - s->origin_enu[2]);
+    out->plant[out->count++] = plant;
+}
+
+/* ---- layers of a store ------------------------------------------------------------------------- */
+
+static bool layer_at(double *out, const StoreGrid *grid, const uint8_t *layer, double step, double x_m, double y_m)
+{
+    const double i = floor((x_m - grid->x0_m) / grid->cell_m), j = floor((y_m - grid->y0_m) / grid->cell_m);
+    if (!layer || !(i >= 0 && j >= 0 && i < grid->nx && j < grid->ny)) return false;
+    *out = step * layer[(size_t)j * (size_t)grid->nx + (size_t)i];
+    return true;
+}
+
+static bool is_marked(const WoodsSource *s, double x_m, double y_m)
+{
+    const WoodsCrowns *c = &s->crowns;
+    return c->first && x_m >= c->low[0] && y_m >= c->low[1] && x_m <= c->high[0] && y_m <= c->high[1];
+}
+
+/* What grows where the class has no trees, but a layer or a crown says that there are some. */
+static const double *shares_of(const WoodsSource *s, uint8_t surface)
+{
+    const WoodsClass *class = &s->table.of[surface];
+    for (int k = 0; k < PLANT_TREES; k++)
+        if (class->share[k] > 0) return class->share;
+    return s->table.of[SURFACE_FOREST_BROADLEAF].share;
+}
+
+static void add_crowns(SquarePlants *out, const WoodsSource *s, int i, int j)
+{
+    const size_t n = (size_t)j * (size_t)s->nx + (size_t)i;
+    for (uint32_t k = s->crowns.first[n]; k < s->crowns.first[n + 1]; k++) {
+        const Crown   *crown = &s->store.crown[s->crowns.item[k]];
+        const double   x_m = (double)crown->x_m, y_m = (double)crown->y_m;
+        const uint64_t hash = woods_hash(s->seed, (int64_t)s->crowns.item[k], 0, 60);
+        uint8_t        surface;
+        landscape_surfaces(&surface, s->landscape, 1, &x_m, &y_m);
+        if (surface == SURFACE_WATER || surface == SURFACE_ROAD || !(crown->height_m > 0.5f)) continue;
+        if (woods_is_cleared(&s->clearings, x_m, y_m, 0)) continue;
+        const PlantKind kind = crown->height_m < 3 ? PLANT_BUSH : kind_at(s, shares_of(s, surface), x_m, y_m, hash);
+        const double    width = (double)crown->radius_m / ((double)crown->height_m * plant_crown_share(kind));
+        add_plant(out, s, woods_draw_plant(hash, kind, (double)crown->height_m, clamp(width, 0.4, 1.99)), x_m, y_m);
+        out->from_crowns++;
+    }
+}
+
+/* ---- candidates ------------------------------------------------------------------------------- */
+
+typedef struct Candidates {
+    int      count;
+    double   x_m[square_cells], y_m[square_cells];
+    uint8_t  surface[square_cells];
+    uint64_t hash[square_cells];
+    Plant    plant[square_cells];
+    uint8_t  source[square_cells];
+} Candidates;
+
+enum { source_canopy, source_class };
+
+/* A plant of the canopy layers; false: none here. found: the layers have a value. */
+static bool from_canopy(Plant *out, bool *found, const WoodsSource *s, uint8_t surface, double x_m, double y_m, uint64_t hash)
+{
+    double cover, height_m;
+    *found = s->has_store &&
+             layer_at(&cover, &s->store.canopy_cover_grid, s->store.canopy_cover, store_canopy_cover, x_m, y_m) &&
+             layer_at(&height_m, &s->store.canopy_height_grid, s->store.canopy_height, store_canopy_height_m, x_m, y_m);
+    if (!*found || !(cover > 0 && height_m >= 1)) return false;
+    const double    each_m = height_m * (0.8 + 0.3 * woods_unit(woods_hash(hash, 5, 0, 0)));
+    const PlantKind kind = each_m < 2.5 ? PLANT_BUSH : kind_at(s, shares_of(s, surface), x_m, y_m, hash);
+    const double    radius_m = each_m * plant_crown_share(kind), area_m2 = pi_rad * radius_m * radius_m;
+    const double    per_cell = -log(1 - fmin(cover, 0.97)) * cell_m * cell_m / area_m2;
+    /* where one plant a cell is not enough, it is wider */
+    const double    width = clamp(sqrt(fmax(per_cell / 0.9, 1)), 1, 1.99);
+    if (!(woods_unit(woods_hash(hash, 6, 0, 0)) < per_cell / (width * width))) return false;
+    *out = woods_draw_plant(hash, kind, each_m, width);
+    return true;
+}
+
+static bool from_class(Plant *out, const WoodsSource *s, uint8_t surface, double x_m, double y_m, uint64_t hash)
+{
+    const WoodsClass *class = &s->table.of[surface];
+    const double      chance = class->per_m2 * cell_m * cell_m;
+    const double      u = woods_unit(woods_hash(hash, 7, 0, 0));
+    if (!(u < 2 * chance) || !(u < chance * patch_at(s, x_m, y_m))) return false;
+    const PlantKind kind = kind_at(s, class->share, x_m, y_m, hash);
+    double          height_m = height_of(hash, class->low_m, class->high_m);
+    if (kind == PLANT_BUSH) height_m = fmin(height_m, 1 + 2.5 * woods_unit(woods_hash(hash, 8, 0, 0)));
+    *out = woods_draw_plant(hash, kind, height_m, 0.8 + 0.4 * woods_unit(woods_hash(hash, 9, 0, 0)));
+    return true;
+}
+
+/* Hedgerows are of class scrub: what stands on their middle. */
+static bool add_hedge(SquarePlants *out, const WoodsSource *s, double x_m, double y_m)
+{
+    static const double spacing_m = 2;
+    const double        low[2] = {floor(x_m / cell_m) * cell_m, floor(y_m / cell_m) * cell_m};
+    const double        high[2] = {low[0] + cell_m, low[1] + cell_m};
+    HedgePlace         *place = NULL;
+    int                 count = 0;
+    if (hypot(x_m - s->centre_m[0], y_m - s->centre_m[1]) > hedges_reach_m) return false;
+    if (landscape_hedges(&place, &count, s->landscape, low, high, spacing_m) != STATUS_OK) {
+        out->lost = true;
+        return false;
+    }
+    for (int k = 0; k < count; k++) {
+        const HedgePlace *h = &place[k];
+        const uint64_t    hash = woods_hash(s->seed, llrint(16 * h->x_m), llrint(16 * h->y_m), 70);
+        const double      u = woods_unit(woods_hash(hash, 1, 0, 0));
+        const bool        tree = h->height == HEDGE_TREES && woods_unit(woods_hash(hash, 2, 0, 0)) < 0.12;
+        const double      height_m = h->height == HEDGE_CUT ? 1.3 + 0.3 * u : 1.8 + 1.6 * u;
+        uint8_t           bears;
+        woods_bears(&bears, s, 1, &h->x_m, &h->y_m, 0);
+        if (!bears) continue;
+        if (tree) {
+            static const double share[PLANT_STANDING] = {[PLANT_ALDER] = 0.3, [PLANT_BIRCH] = 0.2, [PLANT_ENGLISH_OAK] = 0.5};
+            const PlantKind     kind = kind_at(s, share, h->x_m, h->y_m, hash);
+            add_plant(out, s, woods_draw_plant(hash, kind, 6 + 9 * u, 1), h->x_m, h->y_m);
+        } else {
+            add_plant(out, s, woods_draw_plant(hash, h->height == HEDGE_CUT ? PLANT_HEDGE : PLANT_BUSH, height_m,
+                                               clamp(1.5 / (height_m * 0.44), 0.6, 1.99)), h->x_m, h->y_m);
+        }
+        out->from_hedges++;
+    }
+    free(place);
+    return count > 0;
+}
+
+static void offer(Candidates *c, SquarePlants *out, const WoodsSource *s, int k)
+{
+    const double   x_m = c->x_m[k], y_m = c->y_m[k];
+    const uint64_t hash = c->hash[k];
+    const uint8_t  surface = c->surface[k];
+    Plant          plant;
+    bool           layers = false, stands;
+    uint8_t        source = source_canopy;
+    if (surface == SURFACE_SCRUB && add_hedge(out, s, x_m, y_m)) return;
+    stands = from_canopy(&plant, &layers, s, surface, x_m, y_m, hash);
+    if (!stands && !layers) {
+        stands = from_class(&plant, s, surface, x_m, y_m, hash);
+        source = source_class;
+    }
+    if (!stands || (plant_is_tree((PlantKind)plant.kind) && is_marked(s, x_m, y_m))) return;
+    c->x_m[c->count] = x_m, c->y_m[c->count] = y_m;
+    c->plant[c->count] = plant, c->source[c->count++] = source;
+}
+
+void woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j)
+{
+    Candidates c = {.count = 0};
+    uint8_t    bears[square_cells];
+    for (int k = 0; k < square_cells; k++) {
+        const int64_t a = (s->i0 + i) * side_cells + k % side_cells, b = (s->j0 + j) * side_cells + k / side_cells;
+        c.hash[k] = woods_hash(s->seed, a, b, 20);
+        c.x_m[k] = ((double)a + 0.1 + 0.8 * woods_unit(woods_hash(c.hash[k], 1, 0, 0))) * cell_m;
+        c.y_m[k] = ((double)b + 0.1 + 0.8 * woods_unit(woods_hash(c.hash[k], 2, 0, 0))) * cell_m;
+    }
+    landscape_surfaces(c.surface, s->landscape, square_cells, c.x_m, c.y_m);
+    if (s->crowns.first) add_crowns(out, s, i, j);
+    for (int k = 0; k < square_cells; k++) offer(&c, out, s, k);
+    woods_bears(bears, s, c.count, c.x_m, c.y_m, 0.5);
+    for (int k = 0; k < c.count; k++) {
+        if (!bears[k]) continue;
+        const int before = out->count;
+        add_plant(out, s, c.plant[k], c.x_m[k], c.y_m[k]);
+        *(c.source[k] == source_class ? &out->from_classes : &out->from_canopy) += out->count - before;
+    }
+}

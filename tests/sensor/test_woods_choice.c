@@ -1,0 +1,223 @@
+/* Where plants stand in an exercise: invented woods are clear of every path, by distances worked out here; real ones stay
+ * and what begins in a trunk is counted; what is said of them. */
+#include "tests/check.h"
+
+#include "dis/warfare.h"
+#include "sensor/node/woods_choice.h"
+#include "tests/sensor/stood_exercise.h"
+
+static Config woods_on(void)
+{
+    Config config = config_default();
+    strcpy(config.terrain.woods, "on");
+    config.terrain.woods_half_m = 400;
+    config.terrain.spacing_m    = 8;
+    return config;
+}
+
+/* The ground, and the woods on it. */
+static void plant(WoodsChoice *out, Landscape *land, Choices *choices, const Exercise *e, const Config *config)
+{
+    HostPlan      plan = {0};
+    GroundContact contact;
+    choices->count = 0;
+    assert_int_equal(choose_ground(land, &contact, choices, &e->survey, config, &frame, catalog, &plan), STATUS_OK);
+    assert_int_equal(choose_woods(out, choices, &e->survey, config, land, catalog, &plan, NULL), STATUS_OK);
+}
+
+static double to_segment_m(const double p[2], const double a[2], const double b[2])
+{
+    const double d[2] = {b[0] - a[0], b[1] - a[1]}, l2 = d[0] * d[0] + d[1] * d[1];
+    const double t = l2 > 0 ? clamp(((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / l2, 0, 1) : 0;
+    return hypot(p[0] - a[0] - t * d[0], p[1] - a[1] - t * d[1]);
+}
+
+/* The plant nearest a segment, from its foot. */
+static double nearest_m(const Woods *woods, const double a[2], const double b[2])
+{
+    double nearest = INFINITY;
+    for (int i = 0; i < woods->count; i++) {
+        const Plant *plant = &woods->plant[i];
+        const double p[2] = {woods->origin_enu[0] + (double)plant->p_m[0], woods->origin_enu[1] + (double)plant->p_m[1]};
+        nearest = fmin(nearest, to_segment_m(p, a, b));
+    }
+    return nearest;
+}
+
+static void enu(double out[3], const Landscape *land, const double p_ecef[3]) { enu_from_ecef(out, &land->frame, p_ecef); }
+
+/* Fewer trees than there would be without it are no proof: every foot is measured. */
+static void invented_woods_are_clear_of_every_path(void **state)
+{
+    (void)state;
+    WoodsChoice  woods;
+    Landscape    land;
+    Choices      choices;
+    const Config config = woods_on();
+    Exercise    *e = fresh();
+    stand(e, tank, 0, 0, 500, 8, 12);       /* 176 m eastwards */
+    stand(e, tank, -100, 150, 500, 0, 3);
+    stand(e, man, 50, -80, 500, 1.4, 8);
+    stand(e, missile, -200, -200, 510, 15, 16); /* 10 m up */
+    stand(e, jet, -250, 250, 3000, 15, 16);     /* far above every tree */
+    e->shot[0] = (Shot){.firing = e->track[0].id, .result = dis_result_ground_impact, .fire_s = 1, .detonation_s = 2};
+    const double burst_m[3] = {-120, -60, 500};
+    ecef_from_enu(e->shot[0].p_burst_ecef, &frame, burst_m);
+    e->survey.shot_count = 1;
+    plant(&woods, &land, &choices, e, &config);
+    CHECK(woods.on && woods.woods.count > 100);
+    static const double half_m[] = {4, 4, 1.5, 8};
+    for (int t = 0; t < 4; t++) {
+        const Track *track = &e->track[t];
+        double       a[3], b[3];
+        for (int n = 0; n + 1 < track->count; n++) {
+            enu(a, &land, track->point[n].p_ecef);
+            enu(b, &land, track->point[n + 1].p_ecef);
+            CHECK(nearest_m(&woods.woods, a, b) >= half_m[t] - 0.01);
+        }
+    }
+    double p[3];
+    for (int n = 0; n < 12; n += 11) { /* where the tank begins and ends */
+        enu(p, &land, e->track[0].point[n].p_ecef);
+        CHECK(nearest_m(&woods.woods, p, p) >= 15 - 0.01);
+    }
+    enu(p, &land, e->shot[0].p_burst_ecef);
+    CHECK(nearest_m(&woods.woods, p, p) >= 6 - 0.01);
+    CHECK(woods.entities == 3 && woods.in_trunks == 0);
+    CHECK(says(&choices, "cleared along the paths of 3 entities on the ground, where 1 shot hit it"));
+    CHECK(says(&choices, "woods: ") && says(&choices, "0.4 km about the aim (terrain.woods)"));
+    /* nothing of the jet: 15 reports, each 30 m further */
+    double last[3];
+    enu(last, &land, e->track[4].point[15].p_ecef);
+    for (int i = 0; i < woods.config.path_count; i++) CHECK(fabs(woods.path[i].a_m[1] - last[1]) > 40);
+
+    /* the twin: without paths trees stand there */
+    const int cleared = woods.woods.count;
+    woods_choice_free(&woods);
+    WoodsConfig bare = {.seed = (uint64_t)config.seed, .half_width_m = 400, .most_trees = config.terrain.woods_trees};
+    Woods       wild;
+    assert_int_equal(woods_create(&wild, &land, &bare, NULL), STATUS_OK);
+    CHECK(wild.count >= cleared);
+    woods_destroy(&wild);
+    landscape_destroy(&land);
+}
+
+static bool said(const Choices *choices, const char *text)
+{
+    for (int i = 0; i < choices->count; i++)
+        if (strstr(choices->line[i], text)) return true;
+    return false;
+}
+
+/* Entities put where a tree of the same woods stands: on invented ground it gives way. */
+static void entities_in_trunks_are_counted_where_trees_stay(void **state)
+{
+    (void)state;
+    WoodsChoice  woods;
+    Landscape    land;
+    Choices      choices;
+    const Config config = woods_on();
+    Exercise    *e = fresh();
+    stand(e, tank, 0, 0, 500, 0, 3);
+    plant(&woods, &land, &choices, e, &config);
+    double tree_m[3] = {NAN, NAN, 500};
+    for (int i = 0; i < woods.woods.count && isnan(tree_m[0]); i++) {
+        const Plant *plant = &woods.woods.plant[i];
+        if (!(woods_trunk_m(plant) > 0)) continue;
+        for (int k = 0; k < 2; k++) tree_m[k] = woods.woods.origin_enu[k] + (double)plant->p_m[k];
+    }
+    CHECK(!isnan(tree_m[0]));
+    int trunk;
+    CHECK(woods_near(&trunk, 1, &woods.woods, tree_m[0], tree_m[1], 1) > 0);
+    woods_choice_free(&woods);
+    landscape_destroy(&land);
+
+    stand(e, man, tree_m[0], tree_m[1], 500, 0, 3);
+    plant(&woods, &land, &choices, e, &config);
+    CHECK(woods.entities == 2 && woods.in_trunks == 0);
+    CHECK(woods_near(&trunk, 1, &woods.woods, tree_m[0], tree_m[1], 1) == 0);
+    CHECK(!said(&choices, "begin within a trunk"));
+    woods_choice_free(&woods);
+
+    /* the same ground as if it came from a file */
+    Config   real = config;
+    HostPlan plan = {0};
+    strcpy(real.terrain.elevation, "given.tif");
+    choices.count = 0;
+    assert_int_equal(choose_woods(&woods, &choices, &e->survey, &real, &land, catalog, &plan, NULL), STATUS_OK);
+    CHECK(woods.entities == 2 && woods.in_trunks == 1 && woods.config.path_count == 0);
+    CHECK(woods_near(&trunk, 1, &woods.woods, tree_m[0], tree_m[1], 1) > 0);
+    CHECK(says(&choices, "1 of 2 entities on the ground begin within a trunk; real trees stay"));
+    woods_choice_free(&woods);
+    landscape_destroy(&land);
+}
+
+static void off_is_off_and_few_are_few(void **state)
+{
+    (void)state;
+    WoodsChoice woods;
+    Landscape   land;
+    Choices     choices;
+    Config      config = woods_on();
+    Exercise   *e = fresh();
+    stand(e, tank, 0, 0, 500, 8, 12);
+    strcpy(config.terrain.woods, "off");
+    plant(&woods, &land, &choices, e, &config);
+    CHECK(!woods.on && woods.woods.count == 0 && !woods.path);
+    CHECK(!said(&choices, "woods"));
+    woods_choice_free(&woods);
+    landscape_destroy(&land);
+
+    strcpy(config.terrain.woods, "on");
+    strcpy(config.terrain.woods_leaves, "off");
+    config.terrain.woods_trees = 50;
+    plant(&woods, &land, &choices, e, &config);
+    int trees = 0;
+    for (int k = 0; k < PLANT_TREES; k++) trees += woods.woods.by_kind[k];
+    CHECK(trees <= 50 && woods.woods.left_out > 0);
+    CHECK(says(&choices, "more trees are left out") && says(&choices, "(terrain.woods_trees)"));
+    CHECK(says(&choices, "deciduous trees are bare (terrain.woods_leaves)"));
+    woods_choice_free(&woods);
+    landscape_destroy(&land);
+}
+
+/* About the aim, as far as the vehicles and 4 km more. */
+static void the_square_holds_the_exercise(void **state)
+{
+    (void)state;
+    WoodsChoice woods;
+    Landscape   land;
+    Choices     choices;
+    Config      config = woods_on();
+    Exercise   *e = fresh();
+    HostPlan    plan = {0};
+    double      p[3];
+    config.terrain.woods_half_m = 0;
+    config.terrain.woods_trees  = 0; /* none: only where they would stand */
+    stand(e, tank, 0, 0, 500, 0, 3);
+    stand(e, tank, 2500, 300, 500, 0, 3);
+    stand(e, tank, 40000, 0, 500, 0, 3); /* of another fight */
+    plan.aim = e->track[0].id;
+    plan.end_s = 104;
+    GroundContact contact;
+    choices.count = 0;
+    assert_int_equal(choose_ground(&land, &contact, &choices, &e->survey, &config, &frame, catalog, &plan), STATUS_OK);
+    assert_int_equal(choose_woods(&woods, &choices, &e->survey, &config, &land, catalog, &plan, NULL), STATUS_OK);
+    enu(p, &land, e->track[0].point[0].p_ecef);
+    CHECK_NEAR(woods.config.centre_m[0], p[0], 0.1);
+    CHECK_NEAR(woods.config.centre_m[1], p[1], 0.1);
+    CHECK_NEAR(woods.config.half_width_m, 6500, 1);
+    woods_choice_free(&woods);
+    landscape_destroy(&land);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(invented_woods_are_clear_of_every_path),
+        cmocka_unit_test(entities_in_trunks_are_counted_where_trees_stay),
+        cmocka_unit_test(off_is_off_and_few_are_few),
+        cmocka_unit_test(the_square_holds_the_exercise),
+    };
+    return cmocka_run_group_tests(tests, open_place, close_place);
+}
