@@ -6,6 +6,7 @@
  * error. */
 #include "sensor/bench/sensor/woods.h"
 
+#include "render/scene/upright.h"
 #include "sensor/bench/sensor/speed_private.h"
 #include "sensor/settings/config.h"
 #include "terrain/landscape/quick_landscape.h"
