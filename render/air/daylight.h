@@ -140,6 +140,14 @@ double daylight_sky(const Daylight *light, AirBand band, const double d_enu[3]);
 double daylight_sky_light(const Daylight *light, AirBand band, const double d_enu[3]);
 /* Irradiance of the sky on a plane of this unit normal, W/m2; half of it, and more, may be below the horizon. */
 double daylight_on_plane(const Daylight *light, AirBand band, const double n_enu[3]);
+
+/* Diffuse light on the far side of a leaf, sky and ground of that irradiance below, W/m2; share: of it that arrives. */
+static inline double daylight_far_side(const Daylight *light, AirBand band, const double n_enu[3], double ground_w_m2,
+                                       double share)
+{
+    const double back_enu[3] = {-n_enu[0], -n_enu[1], -n_enu[2]};
+    return share * (daylight_on_plane(light, band, back_enu) + ground_w_m2 * 0.5 * (1 + n_enu[2]));
+}
 /* Share of the direct sun's irradiance from a direction, 1/sr: its disc has uniform radiance. */
 double daylight_sun_disc(const Daylight *light, const double d_enu[3]);
 

@@ -136,6 +136,9 @@ static void resolve_detail(Shader *shader, const ShadeScene *scene, const Sample
     for (int c = 0; c < optical_channel_count; c++)
         if (channels >> c & 1 && c != optical_channel_pan)
             memcpy(shader->texture[c], pattern, (size_t)hits->count * sizeof *pattern);
+    for (int i = 0; i < hits->count && scene->world->forest; i++)
+        for (int c = 0; hits->kind[i] == hit_plant && c < optical_channel_count; c++)
+            if (channels >> c & 1) shader->texture[c][i] = hits->albedo[i];
     for (int i = 0; i < hits->count; i++) shader->photo[i] = 1;
     if (!landscape || !landscape_has_photo(landscape)) return;
     for (int i = 0; i < hits->count; i++) {
@@ -235,6 +238,16 @@ static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
     }
 }
 
+/* What plants leave of the light from sky and ground, beside what entities do. */
+static void open_canopy(Shader *shader, const ShadeScene *scene, const Samples *s)
+{
+    for (int b = 0; b < AIR_BAND_COUNT && !shader->any_open; b++)
+        for (int i = 0; i < s->hits.count; i++) shader->open.factor[b][i] = 1;
+    shader->any_open = true;
+    canopy_open(shader->open.factor, scene->world->canopy, scene->world->landscape, &scene->world->materials, &s->hits,
+                s->channels);
+}
+
 void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const double      t0 = wall_clock_s();
@@ -246,6 +259,7 @@ void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
         hemisphere_light(&shader->gathered, &around, &s->hits, s->channels, scene->sky_samples, s->key, &shader->counters);
     shader->any_open = scene->sky && s->channels &&
                        sky_visibility_open(&shader->open, scene->sky, shader->sky, &s->hits, &shader->counters);
+    if (scene->world->canopy && scene->sky_samples == 0 && s->channels) open_canopy(shader, scene, s);
     light_channels(shader, scene, s);
     const double t1 = wall_clock_s();
     if (s->radar) light_radar(shader, scene, s);

@@ -33,7 +33,14 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
 Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool)
 {
     static const uint64_t plants_seed = 1995; /* the prototypes are the same in every world */
-    Status status = plants_create(&world->plants, plants_seed, pool);
+    char   optics[512], ground[512];
+    if (!etc_path(optics, sizeof optics, "plant_optics.csv") || !etc_path(ground, sizeof ground, "woods.csv")) {
+        log_error("render: path of the tables is too long; set PITVIPER_ETC to a shorter one");
+        return STATUS_BAD_VALUE;
+    }
+    Status status = materials_add_plants(&world->materials, optics, ground);
+    if (status == STATUS_OK) status = plants_create(&world->plants, plants_seed, pool);
+    if (status == STATUS_OK) status = canopy_create(&world->canopy, woods, world->plants, config->leaves, pool);
     if (status == STATUS_OK) status = forest_create(&world->forest, woods, world->plants, config, isa);
     return status;
 }
@@ -41,6 +48,7 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
 void world_close(World *world)
 {
     forest_destroy(world->forest);
+    canopy_destroy(world->canopy);
     plants_destroy(world->plants);
     atmosphere_close(world->atmosphere);
     planck_table_destroy(world->planck_lwir);

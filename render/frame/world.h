@@ -4,6 +4,7 @@
 
 #include "render/air/air.h"
 #include "render/forest/forest.h"
+#include "render/light/canopy.h"
 #include "render/radar/radar_image.h"
 #include "render/visibility/visibility.h"
 #include "terrain/landscape/detail.h"
@@ -17,6 +18,7 @@ typedef struct World {
     DetailTable     *detail;         /* of the ground; the caller may close it and set NULL: classes of one value */
     Plants          *plants;         /* NULL after world_open, with forest: no plants */
     Forest          *forest;
+    Canopy          *canopy;
     PlanckTable     *planck_mwir, *planck_lwir;
     Atmosphere      *atmosphere;     /* NULL after world_open; the caller may open one here; world_close closes it */
     RadarConfig      radar;

@@ -60,6 +60,11 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
         double radiance;
         if (!(m->gloss > 0)) {
             radiance = rho * irradiance_w_m2 / pi_rad;
+            if (m->tau[channel] > 0) /* a leaf: what falls on its far side shines through */
+                radiance += fmin(m->tau[channel] * texture[i], 1) / pi_rad *
+                            (sun_w_m2 * (lit > 0 ? fmax(-v3_dot(n_enu, sun_d_enu), 0) : 0) * lit +
+                             daylight_far_side(&air->light, band, n_enu, ground_w_m2,
+                                               around_w_m2 ? (double)hits->sky[i] : 1));
         } else {
             const double n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
             double diffuse, lobe_rho;

@@ -11,6 +11,12 @@ static const double water_index2 = 1.7673876858061457; /* of a reflectance of 0.
 
 /* ---- once a frame ------------------------------------------------------------------------- */
 
+static void fill_tau(float tau[surface_light_bands], const Material *m)
+{
+    for (int c = 0; c < optical_channel_count; c++) tau[c] = m->tau[c];
+    tau[AIR_MWIR] = m->tau_mwir, tau[AIR_LWIR] = m->tau_lwir;
+}
+
 static void fill_row(float rho[surface_light_bands], float gloss[surface_light_bands], const Material *m)
 {
     const double roughness = (double)m->roughness, smooth = 1 - fmin(roughness, 1);
@@ -31,6 +37,11 @@ Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials 
     out->gloss = arena_alloc(arena, (size_t)materials->count, sizeof *out->gloss);
     if (!out->rho || !out->gloss) return STATUS_NO_MEMORY;
     for (int m = 0; m < materials->count; m++) fill_row(out->rho[m], out->gloss[m], &materials->material[m]);
+    if (materials_let_through(materials)) {
+        out->tau = arena_alloc(arena, (size_t)materials->count, sizeof *out->tau);
+        if (!out->tau) return STATUS_NO_MEMORY;
+        for (int m = 0; m < materials->count; m++) fill_tau(out->tau[m], &materials->material[m]);
+    }
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         const AirSky *sky = &air->light.sky[b];
         for (int i = 0; i <= air_plane_ups; i++)
@@ -212,6 +223,28 @@ static inline void material_rows(F32x8 out[8], float (*table)[surface_light_band
     f32x8_transpose(out);
 }
 
+/* The far side of leaves: what shines through them. */
+typedef struct FarSide {
+    bool  any;           /* some of the eight lets light through; else the rest is not set */
+    F32x8 tau[8], plane[8], n_sun, below, sky;
+} FarSide;
+
+static inline void far_side(FarSide *far, const SurfaceLight *light, const SurfaceBlock *b, int i,
+                            const uint16_t material[8], bool same, Three n, Three sun, F32x8 lit)
+{
+    far->any = false;
+    if (!light->tau) return;
+    material_rows(far->tau, light->tau, material, same);
+    const F32x8 through = f32x8_greater(far->tau[AIR_NIR], zero());
+    if (!f32x8_bits(through)) return;
+    const Three back = {zero() - n.x, zero() - n.y, zero() - n.z};
+    far->any = true;
+    light_on_plane(far->plane, light, back, sun);
+    far->n_sun = f32x8_and(f32x8_max(dot(back, sun), zero()), lit);
+    far->below = f32x8_set(0.5 * pi_rad) * (one() + n.z);
+    far->sky = f32x8_and(f32x8_load(b->hits->sky + i), through);
+}
+
 static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *b, int i)
 {
     const Hits *hits = b->hits;
@@ -236,6 +269,9 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     const F32x8 n_eye = f32x8_max(dot(n, eye), zero()), n_sun = f32x8_and(f32x8_max(dot(n, sun), zero()), lit);
     const F32x8 below = f32x8_set(0.5 * pi_rad) * (one() - n.z), per_pi = f32x8_set(1 / pi_rad);
     light_on_plane(plane, light, n, sun);
+
+    FarSide far;
+    far_side(&far, light, b, i, material, same, n, sun, lit);
 
     F32x8 sees_sky = zero(), glint = zero(), water_eye = zero(), water_half = zero(), half = zero();
     if (glossy) {
@@ -270,8 +306,16 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
             if (f32x8_bits(f32x8_greater(glint, zero())))
                 flash = fresnel(gloss_rho, of[gloss_smooth2], f32x8_min(half, one()), water_half) * glint;
         }
-        const F32x8 reflected = f32x8_fma(diffuse * per_pi, around, mirrored);
-        const F32x8 sunlit = f32x8_fma(diffuse * per_pi, n_sun, flash) * (sun_w_m2 * arrives);
+        F32x8 reflected = f32x8_fma(diffuse * per_pi, around, mirrored);
+        F32x8 sunlit = f32x8_fma(diffuse * per_pi, n_sun, flash) * (sun_w_m2 * arrives);
+        F32x8 through = zero();
+        if (far.any) {
+            through = band >= AIR_MWIR ? far.tau[band] : f32x8_min(far.tau[band] * f32x8_load(b->texture[band] + i), one());
+            F32x8 behind = f32x8_fma(level, far.below, far.plane[band]);
+            if (b->around_w_m2[band] || b->open[band]) behind = behind * far.sky;
+            reflected = f32x8_fma(through * per_pi, behind, reflected);
+            sunlit = f32x8_fma(through * per_pi * far.n_sun, sun_w_m2 * arrives, sunlit);
+        }
         F32x8 seen = f32x8_fma(reflected, f32x8_load(veil->air_transmittance + i), f32x8_load(veil->added_w_m2_sr + i));
         seen = f32x8_fma(sunlit, f32x8_load(veil->sun_transmittance + i), seen);
         if (band >= AIR_MWIR) {
@@ -279,7 +323,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
             float              emitted[8];
             planck_table_radiance8(emitted, planck, b->temp_k + i);
             seen =
-                f32x8_fma((one() - diffuse - mirrors) * f32x8_load(emitted), f32x8_load(veil->transmittance + i), seen);
+                f32x8_fma((one() - diffuse - mirrors - through) * f32x8_load(emitted), f32x8_load(veil->transmittance + i), seen);
         }
         f32x8_store(out[band] + i, seen);
     }

@@ -19,6 +19,7 @@ typedef struct SurfaceLight {
     float thermal[air_sky_ups + 1][surface_light_bands], around_sun[air_sky_angles + 2][surface_light_bands];
     float level_w_m2_sr[surface_light_bands], sun_w_m2[surface_light_bands]; /* level ground's radiance; the sun */
     float (*rho)[surface_light_bands], (*gloss)[surface_light_bands];               /* [materials]; GlossValue */
+    float (*tau)[surface_light_bands]; /* [materials]; NULL: nothing lets light through */
     bool  any_sun;
 } SurfaceLight;
 
@@ -34,7 +35,8 @@ typedef struct SurfaceBlock {
     const float   *temp_k;                      /* thermal bands */
     const float   *sun;                         /* share of the direct sun that arrives, 0 .. 1 */
     const float   *around_w_m2[AIR_BAND_COUNT]; /* from hemisphere sampling; NULL: sky and ground by the slope alone */
-    const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h); NULL: 1 */
+    const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h, canopy.h); NULL: 1. The
+                                          * far side of a leaf: Hits.sky where this or around_w_m2 is given, else 1 */
     const AirPaths   *veils;                       /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
 

@@ -8,6 +8,7 @@
  * its material (tests/render/test_thermal.c). */
 #include "render/light/thermal.h"
 
+#include "render/light/plant_heat.h"
 #include "render/materials/surface_balance.h"
 #include "pitviper_simd.h"
 
@@ -109,6 +110,13 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
             temp_k[i] = found[k];
             if (!(hits->range_m[i] < INFINITY)) {
                 temp_k[i] = NAN;
+            } else if (hits->kind[i] == hit_plant) {
+                const Material *m = &materials->material[material[i]];
+                const double    n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+                temp_k[i] = (float)(m->tau[optical_channel_nir] > 0
+                                        ? leaf_temp_k(&air->light, m, (double)air_k[k], (double)hits->sky[i])
+                                        : bark_temp_k(&air->light, m, (double)air_k[k], n, (double)hits->radius_m[i],
+                                                      (double)hits->sky[i]));
             } else if (hits->entity[i]) {
                 const HeatRole  role = catalog_model(catalog, hits->model[i])->part[hits->part[i] - 1].role;
                 const double    above_k = snapshot->entity[hits->entity[i] - 1].heat[role];
@@ -162,12 +170,16 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
         material_split(&diffuse, &lobe_rho, mwir ? m->rho_mwir : m->rho_lwir, m->gloss, m->roughness, n_eye);
 
         /* Kirchhoff, at this angle: emissivity = 1 - reflectance */
-        const double emitted = (1 - diffuse - lobe_rho) * planck_table_radiance(planck, temp_k[i]);
+        const double tau = mwir ? m->tau_mwir : m->tau_lwir;
+        const double emitted = (1 - diffuse - lobe_rho - tau) * planck_table_radiance(planck, temp_k[i]);
         /* diffuse: sky and ground as far as the surface faces them; gloss: the mirror direction */
         const double around = around_w_m2 ? around_w_m2[i] / pi_rad
                                           : daylight_plane_there(&air->light, air_band, &facing->plane[i]) / pi_rad +
                                                 ground_w_m2_sr * 0.5 * (1 - n_enu[2]);
         double reflected = diffuse * around;
+        if (tau > 0)
+            reflected += tau / pi_rad * daylight_far_side(&air->light, air_band, n_enu, ground_w_m2_sr * pi_rad,
+                                                          around_w_m2 ? (double)hits->sky[i] : 1);
         if (lobe_rho > 0) {
             double mirror_enu[3];
             v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
@@ -188,6 +200,8 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
                               material_lobe(m->roughness, n_enu, eye_enu, air->light.sun_d_enu);
                 }
                 sunlit *= sun_w_m2 * lit;
+            } else if (tau > 0) {
+                sunlit = tau * -n_sun / pi_rad * sun_w_m2 * lit;
             }
         }
         out[i] = (float)(emitted * v->transmittance[i] + reflected * v->air_transmittance[i] +

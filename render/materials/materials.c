@@ -41,8 +41,48 @@ static const struct {
 };
 enum { number_column_count = sizeof number_columns / sizeof *number_columns };
 
+/* Transmittances: of plants only. Named tau_<name>. */
+static const struct {
+    size_t       offset, rho;
+    ChannelPlace place;
+} tau_columns[] = {
+    {offsetof(Material, tau[optical_channel_b]), offsetof(Material, rho[optical_channel_b]), SPECTRAL_B},
+    {offsetof(Material, tau[optical_channel_g]), offsetof(Material, rho[optical_channel_g]), SPECTRAL_G},
+    {offsetof(Material, tau[optical_channel_r]), offsetof(Material, rho[optical_channel_r]), SPECTRAL_R},
+    {offsetof(Material, tau[optical_channel_pan]), offsetof(Material, rho[optical_channel_pan]), SPECTRAL_PAN},
+    {offsetof(Material, tau[optical_channel_nir]), offsetof(Material, rho[optical_channel_nir]), SPECTRAL_NIR},
+    {offsetof(Material, tau_mwir), offsetof(Material, rho_mwir), SPECTRAL_MWIR},
+    {offsetof(Material, tau_lwir), offsetof(Material, rho_lwir), SPECTRAL_LWIR},
+};
+enum { tau_column_count = sizeof tau_columns / sizeof *tau_columns };
+
+/* A row's transmittances; with its reflectance each at most 1. */
+static Status read_tau(Material *material, const Table *table, int row)
+{
+    for (int i = 0; i < tau_column_count; i++) {
+        char         wanted[32];
+        double       value;
+        const float *rho = (const float *)((const char *)material + tau_columns[i].rho);
+        snprintf(wanted, sizeof wanted, "tau_%s", channel_in(tau_columns[i].place)->name);
+        const int column = table_column(table, wanted);
+        if (column < 0) {
+            log_error("materials: column missing: file=%s column=%s", table->path, wanted);
+            return STATUS_BAD_VALUE;
+        }
+        const Status got = table_number(&value, table, row, column, 0, 1);
+        if (got != STATUS_OK) return got;
+        if (value + (double)*rho > 1) {
+            log_error("materials: reflectance and transmittance exceed 1 together: file=%s line=%d column=%s", table->path,
+                      table->line[row + 1], wanted);
+            return STATUS_BAD_VALUE;
+        }
+        *(float *)((char *)material + tau_columns[i].offset) = (float)value;
+    }
+    return STATUS_OK;
+}
+
 /* Appends the rows of one file to those present; a name that an earlier file has is left out. */
-static Status read_rows(Materials *m, const char *path)
+static Status read_rows(Materials *m, const char *path, bool plants)
 {
     Table table = {0};
     const int before = m->count;
@@ -91,6 +131,7 @@ static Status read_rows(Materials *m, const char *path)
             if (got != STATUS_OK) goto done;
             *(float *)((char *)&material + number_columns[i].offset) = (float)value;
         }
+        if (plants && read_tau(&material, &table, row) != STATUS_OK) goto done;
         if (same < 0) m->material[m->count++] = material; /* else the user's own row replaces it */
     }
     status = STATUS_OK;
@@ -110,8 +151,8 @@ static Status read_materials(Materials *m, const char *path)
     m->material[0] = (Material){.name = "none", .conductivity_w_mk = 0.24f, .density_kg_m3 = 1600,
                                 .heat_capacity_j_kgk = 800};
     m->count = 1;
-    if (own) status = read_rows(m, own);
-    return status == STATUS_OK ? read_rows(m, path) : status;
+    if (own) status = read_rows(m, own, false);
+    return status == STATUS_OK ? read_rows(m, path, false) : status;
 }
 
 /* Row of the class of this name in a file of one row a class; logged when unknown. */
@@ -267,6 +308,70 @@ Status materials_open(Materials *out, const char *path, const char *surfaces_pat
     }
     *out = m;
     return STATUS_OK;
+}
+
+/* ---- plants --------------------------------------------------------------------------------- */
+
+/* Rows by kind and organ: leaf_KIND, bark_KIND, stone_KIND. */
+static Status find_plants(Materials *m, const char *path)
+{
+    static const char *const organ_name[PLANT_ORGANS] = {"bark", "leaf", "stone"};
+    for (int kind = 0; kind < PLANT_KINDS; kind++) {
+        bool any = false;
+        for (int organ = 0; organ < PLANT_ORGANS; organ++) {
+            char name[64];
+            snprintf(name, sizeof name, "%s_%s", organ_name[organ], plant_name((PlantKind)kind));
+            const int row = materials_find(m, name);
+            m->plant[kind][organ] = row > 0 ? row : 0;
+            any |= row > 0;
+        }
+        if (any) continue;
+        log_error("materials: neither leaf_%s nor bark_%s nor stone_%s: file=%s", plant_name((PlantKind)kind),
+                  plant_name((PlantKind)kind), plant_name((PlantKind)kind), path);
+        return STATUS_BAD_VALUE;
+    }
+    return STATUS_OK;
+}
+
+static Status read_ground_beneath(Materials *m, const char *path)
+{
+    Table  table = {0};
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+    const int surface_column = table_column(&table, "surface"), ground_column = table_column(&table, "ground");
+    if (surface_column < 0 || ground_column < 0) {
+        log_error("materials: column missing: file=%s columns=surface,ground", path);
+        status = STATUS_BAD_VALUE;
+    }
+    for (int row = 0; row < table.rows && status == STATUS_OK; row++) {
+        SurfaceClass surface;
+        const char  *name = table_text(&table, row, ground_column);
+        status = find_surface(&surface, &table, row, surface_column);
+        if (status != STATUS_OK || strcmp(name, "same") == 0) continue;
+        const int material = materials_find(m, name);
+        if (material < 0) {
+            log_error("materials: no such material: file=%s line=%d ground=%s", path, table.line[row + 1], name);
+            status = STATUS_BAD_VALUE;
+        } else {
+            m->surface[surface] = material;
+        }
+    }
+    table_close(&table);
+    return status;
+}
+
+Status materials_add_plants(Materials *m, const char *path, const char *ground_path)
+{
+    Status status = read_rows(m, path, true);
+    if (status == STATUS_OK) status = find_plants(m, path);
+    return status == STATUS_OK ? read_ground_beneath(m, ground_path) : status;
+}
+
+bool materials_let_through(const Materials *m)
+{
+    for (int i = 0; i < m->count; i++)
+        if (m->material[i].tau[optical_channel_nir] > 0) return true;
+    return false;
 }
 
 void materials_close(Materials *materials)

@@ -47,6 +47,9 @@ typedef struct Materials {
 /* surfaces_path: CSV surface, material. Every material a model or surface names must exist: otherwise a
  * logged error and STATUS_BAD_VALUE. catalog may be NULL (no models). */
 Status materials_open(Materials *out, const char *path, const char *surfaces_path, const Catalog *catalog);
+/* Appends the rows of plants (etc/plant_optics.csv) and fills in plant[][]; ground_path (etc/woods.csv): the material of
+ * the ground beneath them replaces that of its class. Once; failures are logged. */
+Status materials_add_plants(Materials *m, const char *path, const char *ground_path);
 void   materials_close(Materials *materials);
 int    materials_find(const Materials *materials, const char *name); /* -1: none */
 
@@ -56,6 +59,9 @@ static inline int material_of_part(const Materials *m, int model, int part, int 
     if (damage > 0 && m->damaged) return m->damaged[model][part * model_damage_states + damage];
     return m->part[model][part];
 }
+
+/* Whether some material lets light through. */
+bool materials_let_through(const Materials *m);
 
 /* The lobe of a glossy surface. material_fresnel: share reflected by it at an angle of this cosine, from gloss_rho
  * (reflectance times gloss) at normal incidence to 1 at grazing where it is smooth; 0 for gloss_rho = 0. Smooth, and

@@ -61,7 +61,8 @@ typedef struct Paths {
 
 static void add_path(Paths *p, const double a_m[2], const double b_m[2], double half_m)
 {
-    const double *c = p->square->centre_m, reach_m = p->square->half_width_m + half_m;
+    /* plants stand in whole squares, which reach beyond */
+    const double *c = p->square->centre_m, reach_m = p->square->half_width_m + 2 * woods_square_m + half_m;
     for (int k = 0; k < 2; k++) /* both ends beyond the same side of the square */
         if ((a_m[k] - c[k] > reach_m && b_m[k] - c[k] > reach_m) ||
             (a_m[k] - c[k] < -reach_m && b_m[k] - c[k] < -reach_m))
@@ -208,7 +209,7 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
     choice_add(choices, "woods: %d trees%s%s%s, %d bushes and hedges, %.1f km about the aim (terrain.woods)", trees,
                *kinds ? " (" : "", kinds, *kinds ? ")" : "", woods->count - trees, 1e-3 * w->config.half_width_m);
     if (woods->left_out > 0)
-        choice_add(choices, "woods: %d more trees are left out, those beyond %.0f m of the aim (terrain.woods_trees)",
+        choice_add(choices, "woods: %d more are left out, those beyond %.0f m of the aim (terrain.woods_trees)",
                    woods->left_out, woods->reach_m);
     if (!real)
         choice_add(choices, "woods: cleared along the paths of %d entit%s on the ground, where %d shot%s hit it, and "

@@ -230,7 +230,7 @@ static const Setting keys[] = {
     {"terrain.woods", SETTING_TEXT, AT(terrain.woods), 0, 0, "on|off", "",
      "trees, bushes, hedges and low plants, by canopy layers, marked trunks or surface classes; off: bare ground"},
     {"terrain.woods_trees", SETTING_INT, AT(terrain.woods_trees), 0, woods_most_trees, NULL, "",
-     "most trees; beyond, those farthest from the aim are left out"},
+     "most trees, bushes and hedges; beyond, those farthest from the aim are left out"},
     {"terrain.woods_half_m", SETTING_DOUBLE, AT(terrain.woods_half_m), 0, 50000, NULL, "m",
      "half width of the square about the aim in which plants stand; below 50: the extent of the entities and 4 km "
      "about it"},

@@ -1,0 +1,47 @@
+/* render/light/plant_heat.c: see plant_heat.h. */
+#include "render/light/plant_heat.h"
+
+#include "render/materials/surface_balance.h"
+
+static const double heat_j_mol_k = 29.3, vapour_j_mol = 44000; /* of air; of water's evaporation */
+static const double pressure_pa = 101325, humidity = 0.6;
+static const double leaf_m = 0.05, least_wind_mps = 0.3;       /* free convection takes over below */
+
+/* Saturation over water, Pa, and its slope, Pa/K: Tetens, as in Campbell & Norman (1998), eq. 3.8. */
+static double saturation_pa(double *slope, double temp_k)
+{
+    const double c = temp_k - 273.15, e = 611 * exp(17.502 * c / (240.97 + c));
+    *slope = e * 17.502 * 240.97 / ((240.97 + c) * (240.97 + c));
+    return e;
+}
+
+double leaf_temp_k(const Daylight *light, const Material *m, double air_temp_k, double open)
+{
+    const double wind_mps = fmax(light->weather.wind_mps, least_wind_mps);
+    const double layer = 1.4 * 0.135 * sqrt(wind_mps / (0.72 * leaf_m)); /* mol/(m2 s), one side */
+    const double sun_w_m2 = open * (0.5 * light->solar_direct_w_m2 * (light->sun_d_enu[2] > 0) + light->solar_diffuse_w_m2);
+    const double stomata = 0.2 * (0.05 + 0.95 * fmin(sun_w_m2 / 250, 1)); /* full by half of full sunlight */
+    const double vapour = 1 / (1 / stomata + 1 / (1.09 * layer));
+    double       slope;
+    const double e = saturation_pa(&slope, air_temp_k);
+    const double emissivity = 1 - (double)m->rho_lwir - (double)m->tau_lwir;
+    const double gain = (double)m->solar_absorptance * sun_w_m2 - emissivity * light->longwave_loss_w_m2 * 0.5 * open -
+                        vapour_j_mol * vapour * (1 - humidity) * e / pressure_pa;
+    const double loss = 2 * heat_j_mol_k * layer + 2 * emission_w_m2_k(emissivity, air_temp_k) +
+                        vapour_j_mol * vapour * slope / pressure_pa;
+    return air_temp_k + gain / loss;
+}
+
+double bark_temp_k(const Daylight *light, const Material *m, double air_temp_k, const double n_enu[3], double radius_m,
+                   double open)
+{
+    static const double per_day_rad_s = 7.292e-5;
+    const double        k = (double)m->conductivity_w_mk, c = (double)m->density_kg_m3 * (double)m->heat_capacity_j_kgk;
+    const double        depth_m = sqrt(2 * k / (c * per_day_rad_s)), emissivity = 1 - (double)m->rho_lwir;
+    const double        along = v3_dot(n_enu, light->sun_d_enu), up = 0.5 * (1 + n_enu[2]);
+    const double        sun_w_m2 = open * (light->solar_direct_w_m2 * fmax(along, 0) + light->solar_diffuse_w_m2 * up);
+    const double        gain = (double)m->solar_absorptance * sun_w_m2 - emissivity * light->longwave_loss_w_m2 * up * open;
+    const double        wood = daily_wave_w_m2_k((double)m->conductivity_w_mk, (double)m->density_kg_m3,
+                                                 (double)m->heat_capacity_j_kgk) * fmin(radius_m / (2 * depth_m), 1);
+    return air_temp_k + gain / (film_w_m2_k(light->weather.wind_mps) + emission_w_m2_k(emissivity, air_temp_k) + wood);
+}
