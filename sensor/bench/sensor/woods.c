@@ -8,10 +8,11 @@
 
 #include "render/scene/upright.h"
 #include "sensor/bench/sensor/speed_private.h"
+#include "sensor/bench/sensor/woods_stand.h"
 #include "sensor/settings/config.h"
 #include "terrain/landscape/quick_landscape.h"
 
-#include <stdlib.h>
+#include <time.h>
 
 enum { views = 4, vehicles = 20, details = 2 /* full; two levels */ };
 
@@ -32,7 +33,6 @@ typedef struct WoodsBench {
     double     east_m, north_m, level1_px;
     LocalFrame frame;
     Landscape  landscape;
-    WoodsPath  clear[vehicles];
     Woods      woods;
     TrialScene scene;
     Forest    *forest[details];  /* the scene's own is one of them */
@@ -84,92 +84,26 @@ static Status make_vehicles(WoodsBench *w)
     return trial_scene_open(&w->scene, &w->landscape, catalog, types, sizeof types / sizeof *types, vehicles);
 }
 
-static bool bears_trees(const WoodsBench *w, double x_m, double y_m)
-{
-    const SurfaceClass surface = landscape_surface(&w->landscape, x_m, y_m);
-    for (int k = 0; k < vehicles; k++)
-        if (hypot(x_m - w->clear[k].a_m[0], y_m - w->clear[k].a_m[1]) < w->clear[k].half_m + 1) return false;
-    return surface != SURFACE_NONE && surface != SURFACE_TRACK && surface != SURFACE_ROAD && surface != SURFACE_WATER;
-}
-
-/* Trees of 10 to 25 m, evenly over the ground, so many more a square that there are w->trees with those placed. */
-static Status add_trees(WoodsBench *w, int trees)
-{
-    Woods       *woods = &w->woods;
-    const int    squares = woods->nx * woods->ny;
-    const double origin[2] = {woods->origin_enu[0], woods->origin_enu[1]};
-    const double more = fmax(0, w->trees - trees), area_m2 = w->east_m * w->north_m;
-    const size_t most = (size_t)woods->count + (size_t)(1.2 * more) + 1000;
-    Plant       *plant = malloc(most * sizeof *plant);
-    double       due = 0; /* trees by the area so far, less those that were added */
-    size_t       n = 0;
-    if (!plant) return STATUS_NO_MEMORY;
-    for (int q = 0; q < squares; q++) {
-        const uint32_t first = woods->first[q], end = woods->first[q + 1];
-        const double   corner[2] = {(q % woods->nx) * woods_square_m, (q / woods->nx) * woods_square_m};
-        double         share[2];
-        woods->first[q] = (uint32_t)n;
-        for (uint32_t k = first; k < end && n < most; k++) plant[n++] = woods->plant[k];
-        const double size_m[2] = {w->east_m, w->north_m};
-        for (int c = 0; c < 2; c++) { /* of the square that is on the ground */
-            const double low_m = fmax(origin[c] + corner[c], -0.5 * size_m[c] + 1);
-            share[c] = fmax(0, fmin(origin[c] + corner[c] + woods_square_m, 0.5 * size_m[c] - 1) - low_m);
-        }
-        due += more * share[0] * share[1] / area_m2;
-        for (uint64_t k = 0; due >= 1 && k < 4096 && n < most; k++) {
-            double u[8];
-            for (int d = 0; d < 8; d++) u[d] = random_uniform(1, 9, (uint32_t)q, 8 * k + (uint64_t)d);
-            const double at[2] = {corner[0] + u[0] * woods_square_m, corner[1] + u[1] * woods_square_m};
-            if (!bears_trees(w, origin[0] + at[0], origin[1] + at[1])) continue;
-            const double z_m = elevation_height(&w->landscape.elevation, origin[0] + at[0], origin[1] + at[1], NULL);
-            if (!isfinite(z_m)) continue;
-            plant[n] = (Plant){{(float)at[0], (float)at[1], (float)(z_m - woods->origin_enu[2])},
-                               (uint16_t)((10 + 15 * u[2]) / plant_height_step_m), (uint16_t)(65535 * u[3]),
-                               {(int8_t)(254 * u[4] - 127), (int8_t)(254 * u[5] - 127)},
-                               (uint8_t)(PLANT_TREES * u[6]), (uint8_t)(96 + 64 * u[7])};
-            woods->by_kind[plant[n++].kind]++;
-            due -= 1;
-        }
-    }
-    free(woods->plant);
-    woods->plant          = plant;
-    woods->first[squares] = (uint32_t)n;
-    woods->count          = (int)n;
-    return STATUS_OK;
-}
-
-static int trees_of(const Woods *woods)
-{
-    int trees = 0;
-    for (int k = 0; k < PLANT_TREES; k++) trees += woods->by_kind[k];
-    return trees;
-}
-
-/* Those of the surface classes, clear of each vehicle by 6 m, and more to their number. */
+/* Clear of each vehicle by 6 m. */
 static Status make_woods(WoodsBench *w)
 {
-    WoodsConfig config = {.seed = 1, .half_width_m = 0.5 * fmax(w->east_m, w->north_m), .most_trees = w->trees / 2,
-                          .path = w->clear};
-    Snapshot    snapshot;
+    WoodsStand stand = {.landscape = &w->landscape, .east_m = w->east_m, .north_m = w->north_m, .trees = w->trees};
+    Snapshot   snapshot;
     bench_progress(w->bench, "woods");
     arena_reset(w->arena[0]);
     Status status = entity_table_snapshot(&snapshot, w->scene.table, w->scene.sun_now_s + 0.5, w->arena[0]);
     if (status != STATUS_OK) return status;
-    for (int k = 0; k < snapshot.count && k < vehicles; k++) {
+    for (int k = 0; k < snapshot.count && k < woods_stand_clear; k++) {
         double p_enu[3];
         enu_from_ecef(p_enu, &w->frame, snapshot.entity[k].p_ecef);
-        w->clear[config.path_count++] = (WoodsPath){{p_enu[0], p_enu[1]}, {p_enu[0], p_enu[1]}, 6};
+        stand.clear[stand.clears++] = (WoodsPath){{p_enu[0], p_enu[1]}, {p_enu[0], p_enu[1]}, 6};
     }
-    const double start_s = wall_clock_s();
-    status = woods_create(&w->woods, &w->landscape, &config, w->many);
+    status = woods_stand_create(&w->woods, &stand, w->many);
     if (status != STATUS_OK) return status;
-    const int placed = trees_of(&w->woods);
-    say(w, "woods: placing of plants by classes", wall_clock_s() - start_s, "s");
-    say(w, "woods: trees by classes", placed, "");
-    status = add_trees(w, placed);
-    if (status != STATUS_OK) return status;
-    say(w, "woods: trees, most of them evenly everywhere", trees_of(&w->woods), "");
-    say(w, "woods: bushes and hedges", w->woods.count - trees_of(&w->woods), "");
+    say(w, "woods: placing of plants by classes", stand.placing_s, "s");
+    say(w, "woods: trees by classes", stand.by_classes, "");
+    say(w, "woods: trees, most of them evenly everywhere", woods_stand_trees(&w->woods), "");
+    say(w, "woods: bushes and hedges", w->woods.count - woods_stand_trees(&w->woods), "");
     say_memory(w, "memory: with the plants' places", NAN);
     return STATUS_OK;
 }
@@ -229,6 +163,13 @@ static RenderRequest request_of(const WoodsBench *w, int v, int samples)
 static WoodsFrame frame_of(WoodsBench *w, int detail, const RenderRequest *request, Pool *pool, Arena *arena)
 {
     return (WoodsFrame){w, detail, {.scene = &w->scene, .request = *request, .pool = pool, .arena = arena}};
+}
+
+static double processor_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static double rays_of(const Picture *p)
@@ -310,17 +251,20 @@ static Status time_view(WoodsBench *w, int v)
     const RenderRequest request = request_of(w, v, 1);
     const int           rounds = bench_quick(w->bench) ? 3 : 7;
     WoodsFrame          frame[details];
-    BenchTime           time[details] = {{.rounds = rounds}, {.rounds = rounds}};
+    BenchTime           time[details] = {{.rounds = rounds}, {.rounds = rounds}}, cores[details];
     char                what[what_size];
     bench_progress(w->bench, places[v].name);
     for (int k = 0; k < details; k++) frame[k] = frame_of(w, k, &request, w->many, w->arena[0]);
+    memcpy(cores, time, sizeof cores);
     for (int r = -1; r < rounds; r++) /* in turn; the first is to warm up */
         for (int k = 0; k < details; k++) {
-            const double start_s = wall_clock_s();
+            const double start_s = wall_clock_s(), busy_s = processor_s();
             render_frame(&frame[k]);
-            if (r >= 0) time[k].item_s[r] = wall_clock_s() - start_s;
+            if (r < 0) continue;
+            time[k].item_s[r]  = wall_clock_s() - start_s;
+            cores[k].item_s[r] = (processor_s() - busy_s) / pool_threads(w->many);
         }
-    for (int k = 0; k < details; k++) bench_time_finish(&time[k]);
+    for (int k = 0; k < details; k++) bench_time_finish(&time[k]), bench_time_finish(&cores[k]);
     for (int k = 0; k < details; k++) {
         render_frame(&frame[k]);
         if (frame[k].frame.status != STATUS_OK) return frame[k].frame.status;
@@ -334,7 +278,12 @@ static Status time_view(WoodsBench *w, int v)
         row.error_unit  = "differ";
         row.against     = "planes of one thread, nothing skipped";
         bench_add(w->bench, &row);
+        snprintf(what, sizeof what, "%s: time of processors over threads, %s", places[v].name, detail_name[k]);
+        row = bench_row_of(what, &cores[k], NULL, 1);
+        bench_add(w->bench, &row);
         if (k > 0) continue;
+        snprintf(what, sizeof what, "%s: plants' boxes that a ray enters", places[v].name);
+        say(w, what, (double)p->counters.visibility.rays_plants / (double)p->counters.rays_primary, "");
         snprintf(what, sizeof what, "%s: pixels of plants", places[v].name);
         say(w, what, plant_share(p), "%");
     }
