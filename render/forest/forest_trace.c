@@ -235,12 +235,16 @@ void plant_occlude(const struct RTCOccludedFunctionNArguments *a)
 
 /* ---- rays ------------------------------------------------------------------------------------- */
 
-static void open_ray(ListRay *ray, const ForestFrame *frame, const double *const o_enu[3], const double *const d_enu[3],
+/* False: a ray that Embree does not accept (not finite, or from too far), which meets nothing. */
+static bool open_ray(ListRay *ray, const ForestFrame *frame, const double *const o_enu[3], const double *const d_enu[3],
                      int i, double limit_m, bool real)
 {
+    static const double most_m = 1e15;
     rtcInitIntersectContext(&ray->base);
     ray->frame = frame, ray->real = real, ray->limit_m = limit_m, ray->met = false;
     for (int c = 0; c < 3; c++) ray->o_enu[c] = o_enu[c][i], ray->d_enu[c] = d_enu[c][i];
+    return v3_dot(ray->d_enu, ray->d_enu) < 2 &&
+           fabs(ray->o_enu[0]) + fabs(ray->o_enu[1]) + fabs(ray->o_enu[2]) < most_m;
 }
 
 static void start_of(double o[3], const ListRay *ray, const PlantList *list)
@@ -254,7 +258,7 @@ uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *f
     const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
     ListRay          ray = {.entered = 0};
     for (int i = 0; i < count; i++) {
-        open_ray(&ray, frame, o_enu, d_enu, i, range_m[i], real && real[i]);
+        if (!open_ray(&ray, frame, o_enu, d_enu, i, range_m[i], real && real[i])) continue;
         for (int k = 0; k < 2; k++) {
             struct RTCRayHit outer;
             double           o[3];
@@ -278,7 +282,7 @@ uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, con
     ListRay          ray = {.entered = 0};
     for (int i = 0; i < count; i++) {
         if (dark[i]) continue;
-        open_ray(&ray, frame, o_enu, d_enu, i, far_m[i], real && real[i]);
+        if (!open_ray(&ray, frame, o_enu, d_enu, i, far_m[i], real && real[i])) continue;
         for (int k = 0; k < 2 && !ray.met; k++) {
             struct RTCRay outer;
             double        o[3];

@@ -30,6 +30,24 @@ static uint32_t number_of(int64_t i, int64_t j, int k)
     return forest_low_bit | (uint32_t)((i & 0x3ff) << 21 | (j & 0x1ff) << 12 | (k & 0xfff));
 }
 
+/* How far the eye is above everything on a square, at least: above its highest post about the middle and its corners, and
+ * room_m more for what rises between them and for the plants themselves. */
+static double above_square_m(const ForestFrame *frame, const double corner_m[2])
+{
+    static const double room_m = 10;
+    const Woods        *woods = frame->forest->woods;
+    double              top_m = -INFINITY;
+    if (!woods->landscape) return 0;
+    for (int k = 0; k < 5; k++) {
+        const double x_m = woods->origin_enu[0] + corner_m[0] + (k == 4 ? 0.5 : k % 2) * woods_low_m;
+        const double y_m = woods->origin_enu[1] + corner_m[1] + (k == 4 ? 0.5 : k / 2) * woods_low_m;
+        const double z_m = elevation_height(&woods->landscape->elevation, x_m, y_m, NULL);
+        if (!isfinite(z_m)) return 0;
+        top_m = fmax(top_m, z_m);
+    }
+    return fmax(0, frame->eye_enu[2] - top_m - room_m);
+}
+
 /* Those of a square that are kept: all within half the reach, none at it. */
 static void fill_square(void *user, int worker, int square)
 {
@@ -45,7 +63,8 @@ static void fill_square(void *user, int worker, int square)
         const double off_m = fmax(fmax(corner_m[k] - eye_m, eye_m - corner_m[k] - woods_low_m), 0);
         near2 += off_m * off_m;
     }
-    if (near2 > frame->low_reach_m * frame->low_reach_m) return;
+    const double above_m = above_square_m(frame, corner_m);
+    if (near2 + above_m * above_m > frame->low_reach_m * frame->low_reach_m) return;
     Plant    *plant = malloc(woods_low_most * sizeof *plant);
     uint32_t *number = malloc(woods_low_most * sizeof *number);
     low->kept[square] = plant, low->number[square] = number;

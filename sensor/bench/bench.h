@@ -41,6 +41,7 @@ void     bench_stress(Bench *bench, const char *what, double error, double limit
 bool     bench_quick(const Bench *bench);                         /* seconds, not minutes: fewer rounds */
 int      bench_threads(const Bench *bench);
 const char *bench_option(const Bench *bench, const char *name);   /* NULL: not given */
+double   bench_memory_mb(const char *key);                        /* of /proc/self/status, "VmRSS:"; NaN: unknown */
 void     bench_progress(Bench *bench, const char *what);          /* on a terminal */
 
 /* Work to be timed: `run` does `items` of it. Takes inputs the compiler cannot see, passes results to bench_keep. */

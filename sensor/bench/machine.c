@@ -80,3 +80,14 @@ void bench_machine_line(char out[512], const BenchMachine *m)
     snprintf(out, 512, "%s, %d cores, %s; built for x86-64-v3 by %s; pitviper %s; load %.1f", m->processor, m->cores,
              m->isa, m->compiler, PITVIPER_VERSION, m->load);
 }
+
+double bench_memory_mb(const char *key)
+{
+    char   line[256];
+    double kb = NAN;
+    FILE  *file = fopen("/proc/self/status", "r");
+    while (file && fgets(line, sizeof line, file))
+        if (strncmp(line, key, strlen(key)) == 0) kb = strtod(line + strlen(key), NULL);
+    if (file) fclose(file);
+    return kb * 1024e-6;
+}

@@ -38,5 +38,6 @@ Status bench_precision(Bench *bench);
 Status precision_models(Precision *p);
 Status precision_detectors(Bench *bench);
 Status precision_small_target(Bench *bench);
+Status precision_plants(Bench *bench);
 
 #endif

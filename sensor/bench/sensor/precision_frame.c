@@ -301,7 +301,7 @@ static Status knob_sky(Precision *p)
 static void say_absent(Bench *bench)
 {
     static const char *const absent[] =
-        {"trees' levels: none in this version", "heat conduction, steps and cells: none in this version",
+        {"heat conduction, steps and cells: none in this version",
                                          "radar by shooting and bouncing rays: none in this version"};
     for (size_t k = 0; k < sizeof absent / sizeof *absent; k++) {
         const BenchRow row = bench_row(absent[k]);
@@ -318,6 +318,7 @@ Status bench_precision(Bench *bench)
     if (status == STATUS_OK) status = knob_sky(&p);
     if (status == STATUS_OK) status = precision_models(&p);
     precision_close(&p);
+    if (status == STATUS_OK) status = precision_plants(bench);
     if (status == STATUS_OK) status = precision_detectors(bench);
     if (status != STATUS_OK) log_error("bench: precision: %s", status_name(status));
     if (status == STATUS_OK) say_absent(bench);

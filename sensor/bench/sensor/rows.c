@@ -7,6 +7,7 @@
 #include "sensor/bench/sensor/skip.h"
 #include "sensor/bench/sensor/speed.h"
 #include "sensor/bench/sensor/stability.h"
+#include "sensor/bench/sensor/woods.h"
 
 const BenchSuite sensor_benches[] = {
     {.name = "speed",
@@ -17,6 +18,12 @@ const BenchSuite sensor_benches[] = {
      .reads =
          "Frames are whole, planes of truth and all, handed over in memory; stages are of one thread, where they add "
          "up to the frame (bars: their share), and `rays alone` is the least that a frame could take."},
+    {.name = "woods",
+     .options = "trees=N: at most; 3000000,level1-px=PX: plants lower than this are simplified; 24",
+     .help = "frames of three million trees over 192 M posts, in full detail and with two levels of it",
+     .run = bench_woods,
+     .reads = "Frames are whole, of all bands, one ray a pixel. Errors are against 16 rays in every pixel in full "
+              "detail; of two levels also by the same 16 rays in both, where no sampling is part of it."},
     {.name = "network", .help = "a live node, an exercise sent to it: what is lost, how late it is", .run = bench_live},
     {.name = "network",
      .help = "a live node with shared memory and video: when frames are there, how many are left out",

@@ -113,17 +113,6 @@ Status speed_files(Speed *s)
 
 /* ---- memory ----------------------------------------------------------------------------------- */
 
-static double status_mb(const char *key)
-{
-    char   line[256];
-    double kb = NAN;
-    FILE  *file = fopen("/proc/self/status", "r");
-    while (file && fgets(line, sizeof line, file))
-        if (strncmp(line, key, strlen(key)) == 0) kb = strtod(line + strlen(key), NULL);
-    if (file) fclose(file);
-    return kb * 1024e-6;
-}
-
 void speed_memory(Speed *s)
 {
     size_t posts, pyramids;
@@ -131,7 +120,7 @@ void speed_memory(Speed *s)
     const struct { const char *what; double mb; } rows[] = {
         {"memory: posts", 1e-6 * (double)posts}, {"memory: their pyramid", 1e-6 * (double)pyramids},
         {"memory: arena of a frame", 1e-6 * (double)arena_bytes(s->arena[0])},
-        {"memory: resident at the end", status_mb("VmRSS:")}, {"memory: resident at most", status_mb("VmHWM:")}};
+        {"memory: resident at the end", bench_memory_mb("VmRSS:")}, {"memory: resident at most", bench_memory_mb("VmHWM:")}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         BenchRow row = bench_row(rows[k].what);
         row.median   = rows[k].mb;
