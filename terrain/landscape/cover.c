@@ -451,3 +451,9 @@ void cover_free(Cover *cover)
     free(cover->store.path);
     free(cover);
 }
+
+bool landscape_is_synthetic(const Landscape *landscape)
+{
+    const Cover *cover = landscape->cover;
+    return cover && !cover->real;
+}

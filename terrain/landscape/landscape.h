@@ -98,6 +98,8 @@ void   landscape_destroy(Landscape *landscape);
 /* Radius about an end at a fix within which a line sets no limit. */
 double landscape_taper_m(const LandscapeConfig *config);
 
+/* Whether it is the synthetic terrain, not one from files. */
+bool         landscape_is_synthetic(const Landscape *landscape);
 /* Surface class at a place, anchored to the ground; SURFACE_NONE where there is none, and for NaN. Thread-safe. For
  * many positions at once a tenth of the time each, and the same results. */
 SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m);

@@ -53,7 +53,7 @@ static Status open_source(WoodsSource **out, const Landscape *landscape, const W
     WoodsSource *s = calloc(1, sizeof *s);
     Status       status = STATUS_OK;
     if (!s) return STATUS_NO_MEMORY;
-    s->seed = config->seed, s->landscape = landscape;
+    s->seed = config->seed, s->landscape = landscape, s->synthetic = landscape_is_synthetic(landscape);
     double end[2];
     for (int k = 0; k < 2; k++) {
         s->centre_m[k] = config->centre_m[k];

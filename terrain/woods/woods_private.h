@@ -28,7 +28,7 @@ typedef struct WoodsSource {
     const Landscape *landscape;
     WoodsTable       table;
     TerrainStore     store;
-    bool             has_store;
+    bool             has_store, synthetic;
     WoodsClearings   clearings;
     WoodsCrowns      crowns;
     double           origin_enu[3];

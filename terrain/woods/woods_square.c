@@ -163,9 +163,19 @@ static bool from_canopy(Plant *out, bool *found, const WoodsSource *s, uint8_t s
     return true;
 }
 
+/* The synthetic terrain has no class of woods: its wild patches are scrub, and most of them are wooded. */
+static const WoodsClass *class_at(const WoodsSource *s, uint8_t surface, double x_m, double y_m)
+{
+    static const double wood_m = 260;
+    if (surface != SURFACE_SCRUB || !s->synthetic || woods_noise(s->seed, 32, x_m, y_m, wood_m) < -0.25)
+        return &s->table.of[surface];
+    return &s->table.of[woods_noise(s->seed, 33, x_m, y_m, 3 * wood_m) > 0.3 ? SURFACE_FOREST_CONIFER
+                                                                             : SURFACE_FOREST_BROADLEAF];
+}
+
 static bool from_class(Plant *out, const WoodsSource *s, uint8_t surface, double x_m, double y_m, uint64_t hash)
 {
-    const WoodsClass *class = &s->table.of[surface];
+    const WoodsClass *class = class_at(s, surface, x_m, y_m);
     const double      chance = class->per_m2 * cell_m * cell_m;
     const double      u = woods_unit(woods_hash(hash, 7, 0, 0));
     if (!(u < 2 * chance) || !(u < chance * patch_at(s, x_m, y_m))) return false;
