@@ -358,7 +358,7 @@ Config config_default(void)
     strcpy(c.terrain.vertical, "auto");
     strcpy(c.terrain.ground, "auto");
     strcpy(c.terrain.detail, "on");
-    strcpy(c.terrain.woods, "off");
+    strcpy(c.terrain.woods, "on");
     strcpy(c.terrain.woods_leaves, "on");
     c.terrain.woods_trees           = 300000;
     c.terrain.woods_low_m           = 60;

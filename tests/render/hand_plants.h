@@ -48,7 +48,7 @@ static void hand_leaf(PlantQuad *out, const double at[3], const double n[3], dou
         }
 }
 
-static void hand_direction(double d[3], uint32_t stream, uint64_t index)
+static void hand_plant_direction(double d[3], uint32_t stream, uint64_t index)
 {
     const double z = 2 * hand_dice(stream, 2 * index) - 1, turn = 2 * pi_rad * hand_dice(stream, 2 * index + 1);
     d[0] = sqrt(1 - z * z) * cos(turn), d[1] = sqrt(1 - z * z) * sin(turn), d[2] = z;
@@ -80,8 +80,8 @@ static void hand_grow(bool whole, double size)
             }
             for (int l = 0; l < leaves; l++) {
                 double at[3], n[3];
-                hand_direction(n, 3, of + (uint64_t)l);
-                hand_direction(at, 4, of + (uint64_t)l);
+                hand_plant_direction(n, 3, of + (uint64_t)l);
+                hand_plant_direction(at, 4, of + (uint64_t)l);
                 for (int c = 0; c < 3; c++) at[c] = 0.28 * at[c] + (c == 2 ? 0.7 : 0);
                 hand_leaf(q + 6 * branches + l, at, n, level ? size * 2 : size, l);
             }

@@ -30,9 +30,7 @@ static bool within(const LeafOutline *o, double u, double v)
 {
     bool in = false;
     for (int k = 0, l = o->corners - 1; k < o->corners; l = k++) {
-        const double *unused = NULL;
         const double  ku = o->uv[k][0], kv = o->uv[k][1], lu = o->uv[l][0], lv = o->uv[l][1];
-        (void)unused;
         if ((kv > v) != (lv > v) && u < (lu - ku) * (v - kv) / (lv - kv) + ku) in = !in;
     }
     return in;
@@ -93,7 +91,7 @@ static void aim(double o[3][rays], double d[3][rays], const double centre[3], do
 {
     for (int i = 0; i < rays; i++) {
         double a[3], b[3], way[3];
-        hand_direction(a, 30, (uint64_t)i), hand_direction(b, 31, (uint64_t)i);
+        hand_plant_direction(a, 30, (uint64_t)i), hand_plant_direction(b, 31, (uint64_t)i);
         for (int c = 0; c < 3; c++) way[c] = 0.4 * b[c] * radius_m - a[c] * radius_m + (c == 2 ? 6 : 0);
         v3_normalize(way, way);
         for (int c = 0; c < 3; c++) o[c][i] = centre[c] + radius_m * a[c], d[c][i] = way[c];
@@ -253,7 +251,6 @@ static void transmittance(void **state)
     static double  o[3][4096], d[3][4096], far_m[4096];
     const double  *const from[3] = {o[0], o[1], o[2]}, *const way[3] = {d[0], d[1], d[2]};
     const double   origin[3] = {0, 0, 0}, half_m = 60;
-    double         area_m2 = 0;
     int            open = 0, count = 0;
     (void)state;
     hand_grow(true, 0.03);
@@ -263,18 +260,14 @@ static void transmittance(void **state)
             const uint64_t of = (uint64_t)(kind * hand_leaves + k);
             const double   at[3] = {hand_dice(20, of) - 0.5, hand_dice(21, of) - 0.5, 0.05 + 0.9 * hand_dice(22, of)};
             double         n[3];
-            hand_direction(n, 23, of);
+            hand_plant_direction(n, 23, of);
             hand_leaf(&s->quad[k], at, n, 0.03, k);
         }
         s->quads = s->leaves = hand_leaves, s->pieces = s->bark_quads = 0;
         for (int c = 0; c < 3; c++) s->low[c] = c < 2 ? -0.55f : 0, s->high[c] = c < 2 ? 0.55f : 1;
     }
     Woods woods = hand_stand(plant, trees, origin, half_m);
-    for (int i = 0; i < trees; i++) {
-        plant[i].lean[0] = plant[i].lean[1] = 0, plant[i].width = 128;
-        const double h = plant_height_m(&plant[i]);
-        area_m2 += hand_leaves * 0.03 * 0.03 * h * h;
-    }
+    for (int i = 0; i < trees; i++) plant[i].lean[0] = plant[i].lean[1] = 0, plant[i].width = 128;
     open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
     for (int i = 0; i < 4096; i++) {
         o[0][i] = 0.7 * half_m * (2 * hand_dice(24, (uint64_t)i) - 1), o[1][i] = 0.7 * half_m * (2 * hand_dice(25, (uint64_t)i) - 1);
@@ -291,7 +284,6 @@ static void transmittance(void **state)
         exponent += h * h / (4 * half_m * half_m) * (1 - exp(-0.5 * leaf));
     }
     const double want = exp(-exponent), got = open / (double)count;
-    (void)area_m2;
     CHECK(fabs(got - want) < 4 * sqrt(want * (1 - want) / count) + 0.01 * want);
 }
 

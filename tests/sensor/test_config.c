@@ -142,7 +142,7 @@ static void planes_of_plants_need_plants(void **state)
     for (int woods = 0; woods < 2; woods++)
         for (int k = 0; k < 4; k++) {
             Config c = config_default();
-            assert_string_equal(c.terrain.woods, "off");
+            assert_string_equal(c.terrain.woods, "on");
             assert_int_equal(config_set(&c, "terrain.woods", woods ? "on" : "off", "test"), STATUS_OK);
             assert_int_equal(config_set(&c, "publish.planes", planes[k], "test"), STATUS_OK);
             *check_said = 0;
@@ -162,7 +162,7 @@ static void where_it_comes_from_and_goes_to_is_not_hashed(void **state)
                                           {"publish.files", "false"}, {"record.path", "a.pcapng"},
                                           {"exercise.port", "4000"},
                                           {"exercise.to_s", "12"}},
-                             *const other[][2] = {{"seed", "2"}, {"terrain.woods", "on"}, {"exercise.listen_s", "3"}, {"node.site", "7"}};
+                             *const other[][2] = {{"seed", "2"}, {"terrain.woods", "off"}, {"exercise.listen_s", "3"}, {"node.site", "7"}};
     static char plain[16384], text[16384];
     Config      config = config_default();
     config_text(plain, sizeof plain, &config);

@@ -13,7 +13,7 @@ free_port() { # the next
 declare -A node
 node() {
     local name=$1; shift
-    "$pitviper" run --out "$tmp/$name" --size 96x64 --threads 2 "$@" >"$tmp/$name.out" 2>&1 &
+    "$pitviper" run "${bare[@]}" --out "$tmp/$name" --size 96x64 --threads 2 "$@" >"$tmp/$name.out" 2>&1 &
     node[$name]=$!
 }
 # heard_by NAME TEXT SECONDS: until it has said that

@@ -18,6 +18,7 @@ config: |
     utc: 2026-06-21T17:00:00Z
   terrain:
     detail: off
+    woods: off
   seed: 1
 causal: true
 frames: [$frames]

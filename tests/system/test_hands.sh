@@ -72,7 +72,7 @@ sender=$!
 (
     trap '' XFSZ
     ulimit -f 4
-    exec "$pitviper" run --port "$port" --for 3 --set exercise.listen_s=10 --out "$tmp/o" --record "$tmp/cut.pcapng"
+    exec "$pitviper" run "${bare[@]}" --port "$port" --for 3 --set exercise.listen_s=10 --out "$tmp/o" --record "$tmp/cut.pcapng"
 ) >"$tmp/stdout" 2>"$tmp/stderr"
 check "a recording cut short: exit code 1" [ $? = 1 ]
 kill "$sender" 2>/dev/null

@@ -45,7 +45,7 @@ check "and all stays" cmp -s "$tmp/demo.pcap" "$tmp/log.pcap"
 # ---- signals: the frame in hand is finished; a replay in real time has seconds of nothing else
 stop_after_frames() { # stop_after_frames SIGNAL OUT options
     local signal=$1 out=$2 i; shift 2
-    "$pitviper" replay "$tmp/demo.pcap" --out "$out" "${small[@]}" --speed 2 "$@" >"$tmp/stdout" 2>"$tmp/stderr" &
+    "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$out" "${small[@]}" --speed 2 "$@" >"$tmp/stdout" 2>"$tmp/stderr" &
     for ((i = 0; i < 300; i++)); do [ -s "$out/truth.jsonl" ] && break; sleep 0.05; done
     kill -s "$signal" $!
     wait $!
@@ -61,7 +61,7 @@ for signal in INT:130 HUP:129; do
     check "SIG$name: and a picture" [ "$(frames "$out" lwir)" = "$(json_numbers "$out/run.json" frames)" ]
 done
 printf 'axes: {seed: [1, 2]}\n' >"$tmp/two.yaml"
-"$pitviper" replay "$tmp/demo.pcap" --out "$tmp/s" "${small[@]}" --speed 2 --sweep "$tmp/two.yaml" >"$tmp/stdout" 2>"$tmp/stderr" &
+"$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/s" "${small[@]}" --speed 2 --sweep "$tmp/two.yaml" >"$tmp/stdout" 2>"$tmp/stderr" &
 for ((i = 0; i < 300; i++)); do [ -n "$(cat "$tmp"/s/v*/truth.jsonl 2>/dev/null)" ] && break; sleep 0.05; done
 kill $!
 wait $!

@@ -27,7 +27,7 @@ replay "$tmp/demo.pcap" "$tmp/missile" --size 63x47 --rate 0.3 --samples 1 --ban
 check "a replay writes metadata" [ "$code" = 0 ]
 judged=(pose "$tmp/missile")
 free_port
-python3 "$here/klv_test.py" send $port "$pitviper" replay "$tmp/demo.pcap" --out "$tmp/atr" --size 32x24 --rate 5 \
+python3 "$here/klv_test.py" send $port "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/atr" --size 32x24 --rate 5 \
     --from 1362 --to 1365 --speed 3 --samples 1 --bands lwir --threads 1 --no-files --set publish.klv_files=true \
     --set publish.detections_port=$port >"$tmp/stdout" 2>"$tmp/stderr"
 check "a replay with a recogniser" [ $? = 0 ]

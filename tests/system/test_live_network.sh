@@ -52,10 +52,10 @@ heard_by seeker 'listening on' 20
 second=(--out "$tmp/observer" --address 127.255.255.255 --port 3020 "${few[@]}" --for 60 --set publish.dis=sensor
     --set node.application=2 --host observer --frames 8)
 if command -v script >/dev/null; then # on a terminal
-    script -qefc "'$pitviper' run ${second[*]}" /dev/null </dev/null >"$tmp/observer.out" 2>&1 &
+    script -qefc "'$pitviper' run ${bare[*]} ${second[*]}" /dev/null </dev/null >"$tmp/observer.out" 2>&1 &
 else
     echo "without the line of a terminal: no script"
-    "$pitviper" run "${second[@]}" >"$tmp/observer.out" 2>&1 &
+    "$pitviper" run "${bare[@]}" "${second[@]}" >"$tmp/observer.out" 2>&1 &
 fi
 node[observer]=$!
 node watch --address $group --interface exercise0 --port 3000 "${few[@]}" --for 60

@@ -37,7 +37,7 @@ ended_well() { wait "${reader[$1]}" || { tail -n 3 "$tmp/$1.said"; return 1; }; 
 # node NAME options: a paced replay in the background; its process in $node
 node() {
     local out=$1; shift
-    "$pitviper" replay "$tmp/demo.pcap" --out "$tmp/$out" --size 64x48 --threads 2 --bands lwir --memory "$name" \
+    "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/$out" --size 64x48 --threads 2 --bands lwir --memory "$name" \
         --set publish.memory_slots=32 "$@" >"$tmp/$out.said" 2>&1 &
     node=$!
 }
@@ -111,7 +111,7 @@ check "nothing is left in /dev/shm" [ -z "$(find /dev/shm -name "*$name*")" ]
 run replay "$tmp/demo.pcap" --out "$tmp/two" --size 64x48 --threads 2 --bands lwir --memory "$name" --no-files --rate 1 \
     --from +15 --to +15.5 --host 1:3001:41 --host observer
 check "each host has a ring of its own" eval '[ $code = 0 ] && said "/dev/shm/$name-1-3001-41:" && said "/dev/shm/$name-observer:"'
-(trap '' XFSZ; ulimit -f 4096; "$pitviper" replay "$tmp/demo.pcap" --out "$tmp/full" --size 640x480 --memory "$name" --bands lwir \
+(trap '' XFSZ; ulimit -f 4096; "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/full" --size 640x480 --memory "$name" --bands lwir \
     >"$tmp/stdout" 2>"$tmp/stderr")
 code=$?
 check "no room is an error at the start, with the next step" eval '[ $code != 0 ] && complained "no room for .* MB in /dev/shm.*publish.memory_slots"'

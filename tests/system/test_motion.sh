@@ -85,7 +85,7 @@ fi
 replay "$tmp/demo.pcap" "$tmp/plain" --rate 0.5 --no-png --bands lwir
 check "no terminal, no progress" [ "$(grep -c 'frame 1 of' "$tmp/stderr")" = 0 ]
 if command -v script >/dev/null && script -qec true /dev/null </dev/null >/dev/null 2>&1; then # a terminal is to be had
-    script -qec "$pitviper replay $tmp/demo.pcap --out $tmp/term --size 96x64 --rate 0.5 --no-png --bands lwir" /dev/null \
+    script -qec "$pitviper replay ${bare[*]} $tmp/demo.pcap --out $tmp/term --size 96x64 --rate 0.5 --no-png --bands lwir" /dev/null \
         </dev/null >"$tmp/terminal" 2>&1
     check "a terminal sees progress" grep -q 'frame 1 of [0-9]* ' "$tmp/terminal"
 fi

@@ -51,7 +51,7 @@ run replay "$tmp/demo.pcap" --sweep ../a/sweep.yaml --out "$tmp/s" --size 64x48 
 check "sweep: again: kept" said '0 made, 1 kept'
 
 # ---- a case; a scenario
-printf 'purpose: paths\nlog: ../demo.pcap\nconfig: |\n  sensor:\n    width_px: 64\n    height_px: 48\n  models:\n    catalog: ../a/data/c.csv\nframes: [0]\ncausal: false\n' >"$tmp/case/case.yaml"
+printf 'purpose: paths\nlog: ../demo.pcap\nconfig: |\n  sensor:\n    width_px: 64\n    height_px: 48\n  models:\n    catalog: ../a/data/c.csv\n  terrain:\n    woods: off\nframes: [0]\ncausal: false\n' >"$tmp/case/case.yaml"
 cd / || exit 1
 run regress --update "$tmp/case" --why "first" --work "$tmp/work"
 check "case: it runs" [ $code = 0 ]

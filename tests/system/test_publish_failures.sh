@@ -13,7 +13,7 @@ said_times() { grep -cE -e "$2" "$tmp/$1.out"; } # said_times NAME TEXT
 # watched NAME options: 11 frames of a replay by the clock, 48x36, one band, without files and truth
 watched() {
     local name=$1; shift
-    "$pitviper" replay "$tmp/demo.pcap" --out "$tmp/$name" --size 48x36 --bands lwir --rate 10 --from 1364 --to 1365 --threads 1 \
+    "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/$name" --size 48x36 --bands lwir --rate 10 --from 1364 --to 1365 --threads 1 \
         --speed 1 --no-files --set publish.truth=false "$@" >"$tmp/$name.out" 2>&1
     code=$?
 }
@@ -25,7 +25,7 @@ own_disk() { unshare -rm true 2>/dev/null && unshare -rm bash -c "mount -t tmpfs
 if own_disk; then
     mkdir "$tmp/disk"
     free_port
-    unshare -rm bash -c "mount -t tmpfs -o size=16k none '$tmp/disk' && \"\$@\"" bash "$pitviper" run --out "$tmp/disk/out" \
+    unshare -rm bash -c "mount -t tmpfs -o size=16k none '$tmp/disk' && \"\$@\"" bash "$pitviper" run "${bare[@]}" --out "$tmp/disk/out" \
         --address 127.0.0.1 --port $port --size 48x36 --rate 5 --frames 5 --for 25 --bands lwir --threads 1 \
         --set exercise.listen_s=0.5 --set quality.budget=off >"$tmp/full.out" 2>&1 &
     node[full]=$!

@@ -13,7 +13,7 @@ said_times() { grep -cE -e "$2" "$tmp/$1.out"; }
 # watched NAME SECONDS options: a replay by the clock, 5 frames a second
 watched() {
     local name=$1 seconds=$2; shift 2
-    "$pitviper" replay "$tmp/crowd.pcap" --out "$tmp/$name" --size 64x48 --bands lwir --rate 5 --to +$seconds --threads 1 \
+    "$pitviper" replay "${bare[@]}" "$tmp/crowd.pcap" --out "$tmp/$name" --size 64x48 --bands lwir --rate 5 --to +$seconds --threads 1 \
         --speed 1 --no-files --set quality.budget=off "$@" >"$tmp/$name.out" 2>&1
     code=$?
 }
@@ -61,7 +61,7 @@ if unshare -rm true 2>/dev/null && unshare -rm bash -c "mount -t tmpfs -o size=4
     mkdir "$tmp/disk"
     unshare -rm bash -c "mount -t tmpfs -o size=4m none '$tmp/disk' && head -c 4180000 /dev/zero >'$tmp/disk/ballast'
         (sleep 12; rm '$tmp/disk/ballast') & \"\$@\"; code=\$?; cp '$tmp/disk/out/run.json' '$tmp/disk.json'; exit \$code" \
-        bash "$pitviper" run --out "$tmp/disk/out" --address 127.0.0.1 --port $port --size 64x48 --rate 2 --frames 60 --for 60 \
+        bash "$pitviper" run "${bare[@]}" --out "$tmp/disk/out" --address 127.0.0.1 --port $port --size 64x48 --rate 2 --frames 60 --for 60 \
         --bands lwir --threads 1 --set exercise.listen_s=0.5 --set quality.budget=off --no-png --set publish.planes=none >"$tmp/disk.out" 2>&1 &
     node[disk]=$!
     heard_by disk 'listening on' 10

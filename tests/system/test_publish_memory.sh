@@ -10,7 +10,7 @@ exercise crowd "$tmp/crowd.pcap" scale=0.02 duration_s=$((seconds + 10))
 free_port
 options=(--memory pitviper_memory_$$ --latest --no-files --set publish.dis=sensor --address 127.0.0.1)
 "$pitviper" replay --help | grep -q -- --stream && options+=(--stream udp://127.0.0.1:$((port + 1000)) --set publish.klv_files=true --video "$tmp/video")
-"$pitviper" replay "$tmp/crowd.pcap" --out "$tmp/out" --size 64x48 --bands lwir --rate 10 --to +$seconds --speed 1 --threads 2 "${options[@]}" >"$tmp/out.txt" 2>&1 &
+"$pitviper" replay "${bare[@]}" "$tmp/crowd.pcap" --out "$tmp/out" --size 64x48 --bands lwir --rate 10 --to +$seconds --speed 1 --threads 2 "${options[@]}" >"$tmp/out.txt" 2>&1 &
 replay=$!
 rss_kb() { awk '/^VmRSS/ { print $2 }' /proc/$replay/status 2>/dev/null; }
 files() { ls /proc/$replay/fd 2>/dev/null | wc -l; }

@@ -52,6 +52,7 @@ purpose: a record
 log: $tmp/demo.pcap
 config: |
   sensor: {width_px: 32, height_px: 24, rate_hz: 1, optical: pan}
+  terrain: {woods: off}
 frames: [4]
 Y
 run regress --update "$tmp/case" --why reference --work "$tmp/work" --jobs 1 --threads 1

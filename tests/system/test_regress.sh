@@ -103,7 +103,7 @@ check "--allow-missing: skipped" [ $code = 0 ] && grep -qE '^absent_file +skippe
 changed plain '/^causal/d'
 run regress --update "$tmp/plain" --why 'as replay has it' --work "$tmp/work"
 "$pitviper" exercise demo -o "$tmp/demo.pcapng" >/dev/null
-"$pitviper" replay "$tmp/demo.pcapng" -c "$tmp/work/plain/config.yaml" --only 5,24 --out "$tmp/own" --no-png >/dev/null 2>&1
+"$pitviper" replay "${bare[@]}" "$tmp/demo.pcapng" -c "$tmp/work/plain/config.yaml" --only 5,24 --out "$tmp/own" --no-png >/dev/null 2>&1
 check "causal is false by default: the bits of a plain replay" test "$(hashes "$tmp/own")" = "$(tr -d ' \n' <"$tmp/plain/record/run.json" | grep -o '"frame_sha256":\[[^]]*\]')"
 check "and not those of --causal" test "$(hashes "$tmp/own")" != "$(tr -d ' \n' <"$tmp/good/record/run.json" | grep -o '"frame_sha256":\[[^]]*\]')"
 

@@ -36,7 +36,7 @@ check "all of them arrive, none of the replay at full speed: ${sent:-none}" [ "$
 check "the same images" part_of "$tmp/live" "$tmp/again" 3
 # no network: said, with a next step, and a failure
 if unshare -rn true 2>/dev/null; then
-    unshare -rn "$pitviper" replay "$tmp/live.pcapng" --out "$tmp/alone" --causal --to "$(time_of "$tmp/live" 1)" "${few[@]}" \
+    unshare -rn "$pitviper" replay "${bare[@]}" "$tmp/live.pcapng" --out "$tmp/alone" --causal --to "$(time_of "$tmp/live" 1)" "${few[@]}" \
         --address 239.1.2.3 --speed 100 >"$tmp/stdout" 2>"$tmp/stderr"
     check "no network: exit code" [ $? = 1 ]
     check "no network: said" complained 'none of [0-9]+ Data PDUs could be sent to 239.1.2.3 port [0-9]+: Network is unreachable; see --address'

@@ -27,7 +27,7 @@ check "its coco.json too" cmp -s "$tmp/direct/coco.json" "$tmp/g/$second/coco.js
 check "a variant is the run of its settings" same_hashes "$tmp/direct" "$tmp/g/$second"
 check "with their hash" [ "$(json_numbers "$tmp/direct/run.json" seed)" = 2 -a "$(grep config_sha256 "$tmp/direct/run.json")" = "$(grep config_sha256 "$tmp/g/$second/run.json")" ]
 check "which the manifest has" grep -qF "$(grep -oE '[0-9a-f]{64}' <(hashes "$tmp/direct") | head -n 1)" <(sed -n 2p "$tmp/g/manifest.jsonl")
-"$pitviper" replay "$tmp/demo.pcap" -c "$tmp/g/$second/settings.yaml" --out "$tmp/again" >/dev/null 2>&1
+"$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" -c "$tmp/g/$second/settings.yaml" --out "$tmp/again" >/dev/null 2>&1
 check "its settings.yaml makes it again" same_hashes "$tmp/again" "$tmp/g/$second"
 # merged OUT VARIANTS: one coco.json of all, that its own reader takes
 if python3 -c 'import json' 2>/dev/null; then
@@ -169,7 +169,7 @@ check "what does not go together, in no variant" complained 'publish.coco: needs
 # bytes of no sense end in a line, not in a crash (run counts exit codes above 123 as failures)
 for seed in 1 2 3 4 5 6; do
     awk -v s=$seed 'BEGIN { srand(s) } { line = $0; for (i = 0; i < 2; i++) { at = int(rand() * (length(line) + 1)); line = substr(line, 1, at) substr("[]{}:,&*-\x27\"%!", int(rand() * 13) + 1, 1) substr(line, at + 2) } print line }' "$tmp/grid.yaml" >"$tmp/noise.yaml"
-    "$pitviper" replay "$tmp/none.pcap" --out "$tmp/noise" --sweep "$tmp/noise.yaml" >/dev/null 2>"$tmp/stderr"
+    "$pitviper" replay "${bare[@]}" "$tmp/none.pcap" --out "$tmp/noise" --sweep "$tmp/noise.yaml" >/dev/null 2>"$tmp/stderr"
     check "noise $seed: refused" [ $? -gt 0 -a $? -lt 124 ]
 done
 finish

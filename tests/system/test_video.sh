@@ -41,12 +41,12 @@ if command -v gst-launch-1.0 >/dev/null && gst-inspect-1.0 avdec_h264 >/dev/null
 fi
 command -v tshark >/dev/null && receive tshark tshark -i lo -a duration:60 -f "udp port $port" -w "$tmp/group.pcap"
 bound "$port" $sockets
-"$pitviper" replay "$tmp/demo.pcap" --out "$tmp/a" --size 96x64 --threads 1 "${live[@]}" --to 1368 --speed 2 --video "$tmp/a.ts" \
+"$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/a" --size 96x64 --threads 1 "${live[@]}" --to 1368 --speed 2 --video "$tmp/a.ts" \
     --stream "udp://$group:$port" --set network.interface=lo --set publish.vmti=truth >"$tmp/a.out" 2>&1 &
 senders=($!)
 
 # ---- unicast, synchronous metadata; the receiver joins while it is being sent
-"$pitviper" replay "$tmp/demo.pcap" --out "$tmp/b" --size 96x64 --threads 1 "${live[@]}" --to 1369 --speed 2 --video "$tmp/b" \
+"$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/b" --size 96x64 --threads 1 "${live[@]}" --to 1369 --speed 2 --video "$tmp/b" \
     --stream "udp://127.0.0.1:$((port + 2))" --set publish.klv=sync >"$tmp/b.out" 2>&1 &
 senders+=($!)
 for _ in $(seq 200); do [ -s "$tmp/b/truth.jsonl" ] && break; sleep 0.05; done
