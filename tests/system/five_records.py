@@ -152,7 +152,7 @@ def compare(folder):
     # what is wrong hides what is spoilt
     if not wrong: wrong = [f"unnoticed: {u}" for u in spoilt(read, frames)]
     for what, count in met.items():
-        if count == 0: wrong.append(f"no box is {what}: the scene shows nothing")
+        if count == 0 and (what == "same" or "coco.json" in read): wrong.append(f"no box is {what}: the scene shows nothing")
     print(len(read), "of 5 formats:", ", ".join(read), "-", met)
     for line in wrong[:40]: print("FAILED:", line)
     sys.exit(bool(wrong))

@@ -75,7 +75,7 @@ for knob in "Earth to local frame" "latitude. longitude. height" "geoid between 
         [ "$(grep -E "^precision,\"?$knob: .*,(\*|)$" "$tmp/precision.csv" | grep -vc "settings better")" -ge 1 ]
     has precision "$knob: settings better than the default"
 done
-for absent in trees "heat conduction" "shooting and bouncing"; do has precision "$absent.*none in this version"; done
+for absent in "heat conduction" "shooting and bouncing"; do has precision "$absent.*none in this version"; done
 
 # ---- the page, and two runs side by side
 if command -v python3 >/dev/null; then
