@@ -52,6 +52,8 @@ void   plant_occlude(const struct RTCOccludedFunctionNArguments *a);
 /* And of the quads of a prototype: user pointer is the ShapeScene. */
 void   quad_intersect(const struct RTCFilterFunctionNArguments *a);
 void   quad_occlude(const struct RTCFilterFunctionNArguments *a);
+/* Whether a ray of a prototype's own axes meets it. */
+bool   shape_occluded(const ShapeScene *shape, const double o[3], const double d[3]);
 
 /* low_plants.c */
 Status low_plants_open(ForestFrame *frame, double reach_m, Pool *pool, Arena *arena);

@@ -182,6 +182,18 @@ static void fill_ray(struct RTCRay *ray, const double o[3], const double d[3], d
                            .dir_y = (float)d[1], .dir_z = (float)d[2], .tfar = (float)far, .mask = ~0u};
 }
 
+bool shape_occluded(const ShapeScene *shape, const double o[3], const double d[3])
+{
+    struct RTCRay inner;
+    QuadRay       q = {.shape = shape, .limit_m = INFINITY, .nearest_m = INFINITY};
+    if (!shape->scene) return false;
+    for (int c = 0; c < 3; c++) q.o[c] = o[c] - shape->centre[c], q.d[c] = d[c];
+    rtcInitIntersectContext(&q.base);
+    fill_ray(&inner, q.o, q.d, INFINITY);
+    rtcOccluded1(shape->scene, &q.base, &inner);
+    return q.nearest_m < INFINITY;
+}
+
 /* ---- plants ----------------------------------------------------------------------------------- */
 
 static const double past = 1 + 1e-6; /* a float's distance may be that much short */
@@ -339,7 +351,7 @@ void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHi
     turn_normal(out->n_geo, m, plane.n);
     const double side = v3_dot(out->n_geo, d_enu) > 0 ? -1 : 1;
     v3_scale(out->n_geo, side, out->n_geo);
-    *out = (ForestSurface){.n_geo = {out->n_geo[0], out->n_geo[1], out->n_geo[2]}, .sky = quad->sky,
+    *out = (ForestSurface){.n_geo = {out->n_geo[0], out->n_geo[1], out->n_geo[2]}, .open_up = quad->open_up, .open_down = quad->open_down,
                            .radius_m = (float)(quad->radius * height_m), .height_m = (float)height_m};
     double foot_enu[3], from[3], inverse[9], p[3];
     foot_of(foot_enu, list, plant);

@@ -209,7 +209,7 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
     air_paths_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
 
     SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = s->hits.material, .temp_k = s->temp_k,
-                          .sun = s->sun, .veils = shader->air};
+                          .sun = s->sun, .veils = shader->air, .canopy = shader->any_canopy ? &shader->canopy : NULL};
     float       *out[AIR_BAND_COUNT] = {NULL};
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(s->channels >> b & 1)) continue;
@@ -238,16 +238,6 @@ static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
     }
 }
 
-/* What plants leave of the light from sky and ground, beside what entities do. */
-static void open_canopy(Shader *shader, const ShadeScene *scene, const Samples *s)
-{
-    for (int b = 0; b < AIR_BAND_COUNT && !shader->any_open; b++)
-        for (int i = 0; i < s->hits.count; i++) shader->open.factor[b][i] = 1;
-    shader->any_open = true;
-    canopy_open(shader->open.factor, scene->world->canopy, scene->world->landscape, &scene->world->materials, &s->hits,
-                s->channels);
-}
-
 void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const double      t0 = wall_clock_s();
@@ -259,7 +249,9 @@ void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
         hemisphere_light(&shader->gathered, &around, &s->hits, s->channels, scene->sky_samples, s->key, &shader->counters);
     shader->any_open = scene->sky && s->channels &&
                        sky_visibility_open(&shader->open, scene->sky, shader->sky, &s->hits, &shader->counters);
-    if (scene->world->canopy && scene->sky_samples == 0 && s->channels) open_canopy(shader, scene, s);
+    shader->any_canopy = scene->world->canopy && scene->sky_samples == 0 && s->channels &&
+                         canopy_light(&shader->canopy, scene->world->canopy, scene->world->landscape, &scene->air->light,
+                                      scene->world->materials.ground_rho, &s->hits, s->channels);
     light_channels(shader, scene, s);
     const double t1 = wall_clock_s();
     if (s->radar) light_radar(shader, scene, s);
@@ -276,21 +268,33 @@ void samples_shade(Shader *shader, const ShadeScene *scene, Samples *s, const in
 
 /* ---- without tables --------------------------------------------------------------------------- */
 
+/* Irradiance of a plane at hit i from sky, ground and leaves; level_w_m2: exitance of open ground. */
+static double light_on_side(const Shader *shader, const ShadeScene *scene, AirBand b, int i, const double n_enu[3],
+                            double level_w_m2)
+{
+    const CanopyLight *c = &shader->canopy;
+    const double       sky_w_m2 = daylight_on_plane(&scene->air->light, b, n_enu), down = 0.5 * (1 - n_enu[2]);
+    if (!shader->any_canopy || b >= AIR_MWIR) return sky_w_m2 + level_w_m2 * down;
+    const double sees_sky = (double)c->up[i], sees_ground = (double)c->down[i];
+    return sees_sky * sky_w_m2 + sees_ground * (double)c->ground[b][i] * level_w_m2 * down +
+           (1 - sees_sky * (1 - down) - sees_ground * down) * (double)c->leaves_w_m2[b][i];
+}
+
 /* Irradiance of a channel from all around at each hit, W/m2; NULL: from the tilt alone. */
 static const float *light_around(float room[hits_capacity], const Shader *shader, const ShadeScene *scene,
                                  const Samples *s, AirBand b)
 {
     const Air *air = scene->air;
     if (scene->sky_samples > 0) return shader->gathered.w_m2[b];
-    if (!shader->any_open) return NULL;
+    if (!shader->any_open && !(shader->any_canopy && b < AIR_MWIR)) return NULL;
     const double level_w_m2 =
         b >= AIR_MWIR ? air->light.ground_w_m2_sr[b] * pi_rad : optical_ground_w_m2((int)b, air, &scene->world->materials);
     for (int i = 0; i < s->hits.count; i++) {
         const double n_enu[3] = {s->hits.n_enu[0][i], s->hits.n_enu[1][i], s->hits.n_enu[2][i]};
         const double through = material_through(&scene->world->materials.material[s->hits.material[i]], (int)b);
-        double       both = daylight_on_plane(&air->light, b, n_enu) + level_w_m2 * 0.5 * (1 - n_enu[2]);
-        if (through > 0) both += through * daylight_far_side(&air->light, b, n_enu, level_w_m2);
-        room[i] = (float)((double)shader->open.factor[b][i] * both);
+        double       both = light_on_side(shader, scene, b, i, n_enu, level_w_m2);
+        if (through > 0) both += through * light_on_side(shader, scene, b, i, (const double[3]){-n_enu[0], -n_enu[1], -n_enu[2]}, level_w_m2);
+        room[i] = (float)((shader->any_open ? (double)shader->open.factor[b][i] : 1) * both);
     }
     return room;
 }

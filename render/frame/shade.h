@@ -76,6 +76,8 @@ typedef struct Shader {
     HemisphereLight           gathered;      /* with sky_samples only */
     SkyOpen            open;
     bool               any_open;      /* `open` has factors of these hits */
+    CanopyLight        canopy;
+    bool               any_canopy;    /* `canopy` is of these hits */
     VisibilityCounters counters;
     double             visibility_s, shadow_s, shade_s, radar_s;
 } Shader;

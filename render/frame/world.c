@@ -40,9 +40,10 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
     }
     Status status = materials_add_plants(&world->materials, optics, ground);
     if (status == STATUS_OK) status = plants_create(&world->plants, plants_seed, pool);
-    if (status == STATUS_OK) status = canopy_create(&world->canopy, woods, world->plants, config->leaves, pool);
     if (status == STATUS_OK) status = forest_create(&world->forest, woods, world->plants, config, isa);
-    return status;
+    if (status != STATUS_OK) return status;
+    forest_openness(world->plants, world->forest, pool);
+    return canopy_create(&world->canopy, woods, world->plants, &world->materials, config->leaves);
 }
 
 void world_close(World *world)

@@ -1,4 +1,4 @@
-/* render/light/canopy.c: leaf area and heights of the woods on a grid, and the light that they leave. */
+/* render/light/canopy.c: leaf area and heights of the woods on a grid, and the light among them. */
 #include "render/light/canopy.h"
 
 #include <stdlib.h>
@@ -20,6 +20,8 @@ struct Canopy {
     double      x0_m, y0_m;
     CanopyCell *cell;
     float       gap[gap_steps + 2];
+    double      open_up, open_down; /* of a leaf or branch, the mean of all */
+    double      scattered[optical_channel_count]; /* w */
 };
 
 /* ---- closed form ------------------------------------------------------------------------------ */
@@ -73,10 +75,61 @@ static void add_plant(Sum *sum, const Canopy *c, const Woods *woods, const Plant
         }
 }
 
-Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, bool leaves, Pool *pool)
+/* Areas of a prototype that light meets on its way, half of the leaves' and a quarter of the branches', each as far as it
+ * is open: what lies deep in the crown neither gets nor gives much. open_up, open_down: their sums over these areas. */
+typedef struct Crown {
+    double leaf, bark, open_up, open_down;
+} Crown;
+
+static double quad_area(const PlantQuad *q)
+{
+    double u[3], v[3], n[3];
+    for (int x = 0; x < 3; x++) {
+        u[x] = (double)(q->corner[2][x] - q->corner[0][x]), v[x] = (double)(q->corner[3][x] - q->corner[1][x]);
+    }
+    v3_cross(n, u, v);
+    return 0.5 * v3_length(n);
+}
+
+static Crown crown_of(const Plants *plants, PlantKind kind, bool leaves)
+{
+    const PlantShape *s = &plants->shape[kind][0];
+    Crown             crown = {0};
+    for (int k = 0; k < s->quads; k++) {
+        const PlantQuad *q = &s->quad[k];
+        const bool       leaf = q->organ == PLANT_LEAF;
+        const double     part = leaf ? 0.5 * (double)plants->outline_area[kind][q->outline] : 0.25;
+        const double     seen = quad_area(q) * part * 0.5 * ((double)q->open_up + (double)q->open_down);
+        if (leaf && !leaves && plant_is_deciduous(kind)) continue;
+        *(leaf ? &crown.leaf : &crown.bark) += seen;
+        crown.open_up += seen * (double)q->open_up, crown.open_down += seen * (double)q->open_down;
+    }
+    return crown;
+}
+
+/* Means over the woods. */
+static void average(Canopy *c, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
+{
+    double seen = 0;
+    for (int kind = 0; kind < PLANT_STANDING; kind++) {
+        const Crown     crown = crown_of(plants, (PlantKind)kind, leaves);
+        const double    count = woods->by_kind[kind];
+        const Material *leaf = &materials->material[materials->plant[kind][PLANT_LEAF]];
+        const Material *bark = &materials->material[materials->plant[kind][PLANT_BARK]];
+        seen += count * (crown.leaf + crown.bark);
+        c->open_up += count * crown.open_up, c->open_down += count * crown.open_down;
+        for (int k = 0; k < optical_channel_count; k++)
+            c->scattered[k] += count * (crown.leaf * ((double)leaf->rho[k] + (double)leaf->tau[k]) +
+                                        crown.bark * (double)bark->rho[k]);
+    }
+    if (!(seen > 0)) return;
+    c->open_up /= seen, c->open_down /= seen;
+    for (int k = 0; k < optical_channel_count; k++) c->scattered[k] = fmin(c->scattered[k] / seen, 1);
+}
+
+Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, const Materials *materials, bool leaves)
 {
     Canopy *c = calloc(1, sizeof *c);
-    (void)pool;
     if (!c) return STATUS_NO_MEMORY;
     const int per_square = (int)(woods_square_m / cell_m);
     c->nx = woods->nx * per_square, c->ny = woods->ny * per_square;
@@ -91,6 +144,7 @@ Status canopy_create(Canopy **out, const Woods *woods, const Plants *plants, boo
     }
     for (int k = 0; k < gap_steps + 2; k++) c->gap[k] = (float)canopy_gap(gap_most * k / gap_steps);
     for (int k = 0; k < woods->count && cells > 0; k++) add_plant(sum, c, woods, plants, &woods->plant[k], leaves);
+    average(c, woods, plants, materials, leaves);
     for (size_t n = 0; n < cells; n++) {
         if (!(sum[n].area > 0)) continue;
         c->cell[n].leaf_area = (uint8_t)fmin(rint((double)sum[n].area / (cell_m * cell_m) / leaf_area_step), 255);
@@ -131,33 +185,62 @@ double canopy_leaf_area_above(const Canopy *c, double x_m, double y_m, double he
 
 /* ---- hits ------------------------------------------------------------------------------------- */
 
-/* sqrt(1 - w) of a broad leaf, the same for all of a stand. */
-static void leaf_shares(double share[optical_channel_count], const Materials *materials)
+/* A place: what layers above and below it let through, of the sky and the ground, and of the sun on level ground. */
+typedef struct Place {
+    double up, down, up_from_ground;
+    double sun_here, sun_on_ground;
+} Place;
+
+static bool place_of(Place *out, const Canopy *c, double x_m, double y_m, double height_m, double sin_sun)
 {
-    const Material *leaf = &materials->material[materials->plant[PLANT_SESSILE_OAK][PLANT_LEAF]];
-    for (int c = 0; c < optical_channel_count; c++)
-        share[c] = sqrt(fmax(1 - (double)leaf->rho[c] - (double)leaf->tau[c], 0));
+    const double all = canopy_leaf_area_above(c, x_m, y_m, 0);
+    const double above = height_m > 0 ? canopy_leaf_area_above(c, x_m, y_m, height_m) : all;
+    const double slant = 0.5 / fmax(sin_sun, 0.05);
+    if (!(all > 0)) {
+        *out = (Place){1, 1, 1, 1, 1};
+        return false;
+    }
+    *out = (Place){.up = gap_at(c, 0.5 * above), .down = gap_at(c, 0.5 * fmax(all - above, 0)),
+                   .up_from_ground = gap_at(c, 0.5 * all), .sun_here = exp(-slant * above), .sun_on_ground = exp(-slant * all)};
+    return true;
 }
 
-void canopy_open(float (*factor)[hits_capacity], const Canopy *canopy, const Landscape *landscape,
-                 const Materials *materials, const Hits *hits, unsigned channels)
+bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape, const Daylight *light,
+                  const float ground_rho[optical_channel_count], const Hits *hits, unsigned channels)
 {
-    double share[optical_channel_count];
-    leaf_shares(share, materials);
+    const double sin_sun = fmax(light->sun_d_enu[2], 0);
+    bool         any = false;
+    Place        place[hits_capacity];
     for (int i = 0; i < hits->count; i++) {
-        if (!(hits->range_m[i] < INFINITY)) continue;
         const double x_m = hits->p_enu[0][i], y_m = hits->p_enu[1][i];
-        const bool   plant = hits->kind[i] == hit_plant;
         double       height_m = 0;
+        place[i] = (Place){1, 1, 1, 1, 1};
+        if (!(hits->range_m[i] < INFINITY)) continue;
         if (hits->kind[i] != hit_ground && landscape)
             height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
-        const double area = canopy_leaf_area_above(canopy, x_m, y_m, isfinite(height_m) ? height_m : 0);
-        if (!(area > 0) && !plant) continue;
-        const double own = plant ? -log(fmax((double)hits->sky[i], 1e-3)) : 0;
-        for (int c = 0; c < optical_channel_count; c++) {
-            if (!(channels >> c & 1)) continue;
-            const double stand = gap_at(canopy, 0.5 * share[c] * area);
-            factor[c][i] *= (float)fmin(stand, exp(-share[c] * own));
+        any |= place_of(&place[i], c, x_m, y_m, isfinite(height_m) ? height_m : 0, sin_sun) | (hits->kind[i] == hit_plant);
+    }
+    if (!any) return false;
+    for (int i = 0; i < hits->count; i++) {
+        const bool plant = hits->kind[i] == hit_plant;
+        out->up[i]   = (float)(plant ? fmin(place[i].up, (double)hits->open_up[i]) : place[i].up);
+        out->down[i] = (float)(plant ? fmin(place[i].down, (double)hits->open_down[i]) : place[i].down);
+    }
+    for (int k = 0; k < optical_channel_count; k++) {
+        if (!(channels >> k & 1)) continue;
+        const double sun_w_m2 = light->sun_w_m2[k], sky_w_m2 = light->sky_w_m2[k], half = 0.5 * c->scattered[k];
+        const double open_w_m2 = sun_w_m2 * sin_sun + sky_w_m2;
+        for (int i = 0; i < hits->count; i++) {
+            const Place *p = &place[i];
+            const double up = fmin(c->open_up, p->up), down = fmin(c->open_down, p->down);
+            const double from_above = sun_w_m2 * sin_sun * p->sun_on_ground + sky_w_m2 * p->up_from_ground;
+            const double on_leaf = 0.5 * sun_w_m2 * (sin_sun > 0 ? fmin(c->open_up, p->sun_here) : 0);
+            const double from_below = down * (double)ground_rho[k], shaded = 1 - p->up_from_ground;
+            const double leaves = half * (on_leaf + up * sky_w_m2 + from_below * from_above) /
+                                  fmax(1 - half * (2 - up - down + from_below * shaded), 1e-6);
+            out->leaves_w_m2[k][i] = (float)leaves;
+            out->ground[k][i] = (float)(open_w_m2 > 0 ? (from_above + shaded * leaves) / open_w_m2 : 1);
         }
     }
+    return true;
 }

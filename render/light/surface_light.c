@@ -245,6 +245,15 @@ static inline void far_side(FarSide *far, const SurfaceLight *light, const uint1
     far->leaf = through;
 }
 
+/* Irradiance of a plane whose normal rises by up, of open sky and open ground (render/light/canopy.h). */
+static inline F32x8 among_plants(const CanopyLight *c, int band, int i, F32x8 up, F32x8 sky_w_m2, F32x8 ground_w_m2)
+{
+    const F32x8 sees_sky = f32x8_load(c->up + i), sees_ground = f32x8_load(c->down + i), half = f32x8_set(0.5);
+    const F32x8 sees_leaves = one() - half * (sees_sky * (one() + up) + sees_ground * (one() - up));
+    return sees_sky * sky_w_m2 + sees_ground * f32x8_load(c->ground[band] + i) * ground_w_m2 +
+           sees_leaves * f32x8_load(c->leaves_w_m2[band] + i);
+}
+
 static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *b, int i)
 {
     const Hits *hits = b->hits;
@@ -303,8 +312,10 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
                 through = through * bright;
             }
         }
+        const bool among = b->canopy && band < AIR_MWIR && !b->around_w_m2[band];
         F32x8 around =
-            b->around_w_m2[band] ? f32x8_load(b->around_w_m2[band] + i) : f32x8_fma(level, below, plane[band]);
+            b->around_w_m2[band] ? f32x8_load(b->around_w_m2[band] + i)
+            : among ? among_plants(b->canopy, band, i, n.z, plane[band], level * below) : f32x8_fma(level, below, plane[band]);
         if (b->open[band]) around = around * f32x8_load(b->open[band] + i);
         F32x8 diffuse = all_rho, mirrored = zero(), mirrors = zero(), flash = zero();
         if (glossy) {
@@ -319,7 +330,9 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
         F32x8 reflected = f32x8_fma(diffuse * per_pi, around, mirrored);
         F32x8 sunlit = f32x8_fma(diffuse * per_pi, n_sun, flash) * (sun_w_m2 * arrives);
         if (far.any) {
-            F32x8 behind = b->around_w_m2[band] ? zero() : f32x8_fma(level, far.below, far.plane[band]);
+            F32x8 behind = b->around_w_m2[band] ? zero()
+                           : among ? among_plants(b->canopy, band, i, zero() - n.z, far.plane[band], level * far.below)
+                                   : f32x8_fma(level, far.below, far.plane[band]);
             if (b->open[band]) behind = behind * f32x8_load(b->open[band] + i);
             reflected = f32x8_fma(through * per_pi, behind, reflected);
             sunlit = f32x8_fma(through * per_pi * far.n_sun, sun_w_m2 * arrives, sunlit);

@@ -7,6 +7,7 @@
 #define RENDER_LIGHT_SURFACE_LIGHT_H
 
 #include "render/air/air.h"
+#include "render/light/canopy.h"
 #include "render/scene/hits.h"
 
 enum { surface_light_bands = 8 }; /* AIR_BAND_COUNT and one to spare */
@@ -36,8 +37,9 @@ typedef struct SurfaceBlock {
     const float   *sun;                         /* share of the direct sun that arrives, 0 .. 1 */
     const float   *around_w_m2[AIR_BAND_COUNT]; /* from hemisphere sampling; NULL: sky and ground by the slope alone. Of
                                                  * leaves: of both sides, as HemisphereLight */
-    const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h, canopy.h); NULL: 1. Of
-                                          * leaves: of both sides */
+    const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h); NULL: 1. Of leaves: of
+                                          * both sides */
+    const CanopyLight *canopy; /* of the optical bands, without around_w_m2; NULL: no plants near */
     const AirPaths   *veils;                       /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
 

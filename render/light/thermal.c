@@ -114,9 +114,9 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
                 const Material *m = &materials->material[material[i]];
                 const double    n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
                 temp_k[i] = (float)(m->tau[optical_channel_nir] > 0
-                                        ? leaf_temp_k(&air->light, m, (double)air_k[k], (double)hits->sky[i])
+                                        ? leaf_temp_k(&air->light, m, (double)air_k[k], (double)hits->open_up[i])
                                         : bark_temp_k(&air->light, m, (double)air_k[k], n, (double)hits->radius_m[i],
-                                                      (double)hits->sky[i]));
+                                                      (double)hits->open_up[i]));
             } else if (hits->entity[i]) {
                 const HeatRole  role = catalog_model(catalog, hits->model[i])->part[hits->part[i] - 1].role;
                 const double    above_k = snapshot->entity[hits->entity[i] - 1].heat[role];

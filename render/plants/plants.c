@@ -22,7 +22,7 @@ static PlantQuad *add_quad(Growth *g, PlantQuad **list, int *count, int *room)
         *list = larger, *room = more;
     }
     PlantQuad *quad = &(*list)[(*count)++];
-    *quad = (PlantQuad){.sky = 1};
+    *quad = (PlantQuad){.open_up = 1, .open_down = 1};
     return quad;
 }
 
@@ -147,7 +147,6 @@ static Status finish_shape(PlantShape *out, const float outline_area[plant_outli
     out->crown_low    = (float)lowest;
     out->crown_radius = out->leaves > 0 ? radius[out->leaves * 9 / 10] : 0;
     free(radius);
-    plant_sky(out);
     return STATUS_OK;
 }
 

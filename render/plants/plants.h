@@ -25,8 +25,9 @@ typedef struct PlantQuad {
     uint16_t piece;        /* branch or leaf, numbered within its organ */
     float    n[4][3];      /* unit shading normals at the corners, outwards; of leaves: of the card */
     float    radius;       /* of the branch, over the plant's height; leaves 0 */
-    float    sky;          /* share of an even sky that the quad's front (leaves: mean of both sides) sees past its own
-                            * plant, weighted by the cosine, 0 .. 1 */
+    float    open_up, open_down; /* shares of even light from above, and from below, that reach the quad's front (leaves:
+                                  * both sides) past its own plant, weighted by the cosine, 0 .. 1; 1 until
+                                  * forest_openness has found them */
 } PlantQuad;
 
 typedef struct PlantShape {

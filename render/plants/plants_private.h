@@ -34,7 +34,5 @@ void   grow_low_plant(Growth *g);
 void   plant_outline(LeafOutline *out, PlantKind kind, int which, uint64_t seed);
 double plant_outline_area(const LeafOutline *outline);
 
-/* PlantQuad.sky of all quads of a shape. */
-void   plant_sky(PlantShape *shape);
 
 #endif

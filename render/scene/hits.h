@@ -43,7 +43,8 @@ typedef struct Hits {
     uint32_t plant[hits_capacity];      /* 1 + ForestHit.plant, where kind is hit_plant, else 0; of such hits alone: */
     float    albedo[hits_capacity];     /* reflectance over that of the material */
     float    radius_m[hits_capacity];   /* of the branch; 0: a leaf */
-    float    sky[hits_capacity];        /* share of an even sky that is seen past the plant itself, 0 .. 1 */
+    float    open_up[hits_capacity], open_down[hits_capacity]; /* shares of even light from above and below that
+                                         * reach it past its own plant, 0 .. 1 */
 } Hits;
 
 /* Row `from` of others is copied to row `to`, as one return of weight 1; rays as well. from and to may be the same
@@ -62,7 +63,8 @@ static inline void hits_copy(Hits *hits, Rays *rays, int to, const Hits *from_hi
     hits->plant[to]    = from_hits->plant[from];
     hits->albedo[to]   = from_hits->albedo[from];
     hits->radius_m[to] = from_hits->radius_m[from];
-    hits->sky[to]      = from_hits->sky[from];
+    hits->open_up[to]  = from_hits->open_up[from];
+    hits->open_down[to] = from_hits->open_down[from];
     rays->far_m[to]    = from_rays->far_m[from];
     for (int k = 0; k < 3; k++) {
         hits->p_enu[k][to] = from_hits->p_enu[k][from];

@@ -73,7 +73,7 @@ static void clear_hit(Hits *hits, int i)
     hits->plant[i]   = 0;
     hits->albedo[i]  = 1;
     hits->radius_m[i] = 0;
-    hits->sky[i]     = 1;
+    hits->open_up[i] = hits->open_down[i] = 1;
 }
 
 static void complete_ground_hit(Hits *hits, int i, const Visibility *v, const GroundHit *hit, const double d[3])

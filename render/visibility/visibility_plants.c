@@ -82,7 +82,8 @@ static void complete_plant_hit(Hits *hits, int i, const Visibility *v, const For
     hits->plant[i]    = hit->plant + 1;
     hits->albedo[i]   = at.albedo;
     hits->radius_m[i] = at.radius_m;
-    hits->sky[i]      = at.sky;
+    hits->open_up[i]  = at.open_up;
+    hits->open_down[i] = at.open_down;
     hits->material[i] = v->materials ? (uint16_t)v->materials->plant[hit->kind][hit->organ] : 0;
     hits->entity[i]   = hits->facet[i] = 0;
     hits->part[i] = hits->model[i] = 0;

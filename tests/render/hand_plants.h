@@ -19,7 +19,7 @@ static void hand_prism(PlantQuad *out, const double a[3], const double b[3], dou
 {
     for (int k = 0; k < 6; k++) {
         const double *end[2] = {a, b}, radius[2] = {radius_a, radius_b};
-        PlantQuad     q = {.organ = PLANT_BARK, .piece = (uint16_t)piece, .radius = (float)radius_a, .sky = 0.5f};
+        PlantQuad     q = {.organ = PLANT_BARK, .piece = (uint16_t)piece, .radius = (float)radius_a, .open_up = 0.5f, .open_down = 0.5f};
         for (int c = 0; c < 4; c++) {
             const double turn = (k + (c == 1 || c == 2)) * pi_rad / 3;
             const int    top = c >= 2;
@@ -39,7 +39,7 @@ static void hand_leaf(PlantQuad *out, const double at[3], const double n[3], dou
     v3_normalize(u, u);
     v3_cross(v, n, u);
     *out = (PlantQuad){.organ = PLANT_LEAF, .outline = (uint8_t)(piece % plant_outlines), .piece = (uint16_t)piece,
-                       .sky = 0.5f};
+                       .open_up = 0.5f, .open_down = 0.5f};
     for (int c = 0; c < 4; c++)
         for (int x = 0; x < 3; x++) {
             const double s = c == 1 || c == 2 ? 0.5 : -0.5, t = c >= 2 ? 0.5 : -0.5;

@@ -22,7 +22,7 @@ static int open_orchard(void **state)
     for (int kind = 0; kind < PLANT_KINDS; kind++)
         prototypes->shape[kind][0] = (PlantShape){.leaf_area = (float)leaf_area, .crown_low = (float)crown_low,
                                                   .crown_radius = 0.25f};
-    woods = (Woods){.origin_enu = {-160, -160, 100}, .nx = 5, .ny = 5, .first = first, .plant = plant};
+    woods = (Woods){.by_kind = {[PLANT_BIRCH] = side * side}, .origin_enu = {-160, -160, 100}, .nx = 5, .ny = 5, .first = first, .plant = plant};
     for (int j = 0; j < side; j++)
         for (int i = 0; i < side; i++)
             plant[woods.count++] = (Plant){.p_m = {(float)(8 * i + 4), (float)(8 * j + 4), 0}, .kind = PLANT_BIRCH,
@@ -67,9 +67,11 @@ static void gap_is_the_integral(void **state)
 static void leaves_are_where_they_were_put(void **state)
 {
     (void)state;
+    Material     row = {0};
+    Materials    none = {.count = 1, .material = &row};
     Canopy      *c = NULL;
     const double index = leaf_area * height_m * height_m / 64; /* a tree every 64 m2: 0.675 */
-    assert_int_equal(canopy_create(&c, &woods, prototypes, true, NULL), STATUS_OK);
+    assert_int_equal(canopy_create(&c, &woods, prototypes, &none, true), STATUS_OK);
     for (int i = 0; i < 30; i++) {
         const double x = -100 + 6.7 * i, y = 90 - 5.1 * i;
         CHECK_NEAR(canopy_leaf_area_above(c, x, y, 0), index, 1.0 / 32 + 1e-6); /* the cells' own step */
@@ -79,41 +81,139 @@ static void leaves_are_where_they_were_put(void **state)
     CHECK(canopy_leaf_area_above(c, 1000, 0, 0) == 0 && canopy_leaf_area_above(c, NAN, 0, 0) == 0);
     canopy_destroy(c);
     /* bare in winter */
-    assert_int_equal(canopy_create(&c, &woods, prototypes, false, NULL), STATUS_OK);
+    assert_int_equal(canopy_create(&c, &woods, prototypes, &none, false), STATUS_OK);
     CHECK(canopy_leaf_area_above(c, 0, 0, 0) == 0);
     canopy_destroy(c);
     canopy_destroy(NULL);
 }
 
-/* The ground of the orchard in a band whose leaves absorb all: exp(-L / (2 mu)) over the sky; where they absorb 19 %, as
- * of sqrt(0.19) of them; in thermal bands unchanged; beside the orchard as well. */
-static void ground_beneath(void **state)
+/* ---- light ------------------------------------------------------------------------------------ */
+
+static CanopyLight among;
+static Hits        hits;
+static const float dark_ground[optical_channel_count] = {0};
+
+/* Of a row of leaves and one of bark, in all bands; a crown is one leaf of 0.4 m2 and a branch of 0.4 m2, as open as
+ * this. */
+static void set_prototypes(Materials *m, Material rows[3], PlantQuad quad[2], float rho, float tau, float bark, float up,
+                           float down)
 {
-    (void)state;
-    static float factor[AIR_BAND_COUNT][hits_capacity];
-    static Hits  hits;
-    Material     rows[2] = {{.name = "none"}, {.name = "leaf"}};
-    Materials    m = {.count = 2, .material = rows};
-    Canopy      *c = NULL;
-    const double index = leaf_area * height_m * height_m / 64;
-    for (int kind = 0; kind < PLANT_KINDS; kind++) m.plant[kind][PLANT_LEAF] = 1;
-    rows[1].rho[optical_channel_nir] = 0.46f, rows[1].tau[optical_channel_nir] = 0.35f;
-    assert_int_equal(canopy_create(&c, &woods, prototypes, true, NULL), STATUS_OK);
+    *m = (Materials){.count = 3, .material = rows};
+    for (int c = 0; c < optical_channel_count; c++) rows[1].rho[c] = rho, rows[1].tau[c] = tau, rows[2].rho[c] = bark;
+    for (int k = 0; k < 2; k++)
+        quad[k] = (PlantQuad){.corner = {{0, 0, 0}, {0.4f, 0, 0}, {0.4f, 1, 0}, {0, 1, 0}}, .organ = k ? PLANT_BARK : PLANT_LEAF,
+                              .open_up = up, .open_down = down};
+    for (int kind = 0; kind < PLANT_KINDS; kind++) {
+        m->plant[kind][PLANT_LEAF] = 1, m->plant[kind][PLANT_BARK] = 2;
+        prototypes->shape[kind][0].quad = quad, prototypes->shape[kind][0].quads = 2;
+        for (int o = 0; o < plant_outlines; o++) prototypes->outline_area[kind][o] = 1;
+    }
+}
+
+/* Ground beneath the orchard, beside it, a leaf in it 8 m up, the sky. */
+static void set_hits(float up, float down)
+{
+    static const uint8_t kind[4] = {hit_ground, hit_ground, hit_plant, hit_sky};
     hits.count = 4;
     for (int i = 0; i < 4; i++) {
-        hits.range_m[i] = i == 3 ? INFINITY : 100, hits.kind[i] = i == 3 ? hit_sky : i == 2 ? hit_plant : hit_ground;
+        hits.kind[i] = kind[i], hits.range_m[i] = i == 3 ? INFINITY : 100;
         hits.p_enu[0][i] = i == 1 ? 900 : 3, hits.p_enu[1][i] = 5;
-        hits.sky[i] = 0.04f;
-        for (int b = 0; b < AIR_BAND_COUNT; b++) factor[b][i] = 1;
+        hits.open_up[i] = up, hits.open_down[i] = down;
     }
-    canopy_open(factor, c, NULL, &m, &hits, (1 << AIR_BAND_COUNT) - 1);
-    CHECK_NEAR(factor[AIR_R][0], gap_by_simpson(0.5 * index), 0.03); /* by the step of the leaf area */
-    CHECK_NEAR(factor[AIR_NIR][0], gap_by_simpson(0.5 * sqrt(0.19) * index), 0.03);
-    /* a place within the crown has the less of the stand's light and its own plant's */
-    CHECK_NEAR(factor[AIR_R][2], 0.04, 1e-4);
-    CHECK_NEAR(factor[AIR_NIR][2], pow(0.04, sqrt(0.19)), 1e-3);
-    for (int i = 0; i < 4; i++) CHECK(factor[AIR_LWIR][i] == 1 && factor[AIR_MWIR][i] == 1);
-    for (int b = 0; b < AIR_BAND_COUNT; b++) CHECK(factor[b][1] == 1 && factor[b][3] == 1);
+}
+
+static Daylight light_of(double sun_w_m2, double sky_w_m2, double sin_sun)
+{
+    Daylight light = {.sun_d_enu = {sqrt(1 - sin_sun * sin_sun), 0, sin_sun}};
+    for (int c = 0; c < optical_channel_count; c++) light.sun_w_m2[c] = sun_w_m2, light.sky_w_m2[c] = sky_w_m2;
+    return light;
+}
+
+static double received(int i, double up, double sky_w_m2, double ground_w_m2)
+{
+    const double sky = 0.5 * (1 + up) * (double)among.up[i], ground = 0.5 * (1 - up) * (double)among.down[i];
+    return sky * sky_w_m2 + ground * (double)among.ground[AIR_NIR][i] * ground_w_m2 +
+           (1 - sky - ground) * (double)among.leaves_w_m2[AIR_NIR][i];
+}
+
+/* Leaves that scatter nothing: exp(-L / (2 mu)) over the sky, and for the sun at its height; beside the orchard all. */
+static void black_leaves_hide(void **state)
+{
+    (void)state;
+    Material       rows[3] = {0};
+    PlantQuad      quad[2];
+    Materials      m;
+    Canopy        *c = NULL;
+    const double   index = leaf_area * height_m * height_m / 64, sin_sun = 0.5;
+    const Daylight light = light_of(400, 100, sin_sun);
+    set_prototypes(&m, rows, quad, 0, 0, 0, 0.5f, 0.4f);
+    assert_int_equal(canopy_create(&c, &woods, prototypes, &m, true), STATUS_OK);
+    set_hits(0.04f, 0.03f);
+    assert_true(canopy_light(&among, c, NULL, &light, dark_ground, &hits, 1u << AIR_NIR));
+    CHECK_NEAR(among.up[0], gap_by_simpson(0.5 * index), 0.03); /* by the step of the leaf area */
+    CHECK(among.down[0] == 1 && among.up[1] == 1 && among.down[1] == 1 && among.leaves_w_m2[AIR_NIR][0] == 0);
+    CHECK_NEAR(among.ground[AIR_NIR][0],
+               (400 * sin_sun * exp(-0.5 * index / sin_sun) + 100 * gap_by_simpson(0.5 * index)) / (400 * sin_sun + 100), 0.03);
+    /* a place within a crown has the less of the stand's light and its own plant's */
+    CHECK_NEAR(among.up[2], 0.04, 1e-6);
+    CHECK_NEAR(among.down[2], 0.03, 1e-6);
+    /* nothing is near */
+    hits.count = 2, hits.p_enu[0][0] = 900;
+    CHECK(!canopy_light(&among, c, NULL, &light, dark_ground, &hits, 1u << AIR_NIR));
+    canopy_destroy(c);
+}
+
+/* White furnace: among leaves, branches and ground that absorb nothing, under an even sky, everything gets what the sky
+ * gives, wherever and whatever its tilt. */
+static void white_leaves_vanish(void **state)
+{
+    (void)state;
+    static const float white[optical_channel_count] = {1, 1, 1, 1, 1};
+    Material       rows[3] = {0};
+    PlantQuad      quad[2];
+    Materials      m;
+    Canopy        *c = NULL;
+    const Daylight light = light_of(0, 100, 0.5);
+    set_prototypes(&m, rows, quad, 0.55f, 0.45f, 1, 0.5f, 0.4f);
+    assert_int_equal(canopy_create(&c, &woods, prototypes, &m, true), STATUS_OK);
+    set_hits(0.3f, 0.2f);
+    assert_true(canopy_light(&among, c, NULL, &light, white, &hits, 1u << AIR_NIR));
+    for (int i = 0; i < 3; i++)
+        for (double up = -1; up <= 1; up += 0.25) CHECK_NEAR(received(i, up, 100, 100), 100, 0.01);
+    canopy_destroy(c);
+}
+
+/* The orders of scattering one by one, until nothing is left. */
+static void orders_add_up(void **state)
+{
+    (void)state;
+    Material     rows[3] = {0};
+    PlantQuad    quad[2];
+    Materials    m;
+    Canopy      *c = NULL;
+    const double rho = 0.46, tau = 0.4, bark = 0.3, up = 0.5, down = 0.4, sin_sun = 0.7, ground = 0.2;
+    const double index = 11.0 / 16; /* 0.675, stored as 11/16 */
+    const float  ground_rho[optical_channel_count] = {0.2f, 0.2f, 0.2f, 0.2f, 0.2f};
+    const Daylight light = light_of(400, 100, sin_sun);
+    set_prototypes(&m, rows, quad, (float)rho, (float)tau, (float)bark, (float)up, (float)down);
+    assert_int_equal(canopy_create(&c, &woods, prototypes, &m, true), STATUS_OK);
+    set_hits(0.3f, 0.2f);
+    for (int i = 0; i < 4; i++) hits.kind[i] = i == 3 ? hit_sky : hit_plant;
+    assert_true(canopy_light(&among, c, NULL, &light, ground_rho, &hits, 1u << AIR_NIR));
+    /* at the ground: hits without a landscape are at height 0 */
+    const double sees_sky = fmin(up, gap_by_simpson(0.5 * index)), sees_ground = down, hidden = 1 - gap_by_simpson(0.5 * index);
+    const double w = (0.5 * (rho + tau) + 0.25 * bark) / 0.75; /* by the areas that light meets: half of a leaf's, a quarter
+                                                                * of a branch's */
+    const double below = 400 * sin_sun * exp(-0.5 * index / sin_sun) + 100 * (1 - hidden);
+    double       on_leaf = 0.5 * 400 * fmin(up, exp(-0.5 * index / sin_sun)) + sees_sky * 100 + sees_ground * ground * below;
+    double       leaves = 0;
+    for (int order = 0; order < 200; order++) {
+        const double out = 0.5 * w * on_leaf;
+        leaves += out;
+        on_leaf = (2 - sees_sky - sees_ground) * out + sees_ground * ground * hidden * out;
+    }
+    CHECK_NEAR(among.leaves_w_m2[AIR_NIR][0], leaves, 1e-3 * leaves);
+    CHECK_NEAR(among.ground[AIR_NIR][0], (below + hidden * leaves) / (400 * sin_sun + 100), 1e-3);
     canopy_destroy(c);
 }
 
@@ -122,7 +222,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gap_is_the_integral),
         cmocka_unit_test(leaves_are_where_they_were_put),
-        cmocka_unit_test(ground_beneath),
+        cmocka_unit_test(black_leaves_hide),
+        cmocka_unit_test(white_leaves_vanish),
+        cmocka_unit_test(orders_add_up),
     };
     return cmocka_run_group_tests(tests, open_orchard, close_orchard);
 }

@@ -287,11 +287,48 @@ static void transmittance(void **state)
     CHECK(fabs(got - want) < 4 * sqrt(want * (1 - want) / count) + 0.01 * want);
 }
 
+/* Openness of quads against many rays by force; the mean closely, each as far as its few rays allow. */
+static void openness(void **state)
+{
+    enum { tried = 40, directions = 300 };
+    static Plant plant[1];
+    const double origin[3] = {0, 0, 0};
+    double       mean[2] = {0}, square = 0;
+    (void)state;
+    hand_grow(false, 0.12);
+    Woods woods = hand_stand(plant, 1, origin, 0.5);
+    plant[0] = (Plant){.height = 100, .width = 128, .kind = plant[0].kind};
+    open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
+    forest_openness(&hand_plants, forest, NULL);
+    PlantShape *s = &hand_plants.shape[plant[0].kind][0];
+    for (int t = 0; t < tried; t++) {
+        const PlantQuad *q = &s->quad[s->quads - 1 - 3 * t]; /* leaves */
+        double           all[2] = {0}, open[2] = {0}, n[3], middle[3];
+        for (int c = 0; c < 3; c++) {
+            n[c] = (double)q->n[0][c];
+            middle[c] = 0.25 * ((double)q->corner[0][c] + (double)q->corner[1][c] + (double)q->corner[2][c] + (double)q->corner[3][c]);
+        }
+        for (int k = 0; k < directions; k++) {
+            uint32_t unused;
+            double   d[3], o[3];
+            hand_plant_direction(d, 40, (uint64_t)(t * directions + k));
+            const double cosine = v3_dot(n, d), weight = fabs(cosine);
+            v3_add_scaled(o, middle, cosine > 0 ? 1e-4 : -1e-4, n);
+            const bool free = by_force(&unused, &unused, &woods, o, d, 0, true, INFINITY) == INFINITY;
+            all[d[2] < 0] += weight, open[d[2] < 0] += free ? weight : 0;
+        }
+        const double off[2] = {(double)q->open_up - open[0] / all[0], (double)q->open_down - open[1] / all[1]};
+        for (int h = 0; h < 2; h++) mean[h] += off[h] / tried, square += off[h] * off[h] / (2 * tried);
+    }
+    CHECK(fabs(mean[0]) < 0.03 && fabs(mean[1]) < 0.03 && sqrt(square) < 0.15);
+    close_forest();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tree), cmocka_unit_test(a_stand),  cmocka_unit_test(bare_trees),    cmocka_unit_test(levels),
-        cmocka_unit_test(far_away), cmocka_unit_test(order), cmocka_unit_test(transmittance),
+        cmocka_unit_test(far_away), cmocka_unit_test(order), cmocka_unit_test(transmittance), cmocka_unit_test(openness),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -50,7 +50,7 @@ static void random_leaves(void)
         }
         hits.range_m[i] = 10;
         hits.kind[i] = hit_plant, hits.plant[i] = 1, hits.material[i] = 1;
-        hits.albedo[i] = hits.sky[i] = texture[i] = sun[i] = 1;
+        hits.albedo[i] = hits.open_up[i] = hits.open_down[i] = texture[i] = sun[i] = 1;
         temp_k[i] = 300;
     }
 }

@@ -75,7 +75,7 @@ static void flat_quads(void **state)
                 CHECK_NEAR(v3_length(shown), 1, 1e-5);
                 if (q->organ != PLANT_BARK) CHECK(fabs(v3_dot(shown, n)) > 0.999);
                 else CHECK(v3_dot(shown, n) > 0.49); /* outwards; of three sides, 60 degrees off */
-                CHECK(q->sky >= 0 && q->sky <= 1);
+                CHECK(q->open_up >= 0 && q->open_up <= 1 && q->open_down >= 0 && q->open_down <= 1);
             }
 }
 
@@ -237,7 +237,7 @@ static void threads(void **state)
             assert_int_equal(a->quads, b->quads);
             for (int k = 0; k < a->quads; k++) {
                 assert_memory_equal(a->quad[k].corner, b->quad[k].corner, sizeof a->quad[k].corner);
-                assert_true(a->quad[k].sky == b->quad[k].sky);
+                assert_true(a->quad[k].open_up == b->quad[k].open_up && a->quad[k].open_down == b->quad[k].open_down);
             }
         }
     plants_destroy(again);

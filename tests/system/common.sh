@@ -29,7 +29,7 @@ finish() {
 bare=(--set terrain.woods=off)
 # run ARGUMENTS: pitviper, with standard output, standard error and exit code in $tmp/stdout, $tmp/stderr, $code
 run() {
-    case $1 in replay|run) set -- "$1" "${bare[@]}" "${@:2}" ;; esac
+    case ${1:-} in replay|run) set -- "$1" "${bare[@]}" "${@:2}" ;; esac
     "$pitviper" "$@" >"$tmp/stdout" 2>"$tmp/stderr"
     code=$?
     [ $code -lt 124 ] || { fail "pitviper $* ended with $code"; tail -n 20 "$tmp/stderr"; }
