@@ -395,7 +395,7 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
 
 void frame_fields_woods(Fields *f, FrameFile *file)
 {
-    enum { path_octets = 40, most_paths = 1 << 22 };
+    enum { path_octets = 48, most_paths = 1 << 22 };
     WoodsConfig *w = &file->woods;
     WoodsPath   *path = (WoodsPath *)w->path; /* written: not changed */
     file->planted = true;
@@ -410,6 +410,7 @@ void frame_fields_woods(Fields *f, FrameFile *file)
         field_reals(f, "path", path[i].a_m, 2, local_m);
         field_reals(f, "path", path[i].b_m, 2, local_m);
         field_real(f, "path", &path[i].half_m, 0, 1e4);
+        field_real(f, "path", &path[i].low_half_m, 0, path[i].half_m);
     }
     w->path = path;
 }

@@ -59,7 +59,7 @@ typedef struct Paths {
     bool             no_memory;
 } Paths;
 
-static void add_path(Paths *p, const double a_m[2], const double b_m[2], double half_m)
+static void add_path(Paths *p, const double a_m[2], const double b_m[2], double half_m, double low_half_m)
 {
     /* plants stand in whole squares, which reach beyond */
     const double *c = p->square->centre_m, reach_m = p->square->half_width_m + 2 * woods_square_m + half_m;
@@ -77,7 +77,7 @@ static void add_path(Paths *p, const double a_m[2], const double b_m[2], double 
         p->path     = larger;
         p->capacity = capacity;
     }
-    p->path[p->count++] = (WoodsPath){{a_m[0], a_m[1]}, {b_m[0], b_m[1]}, half_m};
+    p->path[p->count++] = (WoodsPath){{a_m[0], a_m[1]}, {b_m[0], b_m[1]}, half_m, low_half_m};
 }
 
 /* Half the width that a vehicle needs to pass and to turn, with room for an error of the path between reports. */
@@ -101,16 +101,16 @@ static void add_track(Paths *p, const Track *track, const bool *fixed, double ha
             continue;
         }
         enu_of(here, p->landscape, track->point[n].p_ecef);
-        if (opens && (n == 0 || n == track->count - 1)) add_path(p, here, here, fmax(open_m, half_m));
+        if (opens && (n == 0 || n == track->count - 1)) add_path(p, here, here, fmax(open_m, half_m), half_m);
         const double d_m = any ? hypot(here[0] - last[0], here[1] - last[1]) : INFINITY;
         if (any && d_m < step_m) continue;
-        add_path(p, any && d_m < jump_m ? last : here, here, half_m);
+        add_path(p, any && d_m < jump_m ? last : here, here, half_m, half_m);
         memcpy(last, here, sizeof last);
         any = true;
     }
 }
 
-/* Of a flight, or of the sight of a shot that hit, the parts that are lower than the highest trees. */
+/* Of a flight, or of the sight of a shot that hit, the parts that are lower than the highest trees; low plants stay. */
 static void add_line(Paths *p, const ClearLine *line)
 {
     static const double tree_m = 35, half_m = 8 /* of a wide crown, about it */, step_m = 25;
@@ -124,7 +124,7 @@ static void add_line(Paths *p, const ClearLine *line)
         const bool below = at[2] - elevation_height(&p->landscape->elevation, at[0], at[1], NULL) < tree_m;
         if (below && !low) memcpy(from, at, sizeof from);
         if (below) memcpy(to, at, sizeof to);
-        if ((low && !below) || (below && k == pieces)) add_path(p, from, to, half_m);
+        if ((low && !below) || (below && k == pieces)) add_path(p, from, to, half_m, 0);
         low = below;
     }
 }
@@ -146,7 +146,7 @@ static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalo
         double      p_enu[3];
         if (shot->result != dis_result_ground_impact || !isfinite(shot->detonation_s)) continue;
         enu_of(p_enu, p->landscape, shot->p_burst_ecef);
-        add_path(p, p_enu, p_enu, crater_m);
+        add_path(p, p_enu, p_enu, crater_m, crater_m);
         ++*impacts;
     }
 }

@@ -174,7 +174,7 @@ static bool config_is_good(const WoodsConfig *c)
     for (int n = 0; good && n < c->path_count; n++)
         for (int k = 0; k < 2; k++)
             good = good && fabs(c->path[n].a_m[k]) < 1e7 && fabs(c->path[n].b_m[k]) < 1e7 && c->path[n].half_m >= 0 &&
-                   c->path[n].half_m < 1e4;
+                   c->path[n].half_m < 1e4 && c->path[n].low_half_m >= 0 && c->path[n].low_half_m <= c->path[n].half_m;
     if (!good) log_error("woods: centre, half width, number of trees or a path is out of range");
     return good;
 }

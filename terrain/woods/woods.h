@@ -9,10 +9,11 @@
 #include "terrain/landscape/landscape.h"
 #include "terrain/woods/plant.h"
 
-/* A straight piece of a path along which invented woods are cleared, and its half width. */
+/* A straight piece of a path along which invented woods are cleared. */
 typedef struct WoodsPath {
     double a_m[2], b_m[2]; /* ENU of the landscape */
-    double half_m;
+    double half_m;         /* half its width for what stands */
+    double low_half_m;     /* for low plants; 0: they stay, as below a flight */
 } WoodsPath;
 
 typedef struct WoodsConfig {

@@ -9,12 +9,13 @@ static const double vehicle_m = 4, way_room_m = 1;
 
 /* ---- clearings -------------------------------------------------------------------------------- */
 
+/* From the path's middle. */
 static double away_from(const WoodsPath *p, double x_m, double y_m)
 {
     const double dx = p->b_m[0] - p->a_m[0], dy = p->b_m[1] - p->a_m[1], square = dx * dx + dy * dy;
     const double ax = x_m - p->a_m[0], ay = y_m - p->a_m[1];
     const double t = square > 0 ? clamp((ax * dx + ay * dy) / square, 0, 1) : 0;
-    return hypot(ax - t * dx, ay - t * dy) - p->half_m;
+    return hypot(ax - t * dx, ay - t * dy);
 }
 
 /* Calls count or put for every square that a path may reach into. */
@@ -36,7 +37,7 @@ static void walk_squares(WoodsClearings *c, uint32_t *at, bool put)
             for (int64_t i = from[0]; i < end[0]; i++) {
                 const double x_m = ((double)(c->i0 + i) + 0.5) * woods_square_m;
                 const double y_m = ((double)(c->j0 + j) + 0.5) * woods_square_m;
-                if (away_from(p, x_m, y_m) > 0.7072 * woods_square_m + reach_m) continue;
+                if (away_from(p, x_m, y_m) > p->half_m + 0.7072 * woods_square_m + reach_m) continue;
                 if (put) c->item[at[j * c->nx + i]] = (uint32_t)n;
                 at[j * c->nx + i]++;
             }
@@ -54,7 +55,7 @@ Status woods_clearings_create(WoodsClearings *out, const WoodsSource *s, const W
     for (int n = 0; n < config->path_count; n++) c.path[c.count++] = config->path[n];
     for (int n = 0; n < known->fix_count; n++) {
         const double *p = known->fix[n].p_enu;
-        c.path[c.count++] = (WoodsPath){{p[0], p[1]}, {p[0], p[1]}, vehicle_m};
+        c.path[c.count++] = (WoodsPath){{p[0], p[1]}, {p[0], p[1]}, vehicle_m, vehicle_m};
     }
     /* counted at first[2 ..], then summed: while they are filled, first[n + 1] is the next place of square n */
     walk_squares(&c, c.first + 2, false);
@@ -69,13 +70,15 @@ lost:
     return STATUS_NO_MEMORY;
 }
 
-bool woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double room_m)
+bool woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double room_m, bool low)
 {
     const double i = floor(x_m / woods_square_m) - (double)c->i0, j = floor(y_m / woods_square_m) - (double)c->j0;
     if (!(i >= 0 && j >= 0 && i < c->nx && j < c->ny)) return false;
     const size_t n = (size_t)j * (size_t)c->nx + (size_t)i;
-    for (uint32_t k = c->first[n]; k < c->first[n + 1]; k++)
-        if (away_from(&c->path[c->item[k]], x_m, y_m) < room_m) return true;
+    for (uint32_t k = c->first[n]; k < c->first[n + 1]; k++) {
+        const WoodsPath *p = &c->path[c->item[k]];
+        if (away_from(p, x_m, y_m) < (low ? p->low_half_m : p->half_m) + room_m) return true;
+    }
     return false;
 }
 
@@ -93,7 +96,8 @@ static bool surface_bears(uint8_t surface)
            surface != SURFACE_SNOW;
 }
 
-void woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *x_m, const double *y_m, double room_m)
+void woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *x_m, const double *y_m, double room_m,
+                 bool low)
 {
     enum { some = 256 };
     static const double side[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -103,7 +107,7 @@ void woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *
         const int n = count - first < some ? count - first : some;
         for (int k = 0; k < n; k++) {
             WayPlace way;
-            bears[first + k] = !woods_is_cleared(&s->clearings, x_m[first + k], y_m[first + k], room_m);
+            bears[first + k] = !woods_is_cleared(&s->clearings, x_m[first + k], y_m[first + k], room_m, low);
             if (!landscape_way(&way, s->landscape, x_m[first + k], y_m[first + k])) continue;
             bears[first + k] &= fabs(way.across_m) > way.half_m + way_room_m + room_m;
         }

@@ -34,7 +34,7 @@ int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i,
         x_m[count] = place[0], y_m[count] = place[1];
         kept_surface[count] = surface[k], kept_hash[count++] = hash[k];
     }
-    woods_bears(bears, s, count, x_m, y_m, -0.8);
+    woods_bears(bears, s, count, x_m, y_m, -0.8, true);
     for (int k = 0; k < count; k++) {
         const WoodsClass *class = &s->table.of[kept_surface[k]];
         const double      z_m = elevation_height(&s->landscape->elevation, x_m[k], y_m[k], NULL);

@@ -54,10 +54,11 @@ double woods_noise(uint64_t seed, uint64_t stream, double x_m, double y_m, doubl
 Plant  woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double width);
 /* Whether the ground there bears a trunk: none on roads, tracks, water, roofs, in clearings. Many places of one square at a
  * time; bears[count]: 1 or 0. */
-void   woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *x_m, const double *y_m, double room_m);
+void   woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *x_m, const double *y_m, double room_m,
+                   bool low);
 
 Status woods_clearings_create(WoodsClearings *out, const WoodsSource *s, const WoodsConfig *config);
-bool   woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double room_m);
+bool   woods_is_cleared(const WoodsClearings *c, double x_m, double y_m, double room_m, bool low);
 void   woods_clearings_free(WoodsClearings *c);
 
 /* Standing plants of one square; positions from the woods' origin. */

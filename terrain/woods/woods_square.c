@@ -123,7 +123,7 @@ static void add_crowns(SquarePlants *out, const WoodsSource *s, int i, int j)
         uint8_t        surface;
         landscape_surfaces(&surface, s->landscape, 1, &x_m, &y_m);
         if (surface == SURFACE_WATER || surface == SURFACE_ROAD || !(crown->height_m > 0.5f)) continue;
-        if (woods_is_cleared(&s->clearings, x_m, y_m, 0)) continue;
+        if (woods_is_cleared(&s->clearings, x_m, y_m, 0, false)) continue;
         const PlantKind kind = crown->height_m < 3 ? PLANT_BUSH : kind_at(s, shares_of(s, surface), x_m, y_m, hash);
         const double    width = (double)crown->radius_m / ((double)crown->height_m * plant_crown_share(kind));
         add_plant(out, s, woods_draw_plant(hash, kind, (double)crown->height_m, clamp(width, 0.4, 1.99)), x_m, y_m);
@@ -206,7 +206,7 @@ static bool add_hedge(SquarePlants *out, const WoodsSource *s, double x_m, doubl
         const bool        tree = h->height == HEDGE_TREES && woods_unit(woods_hash(hash, 2, 0, 0)) < 0.12;
         const double      height_m = h->height == HEDGE_CUT ? 1.3 + 0.3 * u : 1.8 + 1.6 * u;
         uint8_t           bears;
-        woods_bears(&bears, s, 1, &h->x_m, &h->y_m, 0);
+        woods_bears(&bears, s, 1, &h->x_m, &h->y_m, 0, false);
         if (!bears) continue;
         if (tree) {
             static const double share[PLANT_STANDING] = {[PLANT_ALDER] = 0.3, [PLANT_BIRCH] = 0.2, [PLANT_ENGLISH_OAK] = 0.5};
@@ -254,7 +254,7 @@ void woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j)
     landscape_surfaces(c.surface, s->landscape, square_cells, c.x_m, c.y_m);
     if (s->crowns.first) add_crowns(out, s, i, j);
     for (int k = 0; k < square_cells; k++) offer(&c, out, s, k);
-    woods_bears(bears, s, c.count, c.x_m, c.y_m, 0.5);
+    woods_bears(bears, s, c.count, c.x_m, c.y_m, 0.5, false);
     for (int k = 0; k < c.count; k++) {
         if (!bears[k]) continue;
         const int before = out->count;

@@ -63,7 +63,7 @@ static void small_file(ByteSink *out, bool invented, bool planted)
         file.ground.photo    = (Photo){.mips = 2, .nx = {2, 1}, .ny = {2, 1}, .cell_m = 8,
                                        .block = {&block[0], &block[1]}};
     }
-    static const WoodsPath path[2] = {{{1, 2}, {3, 4}, 5}, {{6, 7}, {6, 7}, 8}};
+    static const WoodsPath path[2] = {{{1, 2}, {3, 4}, 5, 0}, {{6, 7}, {6, 7}, 8, 3}};
     file.planted = planted;
     if (planted) file.woods = (WoodsConfig){.half_width_m = 500, .most_trees = 70, .path_count = 2, .path = path};
     if (frame_file_pack(out, &file, NULL) != STATUS_OK) abort();

@@ -31,7 +31,7 @@ static int close_ground(void **state)
     return 0;
 }
 
-static const WoodsPath track = {{-300, -500}, {500, 300}, 6};
+static const WoodsPath track = {{-300, -500}, {500, 300}, 6, 6};
 
 static WoodsConfig about(double x_m, double y_m, double half_m)
 {
@@ -276,6 +276,40 @@ static void low_plants(void **state)
     woods_destroy(&w);
 }
 
+/* Low plants in the middle of the square, in all and within 4 m of the path. */
+static void count_low(int *all, int *on_path, const WoodsPath *path)
+{
+    static Plant plant[woods_low_most];
+    Woods        w;
+    WoodsConfig  config = about(0, 0, 500);
+    config.path = path;
+    *all = *on_path = 0;
+    assert_int_equal(woods_create(&w, &landscape, &config, NULL), STATUS_OK);
+    for (int64_t j = 20; j < 100; j++)
+        for (int64_t i = 20; i < 100; i++) {
+            const int count = woods_low_plants(plant, &w, i, j);
+            for (int k = 0; k < count; k++) {
+                const double x = w.origin_enu[0] + (double)i * woods_low_m + (double)plant[k].p_m[0];
+                const double y = w.origin_enu[1] + (double)j * woods_low_m + (double)plant[k].p_m[1];
+                const bool   along = x > -300 && x < 500 && y > -500 && y < 300;
+                *on_path += along && fabs((x + 300) - (y + 500)) / sqrt(2) < 4;
+            }
+            *all += count;
+        }
+    woods_destroy(&w);
+}
+
+/* Below a flight low plants stay, on a vehicle's path they do not. */
+static void low_plants_below_flights(void **state)
+{
+    const WoodsPath flight = {{-300, -500}, {500, 300}, 6, 0};
+    int             all[2], on_path[2];
+    (void)state;
+    count_low(&all[0], &on_path[0], &track);
+    count_low(&all[1], &on_path[1], &flight);
+    CHECK(on_path[0] == 0 && on_path[1] > 20 && all[1] > all[0]);
+}
+
 /* ---- a terrain store -------------------------------------------------------------------------- */
 
 enum { posts = 129, layer = 64 };
@@ -397,6 +431,7 @@ int main(void)
         cmocka_unit_test(on_ground_that_bears_them), cmocka_unit_test(threads), cmocka_unit_test(another_square),
         cmocka_unit_test(at_most_so_many), cmocka_unit_test(as_many_as_the_table_says), cmocka_unit_test(leans_and_heights),
         cmocka_unit_test(transform), cmocka_unit_test(near_a_place), cmocka_unit_test(low_plants),
+        cmocka_unit_test(low_plants_below_flights),
         cmocka_unit_test(layers_of_a_store), cmocka_unit_test(tables),
     };
     return cmocka_run_group_tests(tests, open_ground, close_ground);

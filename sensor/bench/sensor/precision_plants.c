@@ -281,7 +281,7 @@ static Status open_wood(PlantPrecision *p)
     static const double        side_m = 1200;
     const Geodetic             origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
     WoodsStand stand = {.landscape = &p->landscape, .east_m = side_m, .north_m = side_m, .trees = 25000, .clears = 1,
-                        .clear = {{{0, 0}, {0, 0}, 12}}};
+                        .clear = {{{0, 0}, {0, 0}, 12, 12}}};
     LocalFrame frame;
     double     times_s[2];
     char       catalog[512];

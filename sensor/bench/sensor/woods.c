@@ -96,7 +96,7 @@ static Status make_woods(WoodsBench *w)
     for (int k = 0; k < snapshot.count && k < woods_stand_clear; k++) {
         double p_enu[3];
         enu_from_ecef(p_enu, &w->frame, snapshot.entity[k].p_ecef);
-        stand.clear[stand.clears++] = (WoodsPath){{p_enu[0], p_enu[1]}, {p_enu[0], p_enu[1]}, 6};
+        stand.clear[stand.clears++] = (WoodsPath){{p_enu[0], p_enu[1]}, {p_enu[0], p_enu[1]}, 6, 6};
     }
     status = woods_stand_create(&w->woods, &stand, w->many);
     if (status != STATUS_OK) return status;
