@@ -59,8 +59,8 @@ typedef struct ForestHit {
 
 /* For rays of a block: where some plant is nearer than range_m, range_m and hit are replaced. real: [count], 1: plants
  * are never traced at level 1 for this ray; NULL: 0. Returns rays that entered some plant's box. Thread-safe. */
-uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count, const double *const o_enu[3],
-                           const double *const d_enu[3], const uint8_t *real);
+uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count,
+                           const double *const o_enu[3], const double *const d_enu[3], const uint8_t *real);
 /* dark becomes 1 where some plant is met nearer than far_m; rays where it is 1 already are left out. real: as above. */
 uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, const double *const o_enu[3],
                          const double *const d_enu[3], const double *far_m, const uint8_t *real);

@@ -29,8 +29,8 @@ static void count_rays(int all[2], int open[2], const OpenTask *task, const Plan
     double              n[3], o[3];
     for (int c = 0; c < 3; c++) {
         n[c] = side * (double)q->n[0][c];
-        o[c] = 0.25 * ((double)q->corner[0][c] + (double)q->corner[1][c] + (double)q->corner[2][c] + (double)q->corner[3][c]) +
-               off * n[c];
+        o[c] = off * n[c];
+        for (int k = 0; k < 4; k++) o[c] += 0.25 * (double)q->corner[k][c];
     }
     for (int k = 0; k < count; k++) {
         double    d[3];

@@ -264,8 +264,8 @@ static void start_of(double o[3], const ListRay *ray, const PlantList *list)
     v3_sub(o, ray->o_enu, list->origin_enu);
 }
 
-uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count, const double *const o_enu[3],
-                           const double *const d_enu[3], const uint8_t *real)
+uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *frame, int count,
+                           const double *const o_enu[3], const double *const d_enu[3], const uint8_t *real)
 {
     const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
     ListRay          ray = {.entered = 0};
@@ -351,7 +351,8 @@ void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHi
     turn_normal(out->n_geo, m, plane.n);
     const double side = v3_dot(out->n_geo, d_enu) > 0 ? -1 : 1;
     v3_scale(out->n_geo, side, out->n_geo);
-    *out = (ForestSurface){.n_geo = {out->n_geo[0], out->n_geo[1], out->n_geo[2]}, .open_up = quad->open_up, .open_down = quad->open_down,
+    *out = (ForestSurface){.n_geo = {out->n_geo[0], out->n_geo[1], out->n_geo[2]}, .open_up = quad->open_up,
+                           .open_down = quad->open_down,
                            .radius_m = (float)(quad->radius * height_m), .height_m = (float)height_m};
     double foot_enu[3], from[3], inverse[9], p[3];
     foot_of(foot_enu, list, plant);

@@ -58,8 +58,10 @@ static void add_plant(Sum *sum, const Canopy *c, const Woods *woods, const Plant
 {
     const PlantShape *shape = &plants->shape[plant->kind][0];
     const double      height_m = plant_height_m(plant), wide = plant->width / 128.0;
-    const double      area = (double)shape->leaf_area * height_m * height_m * wide, r = (double)shape->crown_radius * height_m * wide;
-    const double      x = (double)plant->p_m[0] + woods->origin_enu[0] - c->x0_m, y = (double)plant->p_m[1] + woods->origin_enu[1] - c->y0_m;
+    const double      area = (double)shape->leaf_area * height_m * height_m * wide;
+    const double      r = (double)shape->crown_radius * height_m * wide;
+    const double      x = (double)plant->p_m[0] + woods->origin_enu[0] - c->x0_m;
+    const double      y = (double)plant->p_m[1] + woods->origin_enu[1] - c->y0_m;
     if (!leaves && plant_is_deciduous((PlantKind)plant->kind)) return;
     const int i0 = (int)clamp(floor((x - r) / cell_m), 0, c->nx - 1), i1 = (int)clamp(floor((x + r) / cell_m), 0, c->nx - 1);
     const int j0 = (int)clamp(floor((y - r) / cell_m), 0, c->ny - 1), j1 = (int)clamp(floor((y + r) / cell_m), 0, c->ny - 1);
@@ -178,7 +180,8 @@ double canopy_leaf_area_above(const Canopy *c, double x_m, double y_m, double he
     if (!(i >= 0 && j >= 0 && i < c->nx - 1 && j < c->ny - 1)) return 0;
     for (int k = 0; k < 4; k++) {
         const double share = (k & 1 ? x - i : 1 - (x - i)) * (k & 2 ? y - j : 1 - (y - j));
-        sum += share * above_cell(&c->cell[((size_t)j + (size_t)(k >> 1)) * (size_t)c->nx + (size_t)i + (size_t)(k & 1)], height_m);
+        const size_t cell = ((size_t)j + (size_t)(k >> 1)) * (size_t)c->nx + (size_t)i + (size_t)(k & 1);
+        sum += share * above_cell(&c->cell[cell], height_m);
     }
     return sum;
 }
@@ -201,7 +204,8 @@ static bool place_of(Place *out, const Canopy *c, double x_m, double y_m, double
         return false;
     }
     *out = (Place){.up = gap_at(c, 0.5 * above), .down = gap_at(c, 0.5 * fmax(all - above, 0)),
-                   .up_from_ground = gap_at(c, 0.5 * all), .sun_here = exp(-slant * above), .sun_on_ground = exp(-slant * all)};
+                   .up_from_ground = gap_at(c, 0.5 * all), .sun_here = exp(-slant * above),
+                   .sun_on_ground = exp(-slant * all)};
     return true;
 }
 

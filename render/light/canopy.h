@@ -16,8 +16,8 @@
  * surfaces that absorb nothing stays even light.
  *
  * Error, beside a path tracer of all orders (tests/system/test_plants_judge.sh): the light of leaves in the near
- * infrared within 5 % for single trees and a closed stand; visible within 5 %. Thermal bands are unchanged: leaves radiate as
- * much as they hide. Low plants, and the side from which the scattered light comes, are left out. */
+ * infrared within 5 % for single trees and a closed stand; visible within 5 %. Thermal bands are unchanged: leaves
+ * radiate as much as they hide. Low plants, and the side from which the scattered light comes, are left out. */
 #ifndef RENDER_LIGHT_CANOPY_H
 #define RENDER_LIGHT_CANOPY_H
 

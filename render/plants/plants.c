@@ -106,7 +106,8 @@ void grow_facet(Growth *g, const double corner[3][3])
 static double card_area(const PlantQuad *q)
 {
     double u[3], v[3], n[3];
-    for (int x = 0; x < 3; x++) u[x] = (double)(q->corner[1][x] - q->corner[0][x]), v[x] = (double)(q->corner[3][x] - q->corner[0][x]);
+    for (int x = 0; x < 3; x++)
+        u[x] = (double)(q->corner[1][x] - q->corner[0][x]), v[x] = (double)(q->corner[3][x] - q->corner[0][x]);
     v3_cross(n, u, v);
     return v3_length(n);
 }

@@ -63,7 +63,8 @@ void plants_bark(float *albedo, float slope[2], PlantKind kind, uint32_t plant, 
     }
     double bands = 0;
     if (f->bands > 0) {
-        const double kept = clamp(2 - 4 * (double)footprint_m / f->along_m, 0, 1), p[3] = {(double)p_m[0], (double)p_m[1], (double)p_m[2] / f->along_m};
+        const double kept = clamp(2 - 4 * (double)footprint_m / f->along_m, 0, 1);
+        const double p[3] = {(double)p_m[0], (double)p_m[1], (double)p_m[2] / f->along_m};
         double       unused;
         bands = kept * f->bands * noise(&unused, plant, 9, p);
     }

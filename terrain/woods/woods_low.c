@@ -40,7 +40,8 @@ int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i,
         const double      z_m = elevation_height(&s->landscape->elevation, x_m[k], y_m[k], NULL);
         if (!bears[k] || !isfinite(z_m)) continue;
         const double u = woods_unit(woods_hash(kept_hash[k], 4, 0, 0));
-        Plant        p = woods_draw_plant(kept_hash[k], class->floor, class->floor_low_m + u * u * (class->floor_high_m - class->floor_low_m),
+        const double height_m = class->floor_low_m + u * u * (class->floor_high_m - class->floor_low_m);
+        Plant        p = woods_draw_plant(kept_hash[k], class->floor, height_m,
                                           0.8 + 0.5 * woods_unit(woods_hash(kept_hash[k], 5, 0, 0)));
         p.p_m[0] = (float)(x_m[k] - s->origin_enu[0] - (double)i * woods_low_m);
         p.p_m[1] = (float)(y_m[k] - s->origin_enu[1] - (double)j * woods_low_m);

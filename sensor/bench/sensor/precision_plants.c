@@ -53,7 +53,8 @@ static RenderRequest request_of(const PlantRendering *r, PlantShot shot)
     const Config  config = config_default();
     RenderRequest request = {.view = view_of(r->p, shot),
                              .bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR, .truth = true,
-                             .optical = r->nir ? OPTICAL_NIR : OPTICAL_RGB, .samples = r->samples, .edge_samples = r->edge_samples, .sky_samples = r->sky_samples,
+                             .optical = r->nir ? OPTICAL_NIR : OPTICAL_RGB, .samples = r->samples, .edge_samples = r->edge_samples,
+                             .sky_samples = r->sky_samples,
                              .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0, .hidden_entity = -1,
                              .low_plants_m = r->low_m};
     if (r->nir) request.bands = 1u << BAND_OPTICAL;
