@@ -31,25 +31,24 @@ static void foot_of(double foot_enu[3], const PlantList *list, const Plant *plan
     for (int c = 0; c < 3; c++) foot_enu[c] = list->origin_enu[c] + (double)plant->p_m[c];
 }
 
-/* Transform of a plant as it stands in this frame. */
-static void transform_of(double m[9], const ForestFrame *frame, const Plant *plant)
+/* Axes and scales of a plant as it stands in this frame. */
+static void axes_of(double axis[3][3], double scale[2], const ForestFrame *frame, const Plant *plant)
 {
     double sway_rad[2];
     if (!(frame->forest->config.sway > 0)) {
-        plant_transform(m, plant, NULL);
+        plant_axes(axis, scale, plant, NULL);
         return;
     }
     forest_sway(sway_rad, frame, plant, (double)plant->p_m[0], (double)plant->p_m[1]);
-    plant_transform(m, plant, sway_rad);
+    plant_axes(axis, scale, plant, sway_rad);
 }
 
-/* The columns of m are at right angles: its inverse is its transpose over their squared lengths. */
-static void invert(double inverse[9], const double m[9])
+/* Of a vector of ENU, in the prototype's axes, 1 high. */
+static void to_prototype(double out[3], const double axis[3][3], const double per[2], const double v_enu[3])
 {
-    for (int k = 0; k < 3; k++) {
-        const double square = m[k] * m[k] + m[3 + k] * m[3 + k] + m[6 + k] * m[6 + k];
-        for (int c = 0; c < 3; c++) inverse[3 * k + c] = m[3 * c + k] / square;
-    }
+    out[0] = v3_dot(axis[0], v_enu) * per[0];
+    out[1] = v3_dot(axis[1], v_enu) * per[0];
+    out[2] = v3_dot(axis[2], v_enu) * per[1];
 }
 
 void plant_box(const struct RTCBoundsFunctionArguments *a)
@@ -81,19 +80,19 @@ void plant_box(const struct RTCBoundsFunctionArguments *a)
 static bool enter_plant(QuadRay *q, double *start_m, const ListRay *ray, const PlantList *list, uint32_t place)
 {
     const Plant *plant = &list->plant[place];
-    double       foot_enu[3], from[3], m[9], inverse[9], o[3], in = 0, out = ray->limit_m;
+    double       foot_enu[3], from[3], axis[3][3], scale[2], o[3], in = 0, out = ray->limit_m;
     foot_of(foot_enu, list, plant);
     const int level = !ray->real && forest_is_low_in_picture(ray->frame, plant, foot_enu);
     q->shape = &list->forest->shape[plant->kind][level];
     if (!q->shape->scene) return false;
-    transform_of(m, ray->frame, plant);
-    invert(inverse, m);
+    axes_of(axis, scale, ray->frame, plant);
+    const double per[2] = {1 / scale[0], 1 / scale[1]};
     v3_sub(from, ray->o_enu, foot_enu);
-    m3_mul_v3(o, inverse, from);
-    m3_mul_v3(q->d, inverse, ray->d_enu);
+    to_prototype(o, axis, per, from);
+    to_prototype(q->d, axis, per, ray->d_enu);
     for (int c = 0; c < 3; c++) {
-        const double half = q->shape->half[c], to = q->shape->centre[c] - o[c], per = 1 / q->d[c];
-        double       a = (to - half) * per, b = (to + half) * per;
+        const double half = q->shape->half[c], to = q->shape->centre[c] - o[c], inverse = 1 / q->d[c];
+        double       a = (to - half) * inverse, b = (to + half) * inverse;
         if (q->d[c] == 0) {
             if (fabs(to) > half) return false;
             continue;
@@ -311,11 +310,10 @@ uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, con
 /* ---- surfaces --------------------------------------------------------------------------------- */
 
 /* A normal of the prototype, in ENU. */
-static void turn_normal(double out[3], const double m[9], const double n[3])
+static void turn_normal(double out[3], const double axis[3][3], const double per[2], const double n[3])
 {
-    double scaled[3];
-    for (int k = 0; k < 3; k++) scaled[k] = n[k] / (m[k] * m[k] + m[3 + k] * m[3 + k] + m[6 + k] * m[6 + k]);
-    m3_mul_v3(out, m, scaled);
+    for (int c = 0; c < 3; c++)
+        out[c] = axis[0][c] * per[0] * n[0] + axis[1][c] * per[0] * n[1] + axis[2][c] * per[1] * n[2];
     if (!v3_normalize(out, out)) out[0] = out[1] = 0, out[2] = 1;
 }
 
@@ -344,22 +342,22 @@ void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHi
     const PlantShape *shape = frame->forest->shape[hit->kind][hit->level].shape;
     const PlantQuad *quad = &shape->quad[hit->quad];
     const double     height_m = plant_height_m(plant);
-    double           m[9], n[3];
+    double           axis[3][3], scale[2], n[3];
     QuadPlane        plane;
-    transform_of(m, frame, plant);
+    axes_of(axis, scale, frame, plant);
+    const double per[2] = {1 / scale[0], 1 / scale[1]};
     plane_of(&plane, quad);
-    turn_normal(out->n_geo, m, plane.n);
+    turn_normal(out->n_geo, axis, per, plane.n);
     const double side = v3_dot(out->n_geo, d_enu) > 0 ? -1 : 1;
     v3_scale(out->n_geo, side, out->n_geo);
     *out = (ForestSurface){.n_geo = {out->n_geo[0], out->n_geo[1], out->n_geo[2]}, .open_up = quad->open_up,
                            .open_down = quad->open_down,
                            .radius_m = (float)(quad->radius * height_m), .height_m = (float)height_m};
-    double foot_enu[3], from[3], inverse[9], p[3];
+    double foot_enu[3], from[3], p[3];
     foot_of(foot_enu, list, plant);
     v3_sub(from, o_enu, foot_enu);
     v3_add_scaled(from, from, range_m, d_enu);
-    invert(inverse, m);
-    m3_mul_v3(p, inverse, from);
+    to_prototype(p, axis, per, from);
     out->height_share = (float)clamp(p[2], 0, 1);
     if (quad->organ == PLANT_LEAF) {
         memcpy(out->n_enu, out->n_geo, sizeof out->n_enu);
@@ -370,6 +368,6 @@ void forest_surface(ForestSurface *out, const ForestFrame *frame, const ForestHi
     float       slope[2] = {0, 0};
     plants_bark(&out->albedo, slope, (PlantKind)hit->kind, hit->plant, p_m, footprint_m);
     bark_normal(n, quad, &plane, hit->uv, slope);
-    turn_normal(out->n_enu, m, n);
+    turn_normal(out->n_enu, axis, per, n);
     if (v3_dot(out->n_enu, out->n_geo) < 0) v3_scale(out->n_enu, -1, out->n_enu);
 }

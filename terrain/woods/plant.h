@@ -42,8 +42,10 @@ typedef struct Plant {
 } Plant;
 
 static inline double plant_height_m(const Plant *plant) { return plant->height * plant_height_step_m; }
-/* From the prototype's axes to ENU, with its scale: columns are the images of x, y, z. Orthogonal but for the scales.
- * sway: added to the lean, rad east and north; NULL: none. */
+/* The prototype's axes as the plant stands, unit, ENU; scales: across, along its axis. sway: added to the lean, rad east
+ * and north; NULL: none. */
+void plant_axes(double axis_enu[3][3], double scale[2], const Plant *plant, const double sway_rad[2]);
+/* From the prototype's axes to ENU, with its scales: columns are the images of x, y, z. */
 void plant_transform(double m_enu_from_plant[9], const Plant *plant, const double sway_rad[2]);
 
 #endif
