@@ -1,4 +1,5 @@
 /* Light on leaves: between even skies they vanish, lit from behind they shine, and quick and plain forms agree. */
+#include "tests/render/hand_plants.h"
 #include "tests/render/hand_world.h"
 
 #include "render/light/hemisphere.h"
@@ -13,7 +14,7 @@ static Rays     rays;
 static AirPaths veils[AIR_BAND_COUNT];
 static float    texture[hits_capacity], sun[hits_capacity], temp_k[hits_capacity];
 static uint64_t key[hits_capacity];
-static Material rows[2];
+static Material rows[3];
 static Materials materials;
 
 static int open_world(void **state)
@@ -31,7 +32,11 @@ static void set_leaf(float rho, float tau)
                     .solar_absorptance = 1 - rho - tau, .roughness = 1, .conductivity_w_mk = 0.3f, .density_kg_m3 = 700,
                     .heat_capacity_j_kgk = 3500};
     for (int c = 0; c < optical_channel_count; c++) m->rho[c] = rho, m->tau[c] = tau;
-    materials = (Materials){.count = 2, .material = rows};
+    rows[2] = *m; /* bark of the same reflectance in all */
+    for (int c = 0; c < optical_channel_count; c++) rows[2].rho[c] = rho + tau, rows[2].tau[c] = 0;
+    rows[2].rho_mwir = rows[2].rho_lwir = rho + tau, rows[2].tau_mwir = rows[2].tau_lwir = 0;
+    materials = (Materials){.count = 3, .material = rows};
+    for (int kind = 0; kind < PLANT_KINDS; kind++) materials.plant[kind][PLANT_LEAF] = 1, materials.plant[kind][PLANT_BARK] = 2;
 }
 
 /* Leaves of every tilt a little above z = 0, seen from their lit or unlit side. */
@@ -123,6 +128,62 @@ static void white_leaf_vanishes(void **state)
         for (int i = 0; i < leaf_count; i++) CHECK_NEAR(quick[b][i], 3, 3e-4);
 }
 
+/* The same of a stand, by hemisphere sampling, which is the reference mode: between leaves and branches that absorb
+ * nothing, whatever lies in between. */
+static void white_stand_vanishes(void **state)
+{
+    (void)state;
+    enum { trees = 40 };
+    static Plant           plant[trees];
+    static float           quick[AIR_BAND_COUNT][hits_capacity];
+    static HemisphereLight gathered;
+    const double           origin[3] = {0, 0, 0}, down[3] = {0, 0, -1}, eye[3] = {0, -60, 20}, calm[2] = {0, 0};
+    VisibilityCounters     counters = {0};
+    Visibility            *visibility = NULL;
+    Forest                *forest = NULL;
+    ForestFrame            frame;
+    int                    of[2] = {0};
+    arena_reset(hand.arena), arena_reset(hand.air_arena);
+    hand_clear();
+    set_leaf(0.5f, 0.5f); /* one side is followed at random: without noise where both weigh the same */
+    even_air(3, 0, down);
+    hand_grow(false, 0.08);
+    const Woods woods = hand_stand(plant, trees, origin, 15);
+    assert_int_equal(forest_create(&forest, &woods, &hand_plants, &(ForestConfig){.leaves = true}, "avx2"), STATUS_OK);
+    assert_int_equal(forest_frame_open(&frame, forest, eye, 1000, 0, 0, calm, NULL, hand.arena), STATUS_OK);
+    assert_int_equal(visibility_create(&visibility, hand.world.tracer, NULL, &hand.world.frame, &hand.snapshot, 0, hand.arena),
+                     STATUS_OK);
+    visibility_materials(visibility, &materials);
+    visibility_plants(visibility, &frame);
+    rays.count = 0, rays.columns = 0;
+    for (int i = 0; i < 4 * leaf_count && rays.count < leaf_count; i++) { /* those that meet something */
+        double d[3] = {hand_uniform(-14, 14) - eye[0], hand_uniform(-14, 14) - eye[1], hand_uniform(2, 9) - eye[2]};
+        v3_normalize(d, d);
+        for (int k = 0; k < 3; k++) rays.o_enu[k][rays.count] = eye[k], rays.d_enu[k][rays.count] = d[k];
+        rays.far_m[rays.count] = INFINITY;
+        Rays one = {.count = 1};
+        Hits met;
+        for (int k = 0; k < 3; k++) one.o_enu[k][0] = eye[k], one.d_enu[k][0] = d[k];
+        one.far_m[0] = INFINITY;
+        visibility_first_hit(&met, visibility, &one, NULL, -1, -1, &counters);
+        rays.count += met.kind[0] == hit_plant;
+    }
+    assert_int_equal(rays.count, leaf_count);
+    visibility_first_hit(&hits, visibility, &rays, NULL, -1, -1, &counters);
+    hits.several = false;
+    for (int i = 0; i < leaf_count; i++) texture[i] = sun[i] = 1, temp_k[i] = 300, of[hits.radius_m[i] > 0]++;
+    CHECK(of[0] > 10 && of[1] > 3);
+    const HemisphereScene scene = {visibility, &hand.air, &materials, hand.catalog, &hand.snapshot};
+    const float          *around[AIR_BAND_COUNT];
+    hemisphere_light(&gathered, &scene, &hits, (1 << optical_channel_count) - 1, 16, key, &counters);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) around[b] = gathered.w_m2[b];
+    shade(quick, around);
+    for (int b = 0; b < optical_channel_count; b++)
+        for (int i = 0; i < leaf_count; i++) CHECK_NEAR(quick[b][i], 3, 3e-4);
+    forest_frame_close(&frame);
+    forest_destroy(forest);
+}
+
 /* Under a sun of 200 W/m2 alone a leaf returns rho cos / pi on the sunlit side and tau cos / pi on the other one; both,
  * over all directions, and what it absorbs are what it receives. */
 static void sun_on_either_side(void **state)
@@ -195,6 +256,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(white_leaf_vanishes),
+        cmocka_unit_test(white_stand_vanishes),
         cmocka_unit_test(sun_on_either_side),
         cmocka_unit_test(quick_and_plain_forms_agree),
     };
