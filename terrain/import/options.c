@@ -52,7 +52,7 @@ static bool pair_of(double out[2], const char *text, char separator)
 static bool take_list(char *to, size_t size, const char *value, bool add)
 {
     const size_t have = add ? strlen(to) : 0, more = strlen(value);
-    if (more == 0 || strpbrk(value, "\n\r") || have + more + 2 > size) return false;
+    if (value[strspn(value, ", ")] == 0 || strpbrk(value, "\n\r") || have + more + 2 > size) return false;
     if (have > 0) to[have] = ',';
     memcpy(to + have + (have > 0), value, more + 1);
     return true;
