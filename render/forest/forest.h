@@ -23,7 +23,7 @@ typedef struct ForestConfig {
 Status forest_create(Forest **out, const Woods *woods, const Plants *plants, const ForestConfig *config, const char *isa);
 void   forest_destroy(Forest *forest);
 /* Fills in PlantQuad.open_up and open_down of the forest's own prototypes, by rays through them: 24 a leaf, 8 a side of a
- * branch, so a quad's are within 0.1 (rms), and the mean of a crown within 0.005. 0.5 s of two cores. */
+ * branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). pool: may be NULL. */
 void   forest_openness(Plants *plants, const Forest *forest, Pool *pool);
 const Woods  *forest_woods(const Forest *forest);
 const Plants *forest_plants(const Forest *forest);

@@ -3,11 +3,10 @@
 
 enum { quads_a_task = 256, leaf_rays = 12 /* a side */, bark_rays = 8 };
 
-typedef struct OpenTask {
+typedef struct Opening {
     const ShapeScene *scene;
     PlantShape       *shape;
-    int               first;
-} OpenTask;
+} Opening;
 
 /* Direction k of count about n, as dense as the cosine to it; turned: about n, in turns. */
 static void towards(double d[3], const double n[3], int k, int count, double turned)
@@ -22,7 +21,7 @@ static void towards(double d[3], const double n[3], int k, int count, double tur
 }
 
 /* Rays from the middle of a quad, from one side of it: how many go up and down, and how many of these are free. */
-static void count_rays(int all[2], int open[2], const OpenTask *task, const PlantQuad *q, int number, double side)
+static void count_rays(int all[2], int open[2], const ShapeScene *scene, const PlantQuad *q, int number, double side)
 {
     static const double off = 1e-4; /* of the plant's height */
     const int           count = q->organ == PLANT_LEAF ? leaf_rays : bark_rays;
@@ -33,24 +32,24 @@ static void count_rays(int all[2], int open[2], const OpenTask *task, const Plan
         for (int k = 0; k < 4; k++) o[c] += 0.25 * (double)q->corner[k][c];
     }
     for (int k = 0; k < count; k++) {
-        double    d[3];
+        double d[3];
         towards(d, n, k, count, random_uniform(1995, (uint32_t)(side > 0), 0, (uint64_t)number));
         const int down = d[2] < 0;
         all[down]++;
-        open[down] += !shape_occluded(task->scene, o, d);
+        open[down] += !shape_occluded(scene, o, d);
     }
 }
 
-static void open_quads(void *user, int worker, int index)
+static void open_quads(void *user, int worker, int task)
 {
-    const OpenTask *task = (const OpenTask *)user + index;
-    const int       end = task->first + quads_a_task < task->shape->quads ? task->first + quads_a_task : task->shape->quads;
+    const Opening *o = user;
+    const int      first = task * quads_a_task, end = first + quads_a_task;
     (void)worker;
-    for (int k = task->first; k < end; k++) {
-        PlantQuad *q = &task->shape->quad[k];
+    for (int k = first; k < end && k < o->shape->quads; k++) {
+        PlantQuad *q = &o->shape->quad[k];
         int        all[2] = {0}, open[2] = {0};
-        count_rays(all, open, task, q, k, 1);
-        if (q->organ == PLANT_LEAF) count_rays(all, open, task, q, k, -1);
+        count_rays(all, open, o->scene, q, k, 1);
+        if (q->organ == PLANT_LEAF) count_rays(all, open, o->scene, q, k, -1);
         const float both = (float)(open[0] + open[1]) / (float)(all[0] + all[1]); /* where all go one way */
         q->open_up   = all[0] ? (float)open[0] / (float)all[0] : both;
         q->open_down = all[1] ? (float)open[1] / (float)all[1] : both;
@@ -59,14 +58,11 @@ static void open_quads(void *user, int worker, int index)
 
 void forest_openness(Plants *plants, const Forest *forest, Pool *pool)
 {
-    enum { most = 4096 };
-    OpenTask task[most];
-    int      count = 0;
     for (int kind = 0; kind < PLANT_KINDS; kind++)
-        for (int level = 0; level < plant_levels; level++)
-            for (int first = 0; first < plants->shape[kind][level].quads && count < most; first += quads_a_task)
-                task[count++] = (OpenTask){&forest->shape[kind][level], &plants->shape[kind][level], first};
-    if (pool) pool_run(pool, count, open_quads, task);
-    else
-        for (int k = 0; k < count; k++) open_quads(task, 0, k);
+        for (int level = 0; level < plant_levels; level++) {
+            Opening   o = {&forest->shape[kind][level], &plants->shape[kind][level]};
+            const int tasks = (o.shape->quads + quads_a_task - 1) / quads_a_task;
+            if (pool) pool_run(pool, tasks, open_quads, &o);
+            else for (int k = 0; k < tasks; k++) open_quads(&o, 0, k);
+        }
 }

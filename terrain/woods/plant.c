@@ -28,33 +28,20 @@ bool plant_is_deciduous(PlantKind kind) { return kind >= 0 && kind < PLANT_KINDS
 
 double plant_crown_share(PlantKind kind) { return kind >= 0 && kind < PLANT_KINDS ? kinds[kind].crown : 0; }
 
-/* Cosine and sine of a twist, within 1e-15: by quarters of a turn, then the power series within an eighth of one. */
-static void turned(double cs[2], uint16_t twist)
-{
-    static const double c_of[4] = {1, 0, -1, 0}, s_of[4] = {0, 1, 0, -1};
-    const int    quarter = ((twist + 8192) >> 14) & 3;
-    const double x = (((twist + 8192) & 16383) - 8192) * (2 * pi_rad / 65536), x2 = x * x;
-    const double s = x * (1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42 * (1 - x2 / 72 * (1 - x2 / 110 * (1 - x2 / 156 * (1 - x2 / 210)))))));
-    const double c = 1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30 * (1 - x2 / 56 * (1 - x2 / 90 * (1 - x2 / 132 * (1 - x2 / 182))))));
-    cs[0] = c_of[quarter] * c - s_of[quarter] * s;
-    cs[1] = s_of[quarter] * c + c_of[quarter] * s;
-}
-
 /* The shortest turn from up to the leaning axis a (Rodrigues): columns of R = I + [w] + [w]^2 / (1 + a_z), w = up x a;
  * of the plant turned by its twist before. */
 void plant_axes(double axis[3][3], double scale[2], const Plant *plant, const double sway_rad[2])
 {
-    static const double step = 15 * rad_per_deg / 127;
+    const double step = plant_most_tilt_rad / 127;
     const double east = plant->lean[0] * step + (sway_rad ? sway_rad[0] : 0);
     const double north = plant->lean[1] * step + (sway_rad ? sway_rad[1] : 0);
     const double up = 1 / sqrt(1 + east * east + north * north), ax = east * up, ay = north * up;
     const double per = 1 / (1 + up);
     const double x[3] = {1 - ax * ax * per, -ax * ay * per, -ax}, y[3] = {-ax * ay * per, 1 - ay * ay * per, -ay};
-    double       cs[2];
-    turned(cs, plant->twist);
+    const double turn = plant->twist * (2 * pi_rad / 65536), cosine = cos(turn), sine = sin(turn);
     for (int c = 0; c < 3; c++) {
-        axis[0][c] = cs[0] * x[c] + cs[1] * y[c];
-        axis[1][c] = cs[0] * y[c] - cs[1] * x[c];
+        axis[0][c] = cosine * x[c] + sine * y[c];
+        axis[1][c] = cosine * y[c] - sine * x[c];
     }
     axis[2][0] = ax, axis[2][1] = ay, axis[2][2] = up;
     scale[1] = plant_height_m(plant);

@@ -93,24 +93,30 @@ static CanopyLight among;
 static Hits        hits;
 static const float dark_ground[optical_channel_count] = {0};
 
-/* Of a row of leaves and one of bark, in all bands; a crown is one leaf of 0.4 m2 and a branch of 0.4 m2, as open as
- * this. */
-static void set_prototypes(Materials *m, Material rows[3], PlantQuad quad[2], float rho, float tau, float bark, float up,
-                           float down)
+/* The orchard's canopy, of leaves and bark that are the same in all bands; a crown is one leaf of 0.4 m2 and a branch of
+ * 0.4 m2, as open as this. */
+static Canopy *canopy_of(double rho, double tau, double bark, double up, double down)
 {
-    *m = (Materials){.count = 3, .material = rows};
-    for (int c = 0; c < optical_channel_count; c++) rows[1].rho[c] = rho, rows[1].tau[c] = tau, rows[2].rho[c] = bark;
+    static Material  rows[3];
+    static Materials materials;
+    static PlantQuad quad[2];
+    Canopy          *c = NULL;
+    materials = (Materials){.count = 3, .material = rows};
+    for (int k = 0; k < optical_channel_count; k++)
+        rows[1].rho[k] = (float)rho, rows[1].tau[k] = (float)tau, rows[2].rho[k] = (float)bark;
     for (int k = 0; k < 2; k++)
         quad[k] = (PlantQuad){.corner = {{0, 0, 0}, {0.4f, 0, 0}, {0.4f, 1, 0}, {0, 1, 0}}, .organ = k ? PLANT_BARK : PLANT_LEAF,
-                              .open_up = up, .open_down = down};
+                              .open_up = (float)up, .open_down = (float)down};
     for (int kind = 0; kind < PLANT_KINDS; kind++) {
-        m->plant[kind][PLANT_LEAF] = 1, m->plant[kind][PLANT_BARK] = 2;
+        materials.plant[kind][PLANT_LEAF] = 1, materials.plant[kind][PLANT_BARK] = 2;
         prototypes->shape[kind][0].quad = quad, prototypes->shape[kind][0].quads = 2;
         for (int o = 0; o < plant_outlines; o++) prototypes->outline_area[kind][o] = 1;
     }
+    assert_int_equal(canopy_create(&c, &woods, prototypes, &materials, true), STATUS_OK);
+    return c;
 }
 
-/* Ground beneath the orchard, beside it, a leaf in it 8 m up, the sky. */
+/* Ground beneath the orchard, beside it, a leaf in it, the sky: all at height 0, since there is no landscape. */
 static void set_hits(float up, float down)
 {
     static const uint8_t kind[4] = {hit_ground, hit_ground, hit_plant, hit_sky};
@@ -140,14 +146,9 @@ static double received(int i, double up, double sky_w_m2, double ground_w_m2)
 static void black_leaves_hide(void **state)
 {
     (void)state;
-    Material       rows[3] = {0};
-    PlantQuad      quad[2];
-    Materials      m;
-    Canopy        *c = NULL;
     const double   index = leaf_area * height_m * height_m / 64, sin_sun = 0.5;
     const Daylight light = light_of(400, 100, sin_sun);
-    set_prototypes(&m, rows, quad, 0, 0, 0, 0.5f, 0.4f);
-    assert_int_equal(canopy_create(&c, &woods, prototypes, &m, true), STATUS_OK);
+    Canopy        *c = canopy_of(0, 0, 0, 0.5, 0.4);
     set_hits(0.04f, 0.03f);
     assert_true(canopy_light(&among, c, NULL, &light, dark_ground, &hits, 1u << AIR_NIR));
     CHECK_NEAR(among.up[0], gap_by_simpson(0.5 * index), 0.03); /* by the step of the leaf area */
@@ -169,13 +170,8 @@ static void white_leaves_vanish(void **state)
 {
     (void)state;
     static const float white[optical_channel_count] = {1, 1, 1, 1, 1};
-    Material       rows[3] = {0};
-    PlantQuad      quad[2];
-    Materials      m;
-    Canopy        *c = NULL;
     const Daylight light = light_of(0, 100, 0.5);
-    set_prototypes(&m, rows, quad, 0.55f, 0.45f, 1, 0.5f, 0.4f);
-    assert_int_equal(canopy_create(&c, &woods, prototypes, &m, true), STATUS_OK);
+    Canopy        *c = canopy_of(0.55, 0.45, 1, 0.5, 0.4);
     set_hits(0.3f, 0.2f);
     assert_true(canopy_light(&among, c, NULL, &light, white, &hits, 1u << AIR_NIR));
     for (int i = 0; i < 3; i++)
@@ -187,16 +183,11 @@ static void white_leaves_vanish(void **state)
 static void orders_add_up(void **state)
 {
     (void)state;
-    Material     rows[3] = {0};
-    PlantQuad    quad[2];
-    Materials    m;
-    Canopy      *c = NULL;
     const double rho = 0.46, tau = 0.4, bark = 0.3, up = 0.5, down = 0.4, sin_sun = 0.7, ground = 0.2;
     const double index = 11.0 / 16; /* 0.675, stored as 11/16 */
     const float  ground_rho[optical_channel_count] = {0.2f, 0.2f, 0.2f, 0.2f, 0.2f};
     const Daylight light = light_of(400, 100, sin_sun);
-    set_prototypes(&m, rows, quad, (float)rho, (float)tau, (float)bark, (float)up, (float)down);
-    assert_int_equal(canopy_create(&c, &woods, prototypes, &m, true), STATUS_OK);
+    Canopy        *c = canopy_of(rho, tau, bark, up, down);
     set_hits(0.3f, 0.2f);
     for (int i = 0; i < 4; i++) hits.kind[i] = i == 3 ? hit_sky : hit_plant;
     assert_true(canopy_light(&among, c, NULL, &light, ground_rho, &hits, 1u << AIR_NIR));
@@ -210,7 +201,7 @@ static void orders_add_up(void **state)
     for (int order = 0; order < 200; order++) {
         const double out = 0.5 * w * on_leaf;
         leaves += out;
-        on_leaf = (2 - sees_sky - sees_ground) * out + sees_ground * ground * hidden * out;
+        on_leaf = (2 - sees_sky - sees_ground + sees_ground * ground * hidden) * out;
     }
     CHECK_NEAR(among.leaves_w_m2[AIR_NIR][0], leaves, 1e-3 * leaves);
     CHECK_NEAR(among.ground[AIR_NIR][0], (below + hidden * leaves) / (400 * sin_sun + 100), 1e-3);

@@ -93,21 +93,15 @@ mi.register_bsdf("leaf", lambda props: Leaf(props))
 TABLE = {}
 
 
-def mesh(name, vertices, normals, faces, bsdf):
-    out = mi.Mesh(name, len(vertices), len(faces), has_vertex_normals=normals is not None,
-                  props=mesh_props(bsdf))
+def mesh(name, vertices, faces, bsdf):
+    props = mi.Properties()
+    props["bsdf"] = mi.load_dict(bsdf)
+    out = mi.Mesh(name, len(vertices), len(faces), props=props)
     params = mi.traverse(out)
     params["vertex_positions"] = np.ravel(vertices).astype(np.float32)
     params["faces"] = np.ravel(faces).astype(np.uint32)
-    if normals is not None: params["vertex_normals"] = np.ravel(normals).astype(np.float32)
     params.update()
     return out
-
-
-def mesh_props(bsdf):
-    props = mi.Properties()
-    props["bsdf"] = mi.load_dict(bsdf)
-    return props
 
 
 def read(folder):
@@ -118,7 +112,7 @@ def read(folder):
         else: text[word[0]] = np.array(word[1:], float)
     quads = np.fromfile(f"{folder}/quads", np.float32).reshape(-1, 16)
     outlines = np.fromfile(f"{folder}/outlines", np.float32).reshape(-1, 49)
-    rays = np.fromfile(f"{folder}/rays", np.float32).reshape(-1, 16)
+    rays = np.fromfile(f"{folder}/rays", np.float32).reshape(-1, 15)
     return text, quads, outlines, rays
 
 
@@ -130,7 +124,7 @@ def meshes(text, quads, outlines):
         if len(bark):
             at = 4 * np.arange(len(bark))[:, None, None]
             rho = text[kind, 0][:, 0]
-            out[f"bark{kind}"] = mesh(f"bark{kind}", bark[:, :12].reshape(-1, 3), None,
+            out[f"bark{kind}"] = mesh(f"bark{kind}", bark[:, :12].reshape(-1, 3),
                                       (at + np.array([[0, 1, 2], [0, 2, 3]])).reshape(-1, 3),
                                       {"type": "twosided", "b": {"type": "diffuse", "reflectance": {"type": "rgb", "value": list(rho)}}})
         vertices, faces, albedo, base = [], [], [], 0
@@ -148,7 +142,7 @@ def meshes(text, quads, outlines):
         if base:
             key = f"leaf{kind}"
             TABLE[key] = (text[kind, 1][:, 0], text[kind, 1][:, 1], np.concatenate(albedo).astype(float))
-            out[key] = mesh(key, np.concatenate(vertices), None, np.concatenate(faces), {"type": "leaf", "key": key})
+            out[key] = mesh(key, np.concatenate(vertices), np.concatenate(faces), {"type": "leaf", "key": key})
     return out
 
 
@@ -163,7 +157,7 @@ def scene_of(text, plants, sky):
 
 
 def render(scene, rays, depth, paths):
-    """Radiance of each ray, [rays][3], the mean of its paths; and its variance."""
+    """Radiance of each ray, [rays][3], the mean of its paths."""
     integrator = mi.load_dict({"type": "path", "max_depth": depth, "rr_depth": 1000})
     sampler = mi.load_dict({"type": "independent", "sample_count": 1})
     sampler.seed(1)
@@ -188,7 +182,7 @@ def main(folder, paths):
     width = 384
     bands = []
     for b in range(3):
-        ours, theirs = blocks(rays[:, 10 + b].astype(float), width), blocks(direct[:, b], width)
+        ours, theirs = blocks(rays[:, 9 + b].astype(float), width), blocks(direct[:, b], width)
         known = theirs > 0.1 * theirs.mean()  # blocks that show something
         bands.append(100 * np.abs(ours - theirs)[known] / theirs[known])
     print(f"direct {len(bands[0])} {max(b.max() for b in bands):.2f}")
@@ -198,7 +192,7 @@ def main(folder, paths):
     full = render(scene_of(text, plants, True), rays, -1, paths)
     for what, of in (("leaves", (rays[:, 7] == PLANT_HIT) & (rays[:, 8] == LEAF)), ("ground", rays[:, 7] == GROUND_HIT)):
         for b in range(3):
-            ours, theirs = rays[of, 13 + b].mean(), full[of, b].mean()
+            ours, theirs = rays[of, 12 + b].mean(), full[of, b].mean()
             print(f"all {what} {BANDS[b].replace(' ', '_')} {ours:.4g} {theirs:.4g} {100 * (ours / theirs - 1):+.2f} "
                   f"first order {100 * direct[of, b].mean() / theirs:.0f} %")
 

@@ -63,6 +63,7 @@ for knob in "Earth to local frame" "latitude. longitude. height" "geoid between 
             "powers of two" \
             "spacing of invented ground" "reach of the finest level" "height of a post" "detail: weakest octave" "posts of terrain from files" \
             "dead reckoning" "heat of parts between reports" "radiance of a black body" "temperature of a radiance" \
+            "plants simplified" "rays a pixel among plants" "reach of low plants" "light between leaves" \
             "light on the ground" "smoke along a ray" "air before a pixel. visible" "air before a pixel. thermal" \
             "radiance of the sky" "light of the sky on a plane" "range to the ground" "range to a part" "rays a pixel" \
             "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
@@ -128,9 +129,18 @@ for what in "time stamp to seconds" "exercise clock unwrapped" "denormals, infin
 for what in "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" "light: Planck" "light: smoke" \
             "sun: " "picture: a block" \
             "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "detector: " "display: " \
-            "threads: "; do
+            "threads: " "plants: leaves edge-on" "plants: skimmed tops" "plants: trees at the origin and 200 km" \
+            "plants: a million trees"; do
     has stability "$what"
 done
+
+table woods
+for view in "100 m up, 5 degrees down" "300 m up, 10 degrees down" "300 m up, 8 down, 6 wide" "1000 m up, 20 degrees down"; do
+    has woods "$view: one ray a pixel, full detail.*planes of one thread, nothing skipped\",yes,"
+    has woods "$view: one ray a pixel, two levels.*planes of one thread, nothing skipped\",yes,"
+    for plane in red green blue "3-5 um" "8-12 um"; do has woods "$view: two levels, $plane"; done
+done
+has woods "memory: with frames of all views, full detail.*,yes,"
 
 run bench speed --quick --size 17
 check "a size that is none is refused" [ $code = 1 ]

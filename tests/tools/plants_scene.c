@@ -4,8 +4,8 @@
  * SCENE: oak or pine (one, and its shadow) or stand (ninety trees of seven kinds, from above). Files of OUT, float32 rows:
  *     quads     12 corner coordinates, organ, kind, outline, albedo
  *     outlines  corners, then 24 u v pairs: one row for each kind and outline
- *     rays      origin, direction, range, kind of hit, plant's organ and albedo, then radiance of red, green, near infrared under
- *               the sun alone, and again under sun and sky with what plants scatter
+ *     rays      origin, direction, range, kind of hit, plant's organ, then radiance of red, green, near infrared under the
+ *               sun alone, and again under sun and sky with what plants scatter
  * and scene.txt: names and numbers of the light and the materials. */
 #include "render/frame/shade.h"
 
@@ -181,7 +181,7 @@ static Status see_row(float (*radiance)[hits_capacity], Samples *s, World *world
                       int row, bool full, Arena *arena)
 {
     static Shader        shader;
-    const Snapshot       nobody = {0};
+    const Snapshot       empty = {0};
     const RenderRequest  request = {.view = *view, .samples = 1, .hidden_entity = -1};
     Canopy *const        canopy = world->canopy;
     double               sky[AIR_BAND_COUNT];
@@ -194,7 +194,7 @@ static Status see_row(float (*radiance)[hits_capacity], Samples *s, World *world
     if (!full) world->canopy = NULL;
     air_even(&air, sun_enu, sun_w_m2, sky, 0, world->planck_mwir, world->planck_lwir);
     arena_reset(arena);
-    Status status = shade_scene_create(&scene, world, &nobody, &air, &request, channels, NULL, arena);
+    Status status = shade_scene_create(&scene, world, &empty, &air, &request, channels, NULL, arena);
     if (status == STATUS_OK) status = samples_create(s, view->width, arena);
     if (status == STATUS_OK) {
         fill_rays(s, view, row);
@@ -208,7 +208,7 @@ static Status see_row(float (*radiance)[hits_capacity], Samples *s, World *world
     return status;
 }
 
-static Status see(const char *folder, const Shot *shot, World *world, const Woods *woods, const double sun_enu[3])
+static Status see(const char *folder, const Shot *shot, World *world, const double sun_enu[3])
 {
     static float radiance[2][bands][hits_capacity];
     static Samples samples;
@@ -223,17 +223,15 @@ static Status see(const char *folder, const Shot *shot, World *world, const Wood
             const Rays *r = &samples.rays;
             const Hits *h = &samples.hits;
             const bool  leaf = h->kind[i] == hit_plant && h->radius_m[i] == 0;
-            float       line[10 + 2 * bands] = {(float)r->o_enu[0][i], (float)r->o_enu[1][i], (float)r->o_enu[2][i],
+            float       line[9 + 2 * bands] = {(float)r->o_enu[0][i], (float)r->o_enu[1][i], (float)r->o_enu[2][i],
                                                (float)r->d_enu[0][i], (float)r->d_enu[1][i], (float)r->d_enu[2][i],
-                                               (float)h->range_m[i], h->kind[i], leaf ? PLANT_LEAF : PLANT_BARK,
-                                               h->kind[i] == hit_plant ? h->albedo[i] : 1};
-            for (int b = 0; b < 2 * bands; b++) line[10 + b] = radiance[b / bands][b % bands][i];
+                                               (float)h->range_m[i], h->kind[i], leaf ? PLANT_LEAF : PLANT_BARK};
+            for (int b = 0; b < 2 * bands; b++) line[9 + b] = radiance[b / bands][b % bands][i];
             fwrite(line, sizeof line, 1, file);
         }
     }
     fclose(file);
     arena_destroy(arena);
-    (void)woods;
     return status;
 }
 
@@ -270,7 +268,7 @@ int main(int argc, char **argv)
         flatten(world.plants);
         write_scene(argv[1], sun_enu, &world.materials);
         write_quads(argv[1], &woods, world.plants);
-        status = see(argv[1], shot, &world, &woods, sun_enu);
+        status = see(argv[1], shot, &world, sun_enu);
     }
     if (status != STATUS_OK) fprintf(stderr, "plants_scene: %s\n", status_name(status));
     world_close(&world);
