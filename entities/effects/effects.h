@@ -8,7 +8,7 @@
 
 #include "pitviper_channels.h"
 #include "terrain/earth/local_frame.h"
-#include "terrain/weather.h"
+#include "terrain/weather/weather.h"
 
 typedef enum EffectKind {
     EFFECT_MUZZLE_FLASH, EFFECT_MUZZLE_SMOKE, EFFECT_LAUNCH_FLASH, EFFECT_LAUNCH_SMOKE,

@@ -18,7 +18,7 @@
 #include "render/materials/materials.h"
 #include "render/materials/planck.h"
 #include "terrain/earth/sun.h"
-#include "terrain/weather.h"
+#include "terrain/weather/weather.h"
 
 /* Sky radiance, without the sun's disc: thermal[height] + around_sun[angle from the sun] *
  * scattered[height][azimuth]. d_up = (i / air_sky_ups)^2, dense at the horizon; equal steps of azimuth from the
