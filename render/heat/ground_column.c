@@ -3,7 +3,7 @@
 
 #include "render/heat/soil.h"
 
-Status ground_column_create(GroundColumn *out, const GroundKind *kind, const GroundGrid *grid, double temp_k)
+Status ground_layers(Column *out, const GroundKind *kind, const GroundGrid *grid)
 {
     ColumnLayer layer[3];
     double      above_m = 0;
@@ -16,10 +16,13 @@ Status ground_column_create(GroundColumn *out, const GroundKind *kind, const Gro
     layer[layers++] = (ColumnLayer){fmax(grid->depth_m - above_m, 0.5),
                                     soil ? soil_conductivity_w_mk(kind->porosity, kind->quartz, kind->saturation) : kind->rock_w_mk,
                                     soil ? soil_capacity_j_m3k(kind->porosity, kind->saturation) : kind->rock_j_m3k};
-    *out = (GroundColumn){.kind = kind, .saturation = kind->saturation};
-    const Status status = column_create(&out->column, layer, layers, grid->first_m, grid->growth);
-    if (status == STATUS_OK) column_start(&out->state, &out->column, temp_k);
-    return status;
+    return column_create(out, layer, layers, grid->first_m, grid->growth);
+}
+
+void ground_column_start(GroundColumn *out, const GroundKind *kind, const Column *layers, double temp_k)
+{
+    *out = (GroundColumn){.kind = kind, .column = layers, .saturation = kind->saturation};
+    column_start(&out->state, layers, temp_k);
 }
 
 double ground_absorbed_w_m2(const GroundColumn *c, const GroundWeather *w, const GroundExposure *e)
@@ -72,17 +75,17 @@ static void law_between(void *law, double share, const void *user)
     if (p->resistance_s_m < INFINITY) out->resistance_s_m += share * (q->resistance_s_m - p->resistance_s_m);
 }
 
-void ground_column_step(GroundColumn *c, const GroundGrid *grid, const GroundWeather *before, const GroundWeather *after,
+void ground_column_step(GroundColumn *c, double tolerance_k, const GroundWeather *before, const GroundWeather *after,
                         const GroundExposure *exposure, double dt_s)
 {
     Between between = {.column = c};
     ground_flux(&between.from, c, before, exposure);
     ground_flux(&between.to, c, after, exposure);
-    const ColumnBoundary boundary = {surface_flux_w_m2, law_between, &between, 0, grid->tolerance_k};
+    const ColumnBoundary boundary = {surface_flux_w_m2, law_between, &between, 0, tolerance_k};
     const double begun_k = c->state.temp_k[0];
-    column_step(&c->state, &c->column, &boundary, dt_s);
+    column_step(&c->state, c->column, &boundary, dt_s);
     if (c->state.temp_k[0] > c->kind->melts_k) { /* what is too much melts, and runs off */
-        for (int i = 0; i < c->column.nodes && c->state.temp_k[i] > c->kind->melts_k; i++)
+        for (int i = 0; i < c->column->nodes && c->state.temp_k[i] > c->kind->melts_k; i++)
             c->state.temp_k[i] = c->kind->melts_k;
     }
     if (c->kind->vapour != GROUND_SOIL) return;

@@ -39,7 +39,7 @@ typedef struct GroundExposure {
 
 typedef struct GroundColumn {
     const GroundKind *kind;
-    Column            column;
+    const Column     *column;     /* ground_layers of that kind */
     ColumnState       state;
     double            saturation; /* at the top */
 } GroundColumn;
@@ -50,10 +50,12 @@ typedef struct GroundGrid {
 } GroundGrid;
 static const GroundGrid ground_grid_default = {0.003, 1.3, 3, 0.02};
 
-Status ground_column_create(GroundColumn *out, const GroundKind *kind, const GroundGrid *grid, double temp_k);
+/* Of one kind, shared by its columns. STATUS_BAD_VALUE: column_create's. */
+Status ground_layers(Column *out, const GroundKind *kind, const GroundGrid *grid);
+void   ground_column_start(GroundColumn *out, const GroundKind *kind, const Column *layers, double temp_k);
 /* From before to after; both exposures the same piece of ground. */
-void   ground_column_step(GroundColumn *column, const GroundGrid *grid, const GroundWeather *before, const GroundWeather *after,
-                          const GroundExposure *exposure, double dt_s);
+void   ground_column_step(GroundColumn *column, double tolerance_k, const GroundWeather *before,
+                          const GroundWeather *after, const GroundExposure *exposure, double dt_s);
 /* What it absorbs, W/m2. */
 double ground_absorbed_w_m2(const GroundColumn *column, const GroundWeather *weather, const GroundExposure *exposure);
 /* Its balance there and then. */

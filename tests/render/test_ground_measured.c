@@ -53,8 +53,10 @@ static void miss_alamosa(double *rms_k, double *mean_k, double dry_m)
     const GroundExposure open = {{0, 0, 1}, 1, 1, 0};
     double mean = 0;
     for (int i = 0; i < rows.count; i++) mean += surface_k(rows.v[i][7], rows.v[i][6], emissivity) / rows.count;
+    Column       layers;
     GroundColumn column;
-    CHECK(ground_column_create(&column, &kind, &ground_grid_default, mean) == STATUS_OK);
+    CHECK(ground_layers(&layers, &kind, &ground_grid_default) == STATUS_OK);
+    ground_column_start(&column, &kind, &layers, mean);
     *rms_k = *mean_k = 0;
     for (int pass = 0; pass < 4; pass++) /* the days before are taken to be as this one */
         for (int i = 0; i < rows.count; i++) {
@@ -66,7 +68,7 @@ static void miss_alamosa(double *rms_k, double *mean_k, double dry_m)
                 w[k] = (GroundWeather){.air = {air_k, v[9] / 100 * saturation_pa(air_k), 100 * v[11], v[10], 10, 10},
                                        .diffuse_w_m2 = sun, .longwave_w_m2 = v[6], .sun_d_enu = {0, 0, 1}};
             }
-            ground_column_step(&column, &ground_grid_default, &w[0], &w[1], &open, 300);
+            ground_column_step(&column, ground_grid_default.tolerance_k, &w[0], &w[1], &open, 300);
             const double *v = rows.v[(i + 1) % rows.count];
             const double  miss = column.state.temp_k[0] - surface_k(v[7], v[6], emissivity);
             if (pass < 3) continue;
@@ -105,11 +107,13 @@ static void bondville(void **state)
     const GroundKind kind = {.porosity = porosity, .quartz = 0.25, .saturation = 0.40 / porosity, .roughness_m = 0.03,
                              .vapour = GROUND_SOIL, .absorptance = 0.7185, .emissivity = 0.9515, .melts_k = INFINITY};
     const GroundExposure open = {{0, 0, 1}, 1, 1, 0};
+    Column       layers;
     GroundColumn column;
-    CHECK(ground_column_create(&column, &kind, &ground_grid_default, 0) == STATUS_OK);
-    for (int i = 0, k = 0; i < column.column.nodes; i++) {
-        while (k < probes - 1 && column.column.depth_m[i] > depth_m[k + 1]) k++;
-        const double share = (column.column.depth_m[i] - depth_m[k]) / (depth_m[k + 1] - depth_m[k]);
+    CHECK(ground_layers(&layers, &kind, &ground_grid_default) == STATUS_OK);
+    ground_column_start(&column, &kind, &layers, 0);
+    for (int i = 0, k = 0; i < layers.nodes; i++) {
+        while (k < probes - 1 && layers.depth_m[i] > depth_m[k + 1]) k++;
+        const double share = (layers.depth_m[i] - depth_m[k]) / (depth_m[k + 1] - depth_m[k]);
         column.state.temp_k[i] = 273.15 + start_c[k] + share * (start_c[k + 1] - start_c[k]);
     }
     column.saturation = first[20] / porosity;
@@ -126,11 +130,11 @@ static void bondville(void **state)
                                    .longwave_w_m2 = 0.5 * (v[19] + next[19]), .sun_d_enu = {0, 0, 1},
                                    .rain_kg_m2s = v[8] * 25.4 / 1800};
         }
-        ground_column_step(&column, &ground_grid_default, &w[0], &w[1], &open, 1800);
+        ground_column_step(&column, ground_grid_default.tolerance_k, &w[0], &w[1], &open, 1800);
         const double *v = rows.v[i + 1];
         for (int k = 0; k < probes; k++) {
             if (!isfinite(v[9 + k])) continue;
-            const double miss = column_temp_k(&column.state, &column.column, depth_m[k]) - 273.15 - v[9 + k];
+            const double miss = column_temp_k(&column.state, &layers, depth_m[k]) - 273.15 - v[9 + k];
             miss2[k] += miss * miss, count[k]++;
             if (k == 0) air2 += (v[2] - v[9]) * (v[2] - v[9]);
             if (k == 0 && v[1] >= 1100 && v[1] <= 1300) noon_k += miss, noons++;

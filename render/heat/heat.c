@@ -1,0 +1,499 @@
+/* render/heat/heat.c: see heat.h. */
+#include "render/heat/heat.h"
+
+#include "pitviper_simd.h"
+
+#include <stdlib.h>
+
+HeatConfig heat_default_config(void)
+{
+    return (HeatConfig){.grid = ground_grid_default, .step_s = 600, .spin_up_s = 2 * 86400, .facets = 9};
+}
+
+static const double day_s = 86400, slot_s = 1800;
+enum { history = 512 }; /* steps whose surface is remembered: 85 h of 600 s */
+
+/* One kind: its columns, facet by facet, then by n_up in the shade, without sun, and one that sees no sky. */
+typedef struct KindState {
+    GroundColumn *column;
+    float         falls_w_m2k[history]; /* of the level column, by step */
+} KindState;
+
+typedef struct Sky { /* of one step of the past */
+    double direct_w_m2, diffuse_w_m2, loss_w_m2; /* loss: of a black level plane of air temperature to the sky */
+    double sun_d_enu[3];
+} Sky;
+
+struct Heat {
+    GroundKinds   kinds;
+    HeatConfig    config;
+    Column        layers[ground_kinds];
+    int           columns;              /* a kind */
+    KindState     state[ground_kinds];
+    GroundColumn *begun;                /* all columns at the beginning of the exercise */
+    float         begun_falls[ground_kinds][history];
+    Sky           sky[history], begun_sky[history];
+    int64_t       index, begun_index;   /* time of the columns: unix = index * step_s */
+    int64_t       first;                /* of the spin-up */
+    GroundWeather weather[2];           /* at the columns' time, and a step before */
+    HeatTable    *table;                /* [2]: a step before, and now; past alike */
+    HeatPast     *past;
+    int           slots, slot_of[heat_day_slots]; /* place of each half hour of UTC; -1: night */
+    float         slot_d_enu[3][heat_day_slots];
+    int           kind_of[SURFACE_COUNT];
+    double        spent_s;
+    int           steps;
+};
+
+/* ---- columns ----------------------------------------------------------------------------------- */
+
+static void facet_normal(double n_enu[3], int u, int v, int facets)
+{
+    const double a = 2.0 * u / (facets - 1) - 1, b = 2.0 * v / (facets - 1) - 1;
+    const double x = 0.5 * (a + b), y = 0.5 * (a - b);
+    const double p[3] = {x, y, fmax(1 - fabs(x) - fabs(y), 0)};
+    v3_normalize(n_enu, p);
+}
+
+static double up_of(int i) { return (double)i / (heat_ups - 1); }
+
+static GroundExposure exposure_of(const Heat *h, int c, double level_k)
+{
+    const int      facets = h->config.facets, all = facets * facets;
+    GroundExposure e = {.sun = 1, .sky = 1, .around_k = level_k};
+    if (c < all) {
+        facet_normal(e.n_enu, c % facets, c / facets, facets);
+    } else if (c < all + 2 * heat_ups) {
+        const double up = up_of((c - all) % heat_ups);
+        e.n_enu[0] = sqrt(1 - up * up), e.n_enu[2] = up, e.sun = 0;
+    } else {
+        e.n_enu[2] = 1, e.sun = 0, e.sky = 0;
+    }
+    return e;
+}
+
+static bool without_sun(const Heat *h, int c)
+{
+    const int all = h->config.facets * h->config.facets;
+    return c >= all + heat_ups && c < all + 2 * heat_ups;
+}
+
+static GroundWeather no_sun(const GroundWeather *w)
+{
+    GroundWeather out = *w;
+    out.direct_w_m2 = out.diffuse_w_m2 = 0;
+    return out;
+}
+
+typedef struct StepJob {
+    Heat  *heat;
+    double dt_s;
+    const GroundWeather *before, *after;
+} StepJob;
+
+static void step_kind(void *user, int worker, int task)
+{
+    const StepJob *job = user;
+    Heat          *h = job->heat;
+    KindState     *s = &h->state[task];
+    const int      level = h->config.facets * h->config.facets / 2;
+    const double   level_k = s->column[level].state.temp_k[0];
+    const GroundWeather dark[2] = {no_sun(job->before), no_sun(job->after)};
+    (void)worker;
+    if (task == SURFACE_NONE) return;
+    for (int c = 0; c < h->columns; c++) {
+        const bool night = without_sun(h, c), hidden = c == h->columns - 1;
+        const GroundExposure e = exposure_of(h, c, hidden ? job->before->air.temp_k : level_k);
+        ground_column_step(&s->column[c], h->config.grid.tolerance_k, night ? &dark[0] : job->before,
+                           night ? &dark[1] : job->after, &e, job->dt_s);
+    }
+}
+
+static void run(const Heat *h, PoolTask *task, void *user)
+{
+    if (h->config.pool) pool_run(h->config.pool, ground_kinds, task, user);
+    else
+        for (int k = 0; k < ground_kinds; k++) task(user, 0, k);
+}
+
+/* The sky of a time, and how each level column there gives heat away. */
+static void remember(Heat *h)
+{
+    const int            at = (int)(h->index % history), level = h->config.facets * h->config.facets / 2;
+    const GroundWeather *w = &h->weather[1];
+    const double         air_w_m2 = stefan_w_m2k4 * pow(w->air.temp_k, 4);
+    h->sky[at] = (Sky){w->direct_w_m2, w->diffuse_w_m2, air_w_m2 - w->longwave_w_m2, {w->sun_d_enu[0], w->sun_d_enu[1], w->sun_d_enu[2]}};
+    for (int k = 1; k < ground_kinds; k++) {
+        const GroundColumn  *c = &h->state[k].column[level];
+        const GroundExposure e = exposure_of(h, level, 0);
+        SurfaceFlux          flux;
+        double               a, b;
+        ground_flux(&flux, c, w, &e);
+        const double warm = surface_flux_w_m2(&a, c->state.temp_k[0] + 0.5, &flux);
+        const double cold = surface_flux_w_m2(&b, c->state.temp_k[0] - 0.5, &flux);
+        h->state[k].falls_w_m2k[at] = (float)fmax(cold - warm, 0.1);
+    }
+}
+
+static void advance(Heat *h, int steps)
+{
+    GroundWeather after;
+    h->weather[0] = h->weather[1];
+    h->config.weather(&after, (double)(h->index + steps) * h->config.step_s, h->config.user);
+    run(h, step_kind, &(StepJob){h, steps * h->config.step_s, &h->weather[0], &after});
+    h->index += steps;
+    h->weather[1] = after;
+    remember(h);
+}
+
+/* ---- responses --------------------------------------------------------------------------------- */
+
+typedef struct Linear {
+    double falls_w_m2k;
+} Linear;
+static const double pulse_base_k = 1000; /* a linear law knows no zero; so that no temperature falls below it */
+
+static double linear_flux(double *falls, double temp_k, const void *law)
+{
+    const Linear *l = law;
+    *falls = l->falls_w_m2k;
+    return -l->falls_w_m2k * (temp_k - pulse_base_k);
+}
+static void linear_law(void *law, double share, const void *user)
+{
+    (void)share;
+    *(Linear *)law = *(const Linear *)user;
+}
+
+typedef struct Interval {
+    int64_t from, to; /* times of the grid, from < to */
+} Interval;
+
+/* Intervals of the past, newest first: single steps for three hours, half hours to six, hours to a day and more. */
+static int past_intervals(Interval out[heat_past], const Heat *h)
+{
+    const double step_s = h->config.step_s;
+    int64_t      to = h->index;
+    int          count = 0;
+    while (count < heat_past) {
+        const double  age_s = (double)(h->index - to) * step_s;
+        const int64_t wide = age_s < 3 * 3600 ? 1 : (int64_t)fmax(1, round((age_s < 6 * 3600 ? 1800 : 3600) / step_s));
+        if (age_s >= 30 * 3600 || to - wide < h->first || h->index - to + wide >= history) break;
+        out[count++] = (Interval){to - wide, to};
+        to -= wide;
+    }
+    return count;
+}
+
+typedef struct PastJob {
+    Heat           *heat;
+    const Interval *interval;
+    int             count;
+    HeatPast       *past;
+} PastJob;
+
+/* K now for 1 W/m2 over each interval: what a pulse of heat, marched back in time, gives off through the surface. */
+static void respond(void *user, int worker, int kind)
+{
+    const PastJob *job = user;
+    const Heat    *h = job->heat;
+    const Column  *c = &h->layers[kind];
+    const GroundKind *k = &h->kinds.kind[kind];
+    ColumnState    state;
+    (void)worker;
+    if (kind == SURFACE_NONE) return;
+    column_start(&state, c, pulse_base_k);
+    const double pulse_j_m2 = 1e4;
+    state.temp_k[0] += pulse_j_m2 / c->capacity_j_m2k[0];
+    for (int i = 0; i < job->count; i++) {
+        const Interval *p = &job->interval[i];
+        double          falls = 0, direct = 0, diffuse = 0, loss = 0;
+        const double    count = (double)(p->to - p->from + 1);
+        for (int64_t t = p->from; t <= p->to; t++) {
+            const Sky *sky = &h->sky[t % history];
+            falls += (double)h->state[kind].falls_w_m2k[t % history] / count;
+            direct += sky->direct_w_m2 / count, diffuse += sky->diffuse_w_m2 / count, loss += sky->loss_w_m2 / count;
+        }
+        const double dt_s = (double)(p->to - p->from) * h->config.step_s;
+        const ColumnBoundary b = {linear_flux, linear_law, &(Linear){falls}, 0, 1e-4 * pulse_j_m2 / c->capacity_j_m2k[0]};
+        const double before = state.heat_j_m2;
+        column_step(&state, c, &b, dt_s);
+        const double per_w_m2 = (before - state.heat_j_m2) / falls / pulse_j_m2;
+        job->past->sun_k[kind][i] = (float)(per_w_m2 * k->absorptance * direct);
+        job->past->sky_k[kind][i] = (float)(per_w_m2 * (k->absorptance * diffuse - k->emissivity * loss));
+    }
+}
+
+static void fill_past(Heat *h, HeatPast *out)
+{
+    Interval  interval[heat_past];
+    const int count = past_intervals(interval, h);
+    *out = (HeatPast){.count = count};
+    for (int i = 0; i < count; i++) {
+        const Interval *p = &interval[i];
+        out->unix_s[i] = 0.5 * (double)(p->from + p->to) * h->config.step_s;
+        out->span_s[i] = (double)(p->to - p->from) * h->config.step_s;
+        GroundWeather w;
+        h->config.weather(&w, out->unix_s[i], h->config.user);
+        memcpy(out->sun_d_enu[i], w.sun_d_enu, sizeof w.sun_d_enu);
+    }
+    run(h, respond, &(PastJob){h, interval, count, out});
+}
+
+/* ---- tables ------------------------------------------------------------------------------------ */
+
+static int slot_at(double unix_s) { return (int)(fmod(unix_s, day_s) / slot_s); }
+
+static void fill_table(Heat *h, HeatTable *out, const HeatPast *past)
+{
+    const int all = h->config.facets * h->config.facets;
+    *out = (HeatTable){.unix_s = (double)h->index * h->config.step_s, .facets = h->config.facets,
+                       .air_k = h->weather[1].air.temp_k};
+    for (int k = 1; k < ground_kinds; k++) {
+        const GroundColumn *c = h->state[k].column;
+        for (int i = 0; i < all; i++) out->sun_k[k][i] = (float)c[i].state.temp_k[0];
+        for (int i = 0; i < heat_ups; i++) {
+            out->shade_k[k][i] = (float)c[all + i].state.temp_k[0];
+            out->dark_k[k][i]  = (float)c[all + heat_ups + i].state.temp_k[0];
+        }
+        out->hidden_k[k] = (float)c[h->columns - 1].state.temp_k[0];
+    }
+    for (int i = 0; i < past->count; i++) {
+        /* by halves of an hour: what is longer falls on several */
+        const int parts = (int)fmax(1, round(past->span_s[i] / slot_s));
+        for (int p = 0; p < parts; p++) {
+            const double at_s = past->unix_s[i] + past->span_s[i] * ((p + 0.5) / parts - 0.5);
+            const int    slot = h->slot_of[slot_at(at_s)];
+            if (slot < 0) continue;
+            for (int k = 1; k < ground_kinds; k++) out->slot_k[k][slot] += past->sun_k[k][i] / (float)parts;
+        }
+    }
+}
+
+static void next_table(Heat *h)
+{
+    const double begun_s = wall_clock_s();
+    HeatTable    table = h->table[1];
+    HeatPast     past = h->past[1];
+    h->table[0] = table;
+    h->past[0] = past;
+    advance(h, 1);
+    fill_past(h, &h->past[1]);
+    fill_table(h, &h->table[1], &h->past[1]);
+    h->spent_s += wall_clock_s() - begun_s;
+    h->steps++;
+}
+
+/* ---- life -------------------------------------------------------------------------------------- */
+
+/* The day's half hours with the sun up. */
+static void find_slots(Heat *h)
+{
+    const double day = floor(h->config.unix_s / day_s) * day_s;
+    for (int s = 0; s < heat_day_slots; s++) {
+        double at_s = day + (s + 0.5) * slot_s;
+        if (at_s > h->config.unix_s) at_s -= day_s; /* of the day past */
+        GroundWeather w;
+        h->config.weather(&w, at_s, h->config.user);
+        h->slot_of[s] = -1;
+        if (!(w.sun_d_enu[2] > 0)) continue;
+        for (int k = 0; k < 3; k++) h->slot_d_enu[k][h->slots] = (float)w.sun_d_enu[k];
+        h->slot_of[s] = h->slots++;
+    }
+}
+
+/* A day of level ground from the mean of the air: the mean of its surface is what the ground below has. */
+static void start_columns(Heat *h)
+{
+    const int64_t day = (int64_t)round(day_s / h->config.step_s), stride = (int64_t)fmax(1, round(1800 / h->config.step_s));
+    double        air_k = 0;
+    int           count = 0;
+    GroundWeather w[2];
+    for (int64_t i = 0; i < day; i += stride, count++) {
+        h->config.weather(&w[0], (double)(h->first + i) * h->config.step_s, h->config.user);
+        air_k += w[0].air.temp_k;
+    }
+    air_k /= count;
+    const GroundExposure level = {{0, 0, 1}, 1, 1, 0};
+    for (int k = 1; k < ground_kinds; k++) {
+        GroundColumn column;
+        double       sum = 0;
+        ground_column_start(&column, &h->kinds.kind[k], &h->layers[k], air_k);
+        h->config.weather(&w[0], (double)h->first * h->config.step_s, h->config.user);
+        for (int64_t i = 0; i < day; i += stride) {
+            h->config.weather(&w[1], (double)(h->first + i + stride) * h->config.step_s, h->config.user);
+            ground_column_step(&column, h->config.grid.tolerance_k, &w[0], &w[1], &level, (double)stride * h->config.step_s);
+            sum += column.state.temp_k[0];
+            w[0] = w[1];
+        }
+        for (int c = 0; c < h->columns; c++)
+            ground_column_start(&h->state[k].column[c], &h->kinds.kind[k], &h->layers[k], sum / count);
+    }
+}
+
+static void keep_begun(Heat *h)
+{
+    for (int k = 0; k < ground_kinds; k++) {
+        memcpy(h->begun + (size_t)k * (size_t)h->columns, h->state[k].column, (size_t)h->columns * sizeof *h->begun);
+        memcpy(h->begun_falls[k], h->state[k].falls_w_m2k, sizeof h->begun_falls[k]);
+    }
+    memcpy(h->begun_sky, h->sky, sizeof h->sky);
+    h->begun_index = h->index;
+}
+
+static void back_to_begun(Heat *h)
+{
+    for (int k = 0; k < ground_kinds; k++) {
+        memcpy(h->state[k].column, h->begun + (size_t)k * (size_t)h->columns, (size_t)h->columns * sizeof *h->begun);
+        memcpy(h->state[k].falls_w_m2k, h->begun_falls[k], sizeof h->begun_falls[k]);
+    }
+    memcpy(h->sky, h->begun_sky, sizeof h->sky);
+    h->index = h->begun_index;
+    h->config.weather(&h->weather[1], (double)h->index * h->config.step_s, h->config.user);
+    fill_past(h, &h->past[1]);
+    fill_table(h, &h->table[1], &h->past[1]);
+    next_table(h);
+}
+
+Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, bool plants)
+{
+    const double steps = config->spin_up_s / config->step_s;
+    if (!(config->facets >= 3 && config->facets <= heat_most_facets && config->facets % 2 == 1 && config->step_s >= 60 &&
+          config->step_s <= 3600 && steps >= 1 && steps <= 1e5 && fabs(config->unix_s) < 1e11))
+        return STATUS_BAD_VALUE;
+    Heat *h = calloc(1, sizeof *h);
+    if (!h) return STATUS_NO_MEMORY;
+    h->kinds = *kinds;
+    h->config = *config;
+    h->columns = config->facets * config->facets + 2 * heat_ups + 1;
+    h->table = calloc(2, sizeof *h->table);
+    h->past  = calloc(2, sizeof *h->past);
+    h->begun = calloc((size_t)ground_kinds * (size_t)h->columns, sizeof *h->begun);
+    Status status = h->table && h->past && h->begun ? STATUS_OK : STATUS_NO_MEMORY;
+    for (int k = 0; k < ground_kinds && status == STATUS_OK; k++) {
+        h->state[k].column = calloc((size_t)h->columns, sizeof *h->state[k].column);
+        status = h->state[k].column ? ground_layers(&h->layers[k], &h->kinds.kind[k], &config->grid) : STATUS_NO_MEMORY;
+    }
+    if (status != STATUS_OK) {
+        heat_destroy(h);
+        return status;
+    }
+    for (int s = 0; s < SURFACE_COUNT; s++) h->kind_of[s] = s == SURFACE_NONE ? SURFACE_BARE_SOIL : s;
+    if (plants) h->kind_of[SURFACE_FOREST_BROADLEAF] = h->kind_of[SURFACE_FOREST_CONIFER] = ground_forest_floor;
+    find_slots(h);
+    const int64_t begun = (int64_t)floor(config->unix_s / config->step_s), spin = (int64_t)round(steps);
+    const int64_t wide = (int64_t)fmax(1, round(1800 / config->step_s)), fine = (int64_t)ceil(32 * 3600 / config->step_s);
+    h->first = h->index = begun - spin;
+    start_columns(h);
+    config->weather(&h->weather[1], (double)h->index * config->step_s, config->user);
+    remember(h);
+    while (begun - h->index > fine && begun - h->index > wide) advance(h, (int)wide); /* by half hours, till a day before */
+    while (h->index < begun) advance(h, 1);
+    keep_begun(h);
+    back_to_begun(h);
+    h->spent_s = 0, h->steps = 0;
+    *out = h;
+    return STATUS_OK;
+}
+
+void heat_destroy(Heat *h)
+{
+    if (!h) return;
+    for (int k = 0; k < ground_kinds; k++) free(h->state[k].column);
+    free(h->begun);
+    free(h->past);
+    free(h->table);
+    free(h);
+}
+
+double heat_spent_s(const Heat *h, int *steps)
+{
+    *steps = h->steps;
+    return h->spent_s;
+}
+
+size_t heat_bytes(const Heat *h)
+{
+    return sizeof *h + 2 * (sizeof *h->table + sizeof *h->past) + 2 * (size_t)ground_kinds * (size_t)h->columns * sizeof *h->begun;
+}
+
+int heat_slots(float d_enu[3][heat_day_slots], const Heat *h)
+{
+    memcpy(d_enu, h->slot_d_enu, sizeof h->slot_d_enu);
+    return h->slots;
+}
+
+/* ---- now --------------------------------------------------------------------------------------- */
+
+static void blend(float *out, const float *a, const float *b, float share, size_t count)
+{
+    for (size_t i = 0; i < count; i++) out[i] = a[i] + share * (b[i] - a[i]);
+}
+
+Status heat_now(HeatNow **out, Heat *h, double unix_s, Arena *arena)
+{
+    const double step_s = h->config.step_s, at = fmax(unix_s / step_s, (double)h->begun_index);
+    if (!(at < 1e12)) return STATUS_BAD_VALUE;
+    if (at < (double)(h->index - 1)) back_to_begun(h);
+    while (at > (double)h->index) next_table(h);
+    HeatNow *now = arena_alloc(arena, 1, sizeof *now);
+    if (!now) return STATUS_NO_MEMORY;
+    const HeatTable *a = &h->table[0], *b = &h->table[1];
+    const float      share = (float)(at - (double)(h->index - 1));
+    now->share = (double)share;
+    now->table = (HeatTable){.unix_s = unix_s, .facets = a->facets, .air_k = a->air_k + (double)share * (b->air_k - a->air_k)};
+    const size_t floats = (sizeof(HeatTable) - offsetof(HeatTable, sun_k)) / sizeof(float);
+    blend(&now->table.sun_k[0][0], &a->sun_k[0][0], &b->sun_k[0][0], share, floats);
+    memcpy(now->slot_d_enu, h->slot_d_enu, sizeof now->slot_d_enu);
+    memcpy(now->kind_of, h->kind_of, sizeof now->kind_of);
+    memcpy(now->past, h->past, sizeof now->past);
+    now->slots = h->slots;
+    *out = now;
+    return STATUS_OK;
+}
+
+/* ---- at a hit ---------------------------------------------------------------------------------- */
+
+static double by_up(const float k[heat_ups], double n_up)
+{
+    const double at = clamp(n_up, 0, 1) * (heat_ups - 1);
+    const int    i = (int)fmin(at, heat_ups - 2);
+    return (double)k[i] + (at - i) * ((double)k[i + 1] - (double)k[i]);
+}
+
+double heat_ground_k(const HeatNow *now, int kind, const double n_enu[3], double taken, double open, double dark)
+{
+    const HeatTable *t = &now->table;
+    double           uv[2];
+    heat_facet(uv, n_enu);
+    const int    last = t->facets - 1;
+    const double x = 0.5 * (uv[0] + 1) * last, y = 0.5 * (uv[1] + 1) * last;
+    const int    i = (int)clamp(x, 0, last - 1), j = (int)clamp(y, 0, last - 1);
+    const float *at = &t->sun_k[kind][j * t->facets + i], *above = at + t->facets;
+    const double low = (double)at[0] + (x - i) * ((double)at[1] - (double)at[0]);
+    const double high = (double)above[0] + (x - i) * ((double)above[1] - (double)above[0]);
+    const double sun_k = low + (y - j) * (high - low), shade_k = by_up(t->shade_k[kind], n_enu[2]);
+    const double dark_k = by_up(t->dark_k[kind], n_enu[2]), hidden_k = (double)t->hidden_k[kind];
+    const double lit_k = sun_k + taken * (shade_k - sun_k), seen_k = dark_k + dark * (lit_k - dark_k);
+    return seen_k + (1 - open) * (hidden_k - (dark_k + (dark) * (shade_k - dark_k)));
+}
+
+double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uint8_t *shadow)
+{
+    const float *weight = now->table.slot_k[kind];
+    const F32x8  nx = f32x8_set(n_enu[0]), ny = f32x8_set(n_enu[1]), nz = f32x8_set(n_enu[2]), none = f32x8_set(0);
+    F32x8        all = none, taken = none;
+    float        sum[2][8];
+    for (int s = 0; s < now->slots; s += 8) {
+        const F32x8 along = f32x8_fma(nx, f32x8_load(now->slot_d_enu[0] + s),
+                                      f32x8_fma(ny, f32x8_load(now->slot_d_enu[1] + s), nz * f32x8_load(now->slot_d_enu[2] + s)));
+        const F32x8 k = f32x8_max(along, none) * f32x8_load(weight + s);
+        all = all + k;
+        taken = f32x8_fma(k, f32x8_of_ints(i32x8_of_bytes(shadow + s)), taken);
+    }
+    f32x8_store(sum[0], all);
+    f32x8_store(sum[1], taken);
+    double total = 0, lost = 0;
+    for (int i = 0; i < 8; i++) total += (double)sum[0][i], lost += (double)sum[1][i];
+    return total > 1e-3 ? lost / (255 * total) : 0;
+}

@@ -1,0 +1,94 @@
+/* render/heat/heat.h: temperatures of the ground over an exercise: what stays of sun, shade and wind of the hours before.
+ *
+ * Columns. Each kind of ground is conduction in layers (ground_column.h) under the weather, for normals over the whole
+ * upper hemisphere: in the open, in the shade of the direct sun, without any sun, and beneath something that hides the sky.
+ * They advance on a fixed grid of time, step_s, from two days before the exercise, whatever frames are rendered:
+ * temperatures at any time are straight lines between two times of the grid. A frame at a time before the last one starts
+ * again from the beginning of the exercise.
+ *
+ * Shade of the hours before. A column's response to a loss of flux at a time in the past is that of a pulse of heat at
+ * its surface now, computed backwards (conduction is its own adjoint), about the losses of that day. It gives a weight for
+ * each half hour of the day past: the kelvins that the ground here lost if it was in the shade then. Their sum is scaled so
+ * that shade all day is exactly the column in the shade, so that only the order of the hours is linear.
+ *
+ * Errors: rows of `bench precision` (step, elements, facets, hours of the past), tests/render/test_heat.c. */
+#ifndef RENDER_HEAT_HEAT_H
+#define RENDER_HEAT_HEAT_H
+
+#include "render/heat/ground_kinds.h"
+
+/* Normals: octahedral, a square of facets x facets nodes of which the middle is level and the edge are walls. ups:
+ * equal steps of n_up for what the sun's side does not change. */
+enum { heat_most_facets = 17, heat_ups = 4, heat_day_slots = 48, heat_past = 96 };
+
+/* Weather at a time; a pure function. */
+typedef void HeatWeather(GroundWeather *out, double unix_s, const void *user);
+
+typedef struct HeatConfig {
+    GroundGrid   grid;
+    double       step_s, spin_up_s; /* whole steps */
+    int          facets;            /* odd, 3 .. heat_most_facets */
+    double       unix_s;            /* of the exercise's beginning */
+    HeatWeather *weather;
+    const void  *user;
+    Pool        *pool;              /* NULL: one thread */
+} HeatConfig;
+HeatConfig heat_default_config(void); /* without weather */
+
+/* What shade at past instants took from the surface by now, for each kind: kelvins per unit cosine of the sun facing the
+ * surface; and what a hidden sky did (its light and its cold). Newest first. */
+typedef struct HeatPast {
+    int    count;
+    double unix_s[heat_past], span_s[heat_past]; /* middle of each interval, and its length */
+    double sun_d_enu[heat_past][3];
+    float  sun_k[ground_kinds][heat_past], sky_k[ground_kinds][heat_past];
+} HeatPast;
+
+/* At a time of the grid, or between two. */
+typedef struct HeatTable {
+    double unix_s;
+    int    facets;
+    double air_k;
+    float  sun_k[ground_kinds][heat_most_facets * heat_most_facets]; /* [v * facets + u] */
+    float  shade_k[ground_kinds][heat_ups], dark_k[ground_kinds][heat_ups], hidden_k[ground_kinds];
+    float  slot_k[ground_kinds][heat_day_slots];                     /* of slot_d_enu: per unit cosine */
+} HeatTable;
+
+typedef struct HeatNow {
+    HeatTable table;
+    int       slots;                       /* half hours with the sun up; padded to a multiple of 8 with weight 0 */
+    float     slot_d_enu[3][heat_day_slots];
+    int       kind_of[SURFACE_COUNT];      /* forest floor for forests whose plants stand */
+    double    share;                       /* between the two times of the grid */
+    HeatPast  past[2];
+} HeatNow;
+
+typedef struct Heat Heat;
+
+/* Spins up. kinds are copied. STATUS_NO_MEMORY, STATUS_BAD_VALUE. plants: forests are seen as their floor. */
+Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, bool plants);
+void   heat_destroy(Heat *heat); /* accepts NULL */
+/* In the arena. Advances the state; times before the exercise: as at its beginning. */
+Status heat_now(HeatNow **out, Heat *heat, double unix_s, Arena *arena);
+/* Directions towards the sun of the slots, as HeatNow has them. Returns their number. */
+int    heat_slots(float d_enu[3][heat_day_slots], const Heat *heat);
+double heat_spent_s(const Heat *heat, int *steps); /* wall clock in steps since the spin-up, and how many */
+size_t heat_bytes(const Heat *heat);
+
+/* Coordinates of a unit normal on the square of facets, -1 .. 1; below the horizon: the wall of that side. */
+static inline void heat_facet(double uv[2], const double n_enu[3])
+{
+    const double sum = fabs(n_enu[0]) + fabs(n_enu[1]) + fmax(n_enu[2], 0), over = sum > 0 ? 1 / sum : 0;
+    uv[0] = (n_enu[0] + n_enu[1]) * over;
+    uv[1] = (n_enu[0] - n_enu[1]) * over;
+}
+
+/* Temperatures of ground of a kind and normal, K, at the height of the weather's thermometer. share: of the direct sun of
+ * the past, weighted by what is left of it, that was taken; 0: none, 1: all. open: share of its sky that is open. dark: its
+ * absorptance over that of its kind. */
+double heat_ground_k(const HeatNow *now, int kind, const double n_enu[3], double taken, double open, double dark);
+
+/* Share of the past direct sun on a normal that shade took: shadow[slot], 0 .. 255, are the shares of each slot. */
+double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uint8_t *shadow);
+
+#endif
