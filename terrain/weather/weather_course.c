@@ -46,7 +46,7 @@ typedef struct Cycle {
     double min_s;     /* Unix time of the minimum */
     double day_h;     /* from there to sunset */
     double period_h;  /* half a period of the sine */
-    double range;     /* of the nominal one: 1, less towards polar night */
+    double range;     /* of the nominal one: 1, less towards polar night and within 5 degrees of a pole */
 } Cycle;
 
 static Cycle cycle_of(const WeatherCourseConfig *config, double day)
@@ -57,7 +57,7 @@ static Cycle cycle_of(const WeatherCourseConfig *config, double day)
     return (Cycle){.min_s = noon_s + (lag_min_h - shape_h / 2) * 3600,
                    .day_h = shape_h - lag_min_h,
                    .period_h = shape_h + 2 * (lag_max_h - lag_min_h),
-                   .range = fmin(1, length_h / 4)};
+                   .range = fmin(1, length_h / 4) * fmin(1, (pi_rad / 2 - fabs(config->latitude_rad)) / (5 * rad_per_deg))};
 }
 
 /* Mean of a cycle above its minimum, as a share of the nominal range. night_h: from sunset to the next minimum. */
@@ -82,9 +82,11 @@ static double clear_share(const WeatherCourseConfig *config, double unix_s)
 
     double mean[3];
     for (int i = 0; i < 3; i++) mean[i] = cycle_mean(&c[i], (c[i + 1].min_s - c[i].min_s) / 3600 - c[i].day_h);
-    /* the mean changes from day to day: linear from one minimum to the next, or the course would step there */
+    /* the mean changes from day to day: at a minimum it is that of both days, or the course would step there; 6 u (1 - u)
+     * has a mean of 1, so that the whole cycle's is still its own */
     const double u = (unix_s - c[1].min_s) / (c[2].min_s - c[1].min_s);
-    const double mean_here = 0.5 * ((1 - u) * (mean[0] + mean[1]) + u * (mean[1] + mean[2]));
+    const double at_min = 0.5 * (mean[0] + mean[1]), at_next = 0.5 * (mean[1] + mean[2]);
+    const double mean_here = (1 - u) * at_min + u * at_next + 6 * u * (1 - u) * (mean[1] - 0.5 * (at_min + at_next));
 
     const double since_h = (unix_s - c[1].min_s) / 3600;
     double       above;
@@ -253,7 +255,7 @@ static Status check_config(const WeatherCourseConfig *config)
         {"pressure_mbar", b->pressure_mbar, 300, 1100}, {"wind_mps", b->wind_mps, 0, 60},
         {"wind_from_rad", b->wind_from_rad, -2 * pi_rad, 2 * pi_rad},
         {"humidity", b->humidity, 0, 1},             {"cloud", b->cloud, 0, 1},
-        {"rain_mm_h", b->rain_mm_h, 0, 500},         {"air_range_k", config->air_range_k, 0, 60},
+        {"rain_mm_h", b->rain_mm_h, 0, 300},         {"air_range_k", config->air_range_k, 0, 60},
         {"longitude_rad", config->longitude_rad, -2 * pi_rad, 2 * pi_rad},
         {"latitude_rad", config->latitude_rad, -pi_rad / 2, pi_rad / 2},
     };

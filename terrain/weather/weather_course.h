@@ -5,7 +5,9 @@
  * minimum, 0.17 h before sunrise, through the maximum, 1.86 h after solar noon, to sunset, then an exponential to the
  * next minimum, displaced so that it ends there. Sunrise is geometric, of the sun's centre. Days shorter than 4 h have
  * the shape of 4 h and a range in proportion, none in polar night; days longer than 20 h, polar day too, have the shape
- * of 20 h. The vapour pressure is constant, so that relative humidity falls by day.
+ * of 20 h. Within 5 degrees of a pole the range falls to none. The mean of a day is that of the base within 0.1 K, where
+ * days change fast, beyond 60 degrees, within 2 % of the range. The vapour pressure is constant, so that relative humidity
+ * falls by day.
  *
  * File: EPW, TMY3 or a table of our own, told apart by content; etc/reference/weather.md has columns, units, ranges and
  * what is assumed. */

@@ -111,6 +111,7 @@ static void finish_fields(double *value)
                                   weather_saturation_pa(value[WEATHER_AIR_K]);
     if (isnan(value[WEATHER_CLOUD])) value[WEATHER_CLOUD] = value[field_opaque_cloud];
     if (value[field_rain_h] > 1) value[WEATHER_RAIN_MM_H] /= value[field_rain_h];
+    if (value[WEATHER_RAIN_MM_H] > 300) value[WEATHER_RAIN_MM_H] = 300; /* NREL's 703165TY has 508 mm in an hour */
     if (value[WEATHER_LONGWAVE] <= 0) value[WEATHER_LONGWAVE] = NAN; /* files without it hold 0 */
     if (value[WEATHER_HUMIDITY] > 1) value[WEATHER_HUMIDITY] = 1;
     if (value[WEATHER_DIRECT] < 0) value[WEATHER_DIRECT] = 0;        /* offsets of instruments at night */
@@ -202,7 +203,7 @@ static Status read_epw(Reader *r)
         {"total sky cover",                WEATHER_CLOUD,         0, 10, 0.1, 0, 99, 22},
         {"opaque sky cover",               field_opaque_cloud,    0, 10, 0.1, 0, 99, 23},
         {"visibility",                     WEATHER_VISIBILITY_M,  0, 9999, 1000, 0, 9999, 24},
-        {"liquid precipitation depth",     WEATHER_RAIN_MM_H,     0, 500, 1, 0, 999, 33},
+        {"liquid precipitation depth",     WEATHER_RAIN_MM_H,     0, 999, 1, 0, 999, 33},
         {"liquid precipitation quantity",  field_rain_h,          0, 99, 1, 0, 99, 34},
     };
     static const char data_periods[] = "DATA PERIODS,";
@@ -313,7 +314,7 @@ static Status read_tmy3(Reader *r)
         {"TotCld (tenths)",       WEATHER_CLOUD,         0, 10, 0.1, 0, -9900, 0},
         {"OpqCld (tenths)",       field_opaque_cloud,    0, 10, 0.1, 0, -9900, 0},
         {"Hvis (m)",              WEATHER_VISIBILITY_M,  0, 1e6, 1, 0, -9900, 0},
-        {"Lprecip depth (mm)",    WEATHER_RAIN_MM_H,     0, 500, 1, 0, -9900, 0},
+        {"Lprecip depth (mm)",    WEATHER_RAIN_MM_H,     0, 9999, 1, 0, -9900, 0},
         {"Lprecip quantity (hr)", field_rain_h,          0, 99, 1, 0, -9900, 0},
     };
     enum { fields = sizeof field / sizeof *field };
@@ -360,7 +361,7 @@ static Status read_plain(Reader *r)
         {"direct_w_m2",    WEATHER_DIRECT,        -20, 1500, 1, 0, 0, 0},
         {"diffuse_w_m2",   WEATHER_DIFFUSE,       -20, 1500, 1, 0, 0, 0},
         {"longwave_w_m2",  WEATHER_LONGWAVE,      0, 1000, 1, 0, 0, 0},
-        {"rain_mm_h",      WEATHER_RAIN_MM_H,     0, 500, 1, 0, 0, 0},
+        {"rain_mm_h",      WEATHER_RAIN_MM_H,     0, 300, 1, 0, 0, 0},
         {"cloud",          WEATHER_CLOUD,         0, 1, 1, 0, 0, 0},
         {"visibility_m",   WEATHER_VISIBILITY_M,  100, 300000, 1, 0, 0, 0},
     };

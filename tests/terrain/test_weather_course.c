@@ -124,10 +124,11 @@ static void clear_day(void **state)
                 }
             }
             weather_course_close(course);
-            CHECK(high_k - low_k <= 20.1);
+            CHECK(high_k - low_k <= (fabs(lats[l]) < 60 ? 20.05 : 20.8));
             /* a mean from midnight to midnight takes in two cycles, of unlike lengths where days change fast */
             const double off_k = fabs(sum_k / 1440 - 288.15);
-            CHECK_NEAR(off_k, 0, fabs(lats[l]) < 60 ? 0.1 : 0.3);
+            CHECK_NEAR(off_k, 0, fabs(lats[l]) < 60 ? 0.1 : 0.4);
+            if (fabs(lats[l]) > 89) CHECK_NEAR(high_k - low_k, 0, 1e-9);
             if (fabs(lats[l]) > 60) continue;
             worst_mean_k = fmax(worst_mean_k, off_k);
             worst_range_k = fmax(worst_range_k, fabs(high_k - low_k - 20));
