@@ -73,7 +73,7 @@ static const char *cell_text(const Reader *r, int cell)
 
 static Status bad_number(const Reader *r, const char *name, const char *text, double low, double high)
 {
-    log_error("weather: %s:%d: column %s: '%s' is not a number in %g .. %g", r->path, r->line, name, text, low, high);
+    log_error("weather: %s:%d: column %s: '%.80s' is not a number in %g .. %g", r->path, r->line, name, text, low, high);
     return STATUS_BAD_VALUE;
 }
 
@@ -173,7 +173,7 @@ static Status add_row_of_year(Reader *r, const char *date, int month, int day, i
 {
     double time_s, value[field_count];
     if (!time_in_year(&time_s, month, day, hour)) {
-        log_error("weather: %s:%d: '%s' is no month 1 .. 12, day and hour 1 .. 24", r->path, r->line, date);
+        log_error("weather: %s:%d: '%.80s' is no month 1 .. 12, day and hour 1 .. 24", r->path, r->line, date);
         return STATUS_BAD_VALUE;
     }
     const Status status = fields_of(value, r, field, count);
@@ -276,8 +276,8 @@ static Status find_columns(Reader *r, Field *field, int count, const char *const
             for (int i = 0; other[i]; i++) snprintf(known + strlen(known), sizeof known - strlen(known), "%s ", other[i]);
             for (int i = 0; i < count; i++)
                 snprintf(known + strlen(known), sizeof known - strlen(known), "%s ", field[i].name);
-            if (twice) log_error("weather: %s:%d: column %s is given twice", r->path, r->line, name);
-            else log_error("weather: %s:%d: no such column: '%s'; there are: %s", r->path, r->line, name, known);
+            if (twice) log_error("weather: %s:%d: column %.80s is given twice", r->path, r->line, name);
+            else log_error("weather: %s:%d: no such column: '%.80s'; there are: %s", r->path, r->line, name, known);
             return STATUS_BAD_VALUE;
         }
     }
@@ -389,7 +389,7 @@ static Status read_plain(Reader *r)
         if (unix_at >= 0) {
             status = number_of(&time_s, r, times[1], unix_at, first_s, last_s);
         } else if (!text_to_unix_s(&time_s, cell_text(r, utc_at))) {
-            log_error("weather: %s:%d: column time_utc: '%s' is no time like 2016-01-01T00:30:00Z in 1900 .. 2100",
+            log_error("weather: %s:%d: column time_utc: '%.80s' is no time like 2016-01-01T00:30:00Z in 1900 .. 2100",
                       r->path, r->line, cell_text(r, utc_at));
             status = STATUS_BAD_VALUE;
         }
@@ -472,7 +472,6 @@ Status weather_file_read(WeatherRows *out, const char *path)
     return STATUS_OK;
 
 fail:
-    if (status == STATUS_NO_MEMORY) log_error("weather: %s: out of memory", path);
     free(text);
     weather_rows_close(&rows);
     return status;
