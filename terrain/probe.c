@@ -1,9 +1,10 @@
-/* terrain/probe.c: the probes of terrain: geodesy, geoid, sun, elevation and cover, one row at a time. */
+/* terrain/probe.c: the probes of terrain: geodesy, geoid, sun and weather, one row at a time. */
 #include "terrain/probe.h"
 
 #include "terrain/earth/geoid.h"
 #include "terrain/earth/local_frame.h"
 #include "terrain/earth/sun.h"
+#include "terrain/weather/weather_course.h"
 
 #include <stdlib.h>
 
@@ -97,6 +98,41 @@ static const char *geodesy_row(void *state, const ProbeValue *in, ProbeValue *ou
     return NULL;
 }
 
+/* ---- weather -------------------------------------------------------------------------------- */
+
+static Status weather_probe_open(void **state, int argc, char **argv)
+{
+    static char         clear[] = "clear";
+    WeatherCourseConfig config = {.base = weather_default(), .air_range_k = 10};
+    double              lat_deg = 0, lon_deg = 0;
+    if ((argc != 1 && argc != 2 && argc != 4) ||
+        (argc == 4 && !(text_to_double(&lat_deg, argv[2]) && fabs(lat_deg) <= 90 &&
+                        text_to_double(&lon_deg, argv[3]) && fabs(lon_deg) <= 360))) {
+        log_error("probe: weather takes FILE, `clear` or `constant`, then LAT_DEG within 90 and LON_DEG within 360");
+        return STATUS_BAD_VALUE;
+    }
+    config.latitude_rad = lat_deg * rad_per_deg;
+    config.longitude_rad = lon_deg * rad_per_deg;
+    WeatherCourse *course;
+    const Status   status = weather_course_open(&course, argc > 1 ? argv[1] : clear, &config);
+    if (status != STATUS_OK) return status;
+    log_info("weather: %s", weather_course_about(course));
+    *state = course;
+    return STATUS_OK;
+}
+
+static const char *weather_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    Weather w;
+    weather_at(&w, state, in[0].number);
+    const double number[] = {w.air_temp_k, w.humidity, w.pressure_mbar, w.wind_mps, w.wind_from_rad / rad_per_deg,
+                             w.direct_w_m2, w.diffuse_w_m2, w.longwave_w_m2, w.cloud, w.rain_mm_h, w.visibility_m};
+    for (size_t i = 0; i < sizeof number / sizeof *number; i++) out[i].number = number[i];
+    return NULL;
+}
+
+static void weather_probe_close(void *state) { weather_course_close(state); }
+
 const Probe terrain_probes[] = {
     {.name = "sun",
      .help = "apparent place of the sun (ERFA; parallax and refraction as NREL SPA); delta_t_s: TT - UT1",
@@ -116,5 +152,14 @@ const Probe terrain_probes[] = {
      .in = "lat_deg?,lon_deg?,h_m?,x_m?,y_m?,z_m?,origin_lat_deg?,origin_lon_deg?,origin_h_m?",
      .out = "geodetic_lat_deg,geodetic_lon_deg,geodetic_h_m,ecef_x_m,ecef_y_m,ecef_z_m,east_m,north_m,up_m",
      .row = geodesy_row},
+    {.name = "weather",
+     .arguments = "[FILE|clear|constant [LAT_DEG LON_DEG]]",
+     .help = "weather at a time: EPW, TMY3 or CSV file, or a clear day of 288.15 K on average with a range of 10 K",
+     .in = "unix_s",
+     .out = "air_temp_k,humidity,pressure_mbar,wind_mps,wind_from_deg,direct_w_m2,diffuse_w_m2,longwave_w_m2,cloud,"
+            "rain_mm_h,visibility_m",
+     .open = weather_probe_open,
+     .row = weather_row,
+     .close = weather_probe_close},
 };
 const int terrain_probe_count = sizeof terrain_probes / sizeof *terrain_probes;
