@@ -251,10 +251,17 @@ static void without_ring(AskedSky *asked, const DaylightJob *job, const AirSky *
             const float *ring = &sky->around_sun[place.angle];
             const double around = (double)(ring[0] + place.angle_share * (ring[1] - ring[0]));
             asked->scattered_w_m2_sr[i][a] =
-                b == AIR_LWIR ? 0 : answer->scattered[i][a][b] * job->light->scattered_scale / around;
+                b == AIR_LWIR ? 0 : answer->scattered[i][a][b] * job->light->scattered_scale * job->light->cloud_sky / around;
         }
-        asked->thermal_w_m2_sr[i] =
-            b >= AIR_MWIR ? answer->thermal[i][b - AIR_MWIR] * job->light->thermal_scale[b - AIR_MWIR] : 0;
+        if (b < AIR_MWIR) {
+            asked->thermal_w_m2_sr[i] = 0;
+            continue;
+        }
+        const Daylight    *light = job->light;
+        const PlanckTable *planck = b == AIR_MWIR ? light->planck_mwir : light->planck_lwir;
+        const double       clear = answer->thermal[i][b - AIR_MWIR] * light->thermal_scale[b - AIR_MWIR];
+        const double       cloud = light->cloud_thermal > 0 ? planck_table_radiance(planck, light->weather.air_temp_k) : clear;
+        asked->thermal_w_m2_sr[i] = clear + light->cloud_thermal * (cloud - clear);
     }
 }
 

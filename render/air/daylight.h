@@ -9,7 +9,10 @@
  * Weather. Extinction is the model's at the visibility given. Air warmer or colder than the model's own ground
  * (weather.air_temp_k) scales the thermal radiance of path and sky by the ratio of the two Planck radiances in the
  * band, and the longwave flux by that of the fourth powers; its transmittance, and so its water vapour, stay the
- * model's. Wind affects surface temperatures only. With height the air's temperature changes as the model's does. */
+ * model's. With height the air's temperature changes as the model's does. Clouds are a mean: the direct sun is dimmed by
+ * their share, sun and sky together by 1 - 0.75 cloud^3.4 (Kasten & Czeplak, Solar Energy 24, 1980), in every band and
+ * towards every direction alike; they fill that share of the thermal sky with air temperature, and longwave follows
+ * Unsworth & Monteith (Q. J. R. Meteorol. Soc. 101, 1975). Measured radiation (Weather) takes the place of both. */
 #ifndef RENDER_AIR_DAYLIGHT_H
 #define RENDER_AIR_DAYLIGHT_H
 
@@ -52,6 +55,8 @@ typedef struct Daylight {
     double  day_zenith_rad;                /* of the sun, at which the tables are evaluated */
     double  sun_above;                     /* share of its disc above the horizon, over the square of its distance */
     double  thermal_scale[2], scattered_scale; /* air of another temperature than the model's; twilight, distance */
+    double  cloud_sky, cloud_thermal;      /* clouds: factor on the sky's scattered light; share of the thermal sky that
+                                            * is cloud of air temperature */
 
     /* by direction; only of the requested bands */
     AirSky  sky[AIR_BAND_COUNT];           /* from the ground: for mirror reflections in the scene */
@@ -68,6 +73,7 @@ typedef struct Daylight {
 typedef struct AirSource {
     const Atmosphere  *atmosphere;
     const PlanckTable *planck_mwir, *planck_lwir;
+    double             ground_k; /* of level ground seen from below; 0: of the air */
 } AirSource;
 
 /* Totals alone, of pan and all wavelengths, and the air's temperature: microseconds, no arena (bench speed: daylight).

@@ -5,8 +5,6 @@
  * dimmed as in twilight. */
 #include "render/air/daylight_private.h"
 
-#include "render/materials/surface_balance.h"
-
 /* Twilight: daylight below an elevation of 5 degrees, over its value there. Straight lines in its logarithm
  * through rounded values for a clear, moonless sky: 0.17 at the horizon, 8e-4 at the end of civil, 2e-6 of
  * nautical, 3e-7 (airglow and stars) of astronomical twilight. Right within a factor of two. */
@@ -40,28 +38,49 @@ double daylight_sun_disc(const Daylight *light, const double d_enu[3])
     return v3_dot(chord, chord) < disc2 ? 1 / (pi_rad * disc2) : 0; /* pi chord^2: exact on the sphere */
 }
 
-/* For temperatures: all wavelengths. sky_w_m2 is still the tables' own: the integral over our sky exists only where
- * pan is requested. */
-static void heat_balance(Daylight *light, const Atmosphere *atmosphere, double model_temp_k)
+/* For temperatures: all wavelengths, under a clear sky. sky_w_m2 is still the tables' own: the integral over our sky
+ * exists only where pan is requested. 0.44 of the daylight that reaches the ground is in 0.4-0.7 um (the photosynthetic
+ * share: 0.43 .. 0.46 under clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
+static void heat_of_clear_sky(Daylight *light, const Atmosphere *atmosphere, double model_temp_k)
 {
-    /* 0.44 of the daylight that reaches the ground is in 0.4-0.7 um (the photosynthetic share: 0.43 .. 0.46 under
-     * clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
     static const double visible_share = 0.44, sigma_w_m2_k4 = 5.670374419184429e-8;
     light->solar_direct_w_m2 = light->sun_w_m2[AIR_PAN] / visible_share;
     light->solar_diffuse_w_m2 = light->sky_w_m2[AIR_PAN] / visible_share;
-
-    /* What a black horizontal plane at air temperature loses to a clear sky. */
     const double t_k = light->weather.air_temp_k, ratio = t_k / model_temp_k;
     const double down_w_m2 = atmosphere_longwave_down(atmosphere, light->weather.visibility_m) * pow(ratio, 4);
     light->longwave_loss_w_m2 = fmax(sigma_w_m2_k4 * pow(t_k, 4) - down_w_m2, 0);
+}
 
-    /* Ground seen from below by surfaces that lean over it: grass, 18 K above the air at 1000 W/m2
-     * (etc/ground_heat.csv) */
-    const double share = ground_heat_share(light->weather.wind_mps, emission_w_m2_k(1, t_k));
-    const double ground_temp_k =
-        t_k + share * 0.018 * (light->solar_direct_w_m2 * fmax(light->sun_d_enu[2], 0) + light->solar_diffuse_w_m2);
-    light->ground_w_m2_sr[AIR_MWIR] = planck_table_radiance(light->planck_mwir, ground_temp_k);
-    light->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(light->planck_lwir, ground_temp_k);
+/* Measured over clear; where there is nothing to measure, as it is. */
+static double share_of(double measured_w_m2, double clear_w_m2, double otherwise)
+{
+    return isfinite(measured_w_m2) ? clear_w_m2 > 1 ? fmin(measured_w_m2 / clear_w_m2, 20) : 1 : otherwise;
+}
+
+/* What clouds, or the measured radiation, make of the clear sky. */
+static void cloud_over(Daylight *light, double diffuse_w_m2[AIR_BAND_COUNT])
+{
+    static const double sigma_w_m2_k4 = 5.670374419184429e-8;
+    const Weather *w = &light->weather;
+    const double cloud = clamp(w->cloud, 0, 1), high = fmax(light->sun_d_enu[2], 0);
+    const double direct = light->solar_direct_w_m2, diffuse = light->solar_diffuse_w_m2, global = direct * high + diffuse;
+    const double sun = share_of(w->direct_w_m2, direct, 1 - cloud);
+    const double under = global * (1 - 0.75 * pow(cloud, 3.4)) - sun * direct * high;
+    const double sky = share_of(w->diffuse_w_m2, diffuse, diffuse > 0 ? fmax(under / diffuse, 0) : 1);
+    const double black_w_m2 = sigma_w_m2_k4 * pow(w->air_temp_k, 4), clear_w_m2 = light->longwave_loss_w_m2;
+    light->longwave_loss_w_m2 = isfinite(w->longwave_w_m2) ? black_w_m2 - w->longwave_w_m2 : (1 - 0.84 * cloud) * clear_w_m2;
+    light->cloud_thermal = isfinite(w->longwave_w_m2) && clear_w_m2 > 0 ? clamp(1 - light->longwave_loss_w_m2 / clear_w_m2, 0, 1) : cloud;
+    light->cloud_sky = sky;
+    light->solar_direct_w_m2 *= sun;
+    light->solar_diffuse_w_m2 *= sky;
+    if (isfinite(w->direct_w_m2)) light->solar_direct_w_m2 = w->direct_w_m2;
+    if (isfinite(w->diffuse_w_m2)) light->solar_diffuse_w_m2 = w->diffuse_w_m2;
+    light->sun_above *= sun;
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        light->sun_w_m2[b] *= sun;
+        light->sky_w_m2[b] *= sky;
+        diffuse_w_m2[b] *= sky;
+    }
 }
 
 void daylight_sums(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun, unsigned bands,
@@ -94,7 +113,11 @@ void daylight_sums(Daylight *out, const AirSource *source, const Weather *weathe
         out->sun_w_m2[b] = direct.direct_normal_w_m2 * out->sun_above;
         out->sky_w_m2[b] = diffuse_w_m2[b] = diffuse.diffuse_horizontal_w_m2 * out->scattered_scale;
     }
-    heat_balance(out, atmosphere, model_temp_k);
+    heat_of_clear_sky(out, atmosphere, model_temp_k);
+    cloud_over(out, diffuse_w_m2);
+    const double ground_k = source->ground_k > 0 ? source->ground_k : out->weather.air_temp_k;
+    out->ground_w_m2_sr[AIR_MWIR] = planck_table_radiance(out->planck_mwir, ground_k);
+    out->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(out->planck_lwir, ground_k);
 }
 
 void daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun)

@@ -186,6 +186,11 @@ double canopy_leaf_area_above(const Canopy *c, double x_m, double y_m, double he
     return sum;
 }
 
+double canopy_open(const Canopy *c, double x_m, double y_m)
+{
+    return gap_at(c, 0.5 * canopy_leaf_area_above(c, x_m, y_m, 0));
+}
+
 /* ---- hits ------------------------------------------------------------------------------------- */
 
 /* A place: what layers above and below it let through, of the sky and the ground, and of the sun on level ground. */

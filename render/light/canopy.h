@@ -36,6 +36,9 @@ void   canopy_destroy(Canopy *canopy);
 
 /* Leaf area index above a place, height_m above its ground. */
 double canopy_leaf_area_above(const Canopy *canopy, double x_m, double y_m, double height_m);
+/* Share of an even sky that reaches the ground there. */
+double canopy_open(const Canopy *canopy, double x_m, double y_m);
+static const double canopy_most_m = 64; /* no plant of the grid is higher */
 /* 2 E3(x), x >= 0: within 1e-4. */
 double canopy_gap(double x);
 
