@@ -131,7 +131,7 @@ typedef struct Row {
 
 static Status complain(const Row *r, const char *what)
 {
-    log_error("marks: %s: file=%s line=%d", what, r->table->path, r->table->line[r->row + 1]);
+    log_error("marks: %s:%d: %s", r->table->path, r->table->line[r->row + 1], what);
     return STATUS_BAD_VALUE;
 }
 

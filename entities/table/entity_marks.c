@@ -246,7 +246,9 @@ void entity_marks_start(EntityTable *table, EntitySlot *slot, double t_s)
     if (!slot->marks) return;
     EntityMarks *m = marks_of(table, slot);
     if (m->stands) ground_stand_until(table->ground, m->stand, fmax(t_s, lasts_until_s(slot)));
-    if (slot->trails) m->trail.t_s = m->followed_s + slot->paused_s; /* the pause is not part of its speed */
+    if (!slot->trails) return;
+    m->trail.t_s = m->followed_s + slot->paused_s; /* the pause is not part of its speed */
+    m->trail.piece = 0;
 }
 
 /* After a timeout its stand ends when it was due to report; the path since its last report was never confirmed. */
