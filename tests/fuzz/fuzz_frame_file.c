@@ -102,6 +102,13 @@ static bool parse(const uint8_t *data, size_t size)
             if (!v3_is_finite(s->entity[e].p_ecef) || s->entity[e].first_node > s->node_count) abort();
         if (file->request.hidden_entity >= s->count || file->eye.host_index >= s->count) abort();
         if (!(file->request.view.focal_px > 0) || file->plane_count > frame_max_planes) abort();
+        const GroundMarks *m = &s->marks;
+        for (int i = 0; i < m->stands; i++)
+            if (!v3_is_finite(m->stand[i].p_ecef) || !(m->stand[i].from_s <= m->stand[i].to_s)) abort();
+        for (int i = 0; i < m->tracks; i++)
+            if (!v3_is_finite(m->track[i].a_ecef) || !(m->track[i].a_s <= m->track[i].b_s)) abort();
+        for (int i = 0; i < m->burns; i++)
+            if (!v3_is_finite(m->burn[i].p_ecef) || !(m->burn[i].radius_m >= 0)) abort();
         const WoodsConfig *w = &file->woods;
         if (file->planted && !(w->half_width_m >= 50 && w->most_trees <= woods_most_trees)) abort();
         for (int i = 0; i < w->path_count; i++)
