@@ -49,7 +49,7 @@ const EffectCounters *effect_history_counters(const EffectHistory *history) { re
  * 9 battlefield support; category 1 guided; warhead 5000 .. 5999 kinetic, 4000 .. 4999 practice. */
 enum { category_guided = 1 };
 
-static bool is_kinetic(const DisDescriptor *d) { return d->warhead >= 5000 && d->warhead < 6000; }
+bool effect_is_kinetic(const DisDescriptor *d) { return d->warhead >= 5000 && d->warhead < 6000; }
 
 double effect_charge_kg(const DisDescriptor *d, bool fire)
 {
@@ -62,10 +62,16 @@ double effect_charge_kg(const DisDescriptor *d, bool fire)
     double     kg = guided ? (fire ? 2 : 4) : (fire ? 1 : 1);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (rows[i].domain == d->type.domain) kg = guided ? rows[i].guided[fire] : rows[i].ballistic[fire];
-    if (!fire && is_kinetic(d)) kg = fmin(kg, 0.5);
+    if (!fire && effect_is_kinetic(d)) kg = fmin(kg, 0.5);
     if (!fire && d->warhead >= 4000 && d->warhead < 5000) kg *= 0.02; /* practice: a spotting charge */
     return fmin(kg, largest_charge_kg);
 }
+
+/* Result codes of a Detonation (SISO-REF-010, UID 62, checked against public transcriptions of it): 6 none, 31 .. 33
+ * misses that do not burst. */
+bool effect_result_is_none(int result) { return result == 6 || (result >= 31 && result <= 33); }
+bool effect_result_is_ground(int result) { return result == 3 || result == 4 || (result >= 11 && result <= 13); }
+bool effect_result_is_water(int result) { return (result >= 14 && result <= 16) || result == 24; }
 
 static uint64_t mix(uint64_t x)
 {
@@ -120,7 +126,7 @@ void effect_history_fire(EffectHistory *h, const DisFire *pdu, double t_s)
 
 void effect_history_detonation(EffectHistory *h, const DisDetonation *pdu, double t_s)
 {
-    EffectEvent e = {.t_s = t_s, .detonation = true, .kinetic = is_kinetic(&pdu->descriptor), .result = pdu->result,
+    EffectEvent e = {.t_s = t_s, .detonation = true, .kinetic = effect_is_kinetic(&pdu->descriptor), .result = pdu->result,
                      .key = mix(id_bits(pdu->event.site, pdu->event.application, pdu->event.number)) ^
                             id_bits(pdu->munition.site, pdu->munition.application, pdu->munition.entity),
                      .charge_kg = effect_charge_kg(&pdu->descriptor, false)};
@@ -178,11 +184,7 @@ typedef struct Cloud {
     double     stretch;              /* along the direction, over the radius at birth; 0: round */
 } Cloud;
 
-/* Result codes of a Detonation (SISO-REF-010, UID 62, checked against public transcriptions of it): 6 none, 31 .. 33
- * misses that do not burst, 18 .. 20 hits on a building. */
-static bool result_is_none(int result) { return result == 6 || (result >= 31 && result <= 33); }
-static bool result_is_ground(int result) { return result == 3 || result == 4 || (result >= 11 && result <= 13); }
-static bool result_is_water(int result) { return (result >= 14 && result <= 16) || result == 24; }
+/* Hits on a building: 18 .. 20. */
 static bool result_is_entity(int result)
 {
     return result == 1 || (result >= 7 && result <= 10) || (result >= 18 && result <= 20);
@@ -195,7 +197,7 @@ static void put_cloud(PuffList *list, const EffectEvent *event, int which, const
                          .throw_s = c->throw_s, .age_s = t_s - event->t_s - c->delay_s * scale,
                          .mass_kg = list->table->law[c->kind].mass_kg * event->charge_kg * c->mass};
     if (!(puff.age_s >= 0)) return;
-    puff.grounded = event->detonation && result_is_ground(event->result);
+    puff.grounded = event->detonation && effect_result_is_ground(event->result);
     v3_scale(puff.up_ecef, 1 / v3_length(event->p_ecef), event->p_ecef);
     memcpy(puff.axis_ecef, event->d_ecef, sizeof puff.axis_ecef);
     puff.along_m = c->stretch * puff.scale * list->table->law[c->kind].radius_start_m;
@@ -251,11 +253,11 @@ static void put_burst(PuffList *list, const EffectEvent *e, double t_s)
     const Cloud *cloud = air;
     int          count = sizeof air / sizeof *air;
 
-    if (result_is_none(e->result)) return;
+    if (effect_result_is_none(e->result)) return;
     if (e->kinetic) cloud = kinetic, count = sizeof kinetic / sizeof *kinetic;
-    else if (result_is_ground(e->result)) cloud = ground, count = sizeof ground / sizeof *ground;
+    else if (effect_result_is_ground(e->result)) cloud = ground, count = sizeof ground / sizeof *ground;
     else if (result_is_entity(e->result)) cloud = entity, count = sizeof entity / sizeof *entity;
-    else if (result_is_water(e->result)) count = 1; /* the flash; spray is not modelled */
+    else if (effect_result_is_water(e->result)) count = 1; /* the flash; spray is not modelled */
     for (int c = 0; c < count; c++) put_cloud(list, e, c, cloud + c, t_s);
 }
 

@@ -55,6 +55,11 @@ void     effect_history_close(EffectHistory *history, uint64_t handle, double t_
 /* Charge that scales a shot or burst: kg of propellant (fire) or of explosive, from munition type and warhead.
  * Estimates, by class of munition only: within a factor of three. */
 double effect_charge_kg(const DisDescriptor *descriptor, bool fire);
+bool   effect_is_kinetic(const DisDescriptor *descriptor); /* a penetrator, without explosive */
+/* Result of a Detonation: nothing burst; on the ground; on water. */
+bool   effect_result_is_none(int result);
+bool   effect_result_is_ground(int result);
+bool   effect_result_is_water(int result);
 
 /* All visible puffs at t_s, newest first, at most capacity. Returns how many there are (more than capacity when
  * they do not all fit). out may be NULL with capacity 0. */

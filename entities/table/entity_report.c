@@ -126,6 +126,7 @@ static void take_state(EntityTable *table, EntitySlot *slot, uint8_t version, ui
     table->counters.unknown_articulation +=
         (uint64_t)articulation_report(&slot->articulation, record, record_count, t_s, slot->hold_s);
     entity_effects_report(table, slot, t_s);
+    entity_marks_report(table, slot, is_first, t_s);
 }
 
 static bool same_type(DisEntityType a, DisEntityType b)
@@ -162,7 +163,9 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
     } else {
         entity_eviction_rank(table, slot, pdu->p_ecef, t_s);
     }
+    if (!is_first) entity_marks_before(table, slot, t_s);
     if (is_first || !same_type(slot->type, pdu->type)) {
+        if (!is_first) entity_marks_end(table, slot, false, t_s);
         slot->type = pdu->type;
         slot->model = catalog_find(table->catalog, pdu->type, &slot->origin, NULL);
         slot->roles = table->model_roles[slot->model];
@@ -200,6 +203,7 @@ Status entity_table_entity_state_update(EntityTable *table, const DisEntityState
         return STATUS_OK;
     }
     entity_eviction_rank(table, slot, pdu->p_ecef, t_s);
+    entity_marks_before(table, slot, t_s);
     take_place(table, slot, pdu->p_ecef, pdu->velocity_mps, euler_rad, false, t_s);
     take_state(table, slot, pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count, false, t_s);
     return STATUS_OK;

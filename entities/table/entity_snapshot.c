@@ -382,12 +382,15 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
 
     snapshot.joints = arena_alloc(arena, (size_t)snapshot.count + 1, sizeof *snapshot.joints);
     if (!snapshot.joints) return STATUS_NO_MEMORY;
-    int reports = 0;
+    int *trailing = arena_alloc(arena, (size_t)snapshot.count + 1, sizeof *trailing);
+    if (!trailing) return STATUS_NO_MEMORY;
+    int reports = 0, trails = 0;
     for (int e = 0; e < snapshot.count; e++) {
         const EntitySlot *slot = table->slot + order[e].slot;
         if (e + ahead < snapshot.count) {
             const EntitySlot *next = table->slot + order[e + ahead].slot;
             __builtin_prefetch(&next->model);
+            __builtin_prefetch(&next->trails);
             __builtin_prefetch(&next->articulation.count);
         }
         const int nodes = catalog_model(table->catalog, slot->model)->node_count;
@@ -397,6 +400,7 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
         snapshot.joints[e].first = reports;
         snapshot.joints[e].count = slot->articulation.count;
         reports += slot->articulation.count;
+        if (slot->trails) trailing[trails++] = order[e].slot;
     }
     snapshot.joint_report = arena_alloc(arena, (size_t)reports + 1, sizeof *snapshot.joint_report);
     if (!snapshot.joint_report) return STATUS_NO_MEMORY;
@@ -407,7 +411,8 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
     if (pool) pool_run(pool, chunks, finish_chunk, &all);
     else
         for (int chunk = 0; chunk < chunks; chunk++) finish_chunk(&all, 0, chunk);
-    const Status status = add_puffs(&snapshot, table, order, arena);
+    Status status = add_puffs(&snapshot, table, order, arena);
+    if (status == STATUS_OK) status = entity_marks_snapshot(&snapshot, table, trailing, trails, arena);
     if (status == STATUS_OK) *out = snapshot;
     return status;
 }

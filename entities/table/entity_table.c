@@ -39,12 +39,15 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
     const int slots = config->capacity + 1;
     table->slot = calloc((size_t)slots, sizeof *table->slot);
     table->free_slot = calloc((size_t)slots, sizeof *table->free_slot);
+    table->mark = calloc((size_t)slots, sizeof *table->mark);
     table->model_roles = calloc((size_t)catalog_model_count(catalog), sizeof *table->model_roles);
-    if (!table->slot || !table->free_slot || !table->model_roles) goto fail;
+    if (!table->slot || !table->free_slot || !table->mark || !table->model_roles) goto fail;
     status = entity_index_create(&table->index, slots);
     if (status == STATUS_OK) status = entity_ranks_create(&table->ranks, slots, config->capacity);
     if (status == STATUS_OK) status = tombstones_create(&table->tombstones, config->capacity, config->timeout_land_v7_s);
     if (status == STATUS_OK) status = entity_rate_create(&table->rate, config->new_per_s);
+    if (status != STATUS_OK) goto fail;
+    status = ground_history_create(&table->ground);
     if (status != STATUS_OK) goto fail;
     status = heat_table_open(&table->heat, heat_path);
     if (status != STATUS_OK) goto fail;
@@ -71,6 +74,8 @@ void entity_table_destroy(EntityTable *table)
     tombstones_destroy(table->tombstones);
     entity_rate_destroy(table->rate);
     effect_history_destroy(table->effects);
+    ground_history_destroy(table->ground);
+    free(table->mark);
     free(table->slot);
     free(table->free_slot);
     free(table->model_roles);
@@ -117,6 +122,7 @@ void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64
         table->counters.tombstones_dropped = tombstones_dropped(table->tombstones);
     }
     entity_effects_end(table, slot, t_s);
+    entity_marks_end(table, slot, counter == &table->counters.timed_out, t_s);
     entity_slot_free(table, slot);
     ++*counter;
 }
@@ -144,6 +150,16 @@ bool entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandl
 
 const EntityCounters *entity_table_counters(const EntityTable *table) { return &table->counters; }
 
+Status entity_table_marks_save(const EntityTable *table, double unix_s, const char *path)
+{
+    return ground_marks_save(table->ground, unix_s, path);
+}
+
+Status entity_table_marks_load(EntityTable *table, double unix_s, const char *path)
+{
+    return ground_marks_load(table->ground, unix_s, path);
+}
+
 const EffectCounters *entity_table_effect_counters(const EntityTable *table)
 {
     return effect_history_counters(table->effects);
@@ -166,6 +182,7 @@ void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
 void entity_table_detonation(EntityTable *table, const DisDetonation *pdu, double t_s)
 {
     effect_history_detonation(table->effects, pdu, t_s);
+    entity_marks_detonation(table, pdu, t_s);
     EntitySlot *munition = entity_slot_find(table, pdu->munition);
     if (!munition || munition->type.kind != dis_kind_munition || t_s < munition->created_s) return;
     entity_slot_remove(table, munition, t_s, &table->counters.detonated);
@@ -208,6 +225,7 @@ void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
         EntitySlot *slot = table->slot + s;
         if (!entity_slot_lives(slot) || slot->stopped || !simulation_matches(pdu->receiving, slot->id)) continue;
         const double stop_s = fmax(t_s, slot->report_s);
+        entity_marks_stop(table, slot, stop_s);
         slot->spin_s = entity_slot_spin(slot, stop_s);
         slot->spin_from_s = stop_s;
         slot->stop_s = stop_s;
@@ -228,6 +246,7 @@ void entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_
         slot->spin_from_s = fmax(t_s, slot->stop_s);
         slot->stopped = false;
         table->stopped_count--;
+        entity_marks_start(table, slot, fmax(t_s, slot->stop_s));
         entity_effects_report(table, slot, fmax(t_s, slot->stop_s));
     }
 }

@@ -1,5 +1,5 @@
 /* entities/table/entity_table.h: the entity table: one slot per entity, handles with a generation, the last report of
- * each, and state from its history (heat, distance travelled, smoke trails).
+ * each, and state from its history (heat, distance travelled, smoke trails, ground marks).
  *
  * Takes PDUs in the order of exercise time; gives a Snapshot at any t at or after the last of them. */
 #ifndef ENTITIES_TABLE_ENTITY_TABLE_H
@@ -45,6 +45,7 @@ typedef struct EntityCounters {
     uint64_t refused;        /* refused by a full table, as they would be evicted at once */
     uint64_t over_rate;      /* reports of new ones, not taken in because their sender added more than new_per_s */
     uint64_t tombstones_dropped; /* tombstones dropped for lack of space while a late report was still possible */
+    uint64_t marks_forgotten; /* the oldest ground marks, beyond the capacity */
 } EntityCounters;
 
 EntityTableConfig entity_table_default_config(void);
@@ -92,6 +93,10 @@ bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHand
  * scratch. */
 bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_value, const EntityTable *table,
                              EntityHandle handle, double t_s);
+/* Ground marks over a restart: ground_marks_save, ground_marks_load; the latter before the first PDU. unix_s: Unix time
+ * of exercise time 0. */
+Status entity_table_marks_save(const EntityTable *table, double unix_s, const char *path);
+Status entity_table_marks_load(EntityTable *table, double unix_s, const char *path);
 /* All of them at t_s, sorted by id, in the arena. */
 Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena);
 

@@ -6,6 +6,7 @@
 #include "entities/models/articulation.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
+#include "entities/marks/ground_marks.h"
 #include "entities/table/entity_index.h"
 #include "entities/table/entity_ranks.h"
 #include "entities/table/entity_rate.h"
@@ -30,6 +31,8 @@ typedef struct EntitySlot {
     double        hold_s;     /* longest extrapolation */
     bool          known;      /* known: has reported for known_after_s */
     bool          stopped;    /* by Stop/Freeze, at stop_s */
+    bool          marks;      /* has begun a stand or a trail: EntityMarks */
+    bool          trails;     /* its trail is on */
     double        stop_s;
     double        paused_s;   /* spent stopped since the report */
     double        spin_s, spin_from_s; /* running clock at spin_from_s */
@@ -41,6 +44,17 @@ typedef struct EntitySlot {
     Articulation  articulation;
     uint64_t      effect[entity_effect_positions]; /* what it gives off now: handles of effects_history.h */
 } EntitySlot;
+
+/* What an entity leaves on the ground at present, beside its slot. */
+typedef struct EntityMarks {
+    bool        stands;        /* at this place, since from_s */
+    double      p_ecef[3];     /* of the model's origin */
+    double      r_ecef_from_body[9];
+    double      from_s;
+    uint64_t    stand;         /* handle of ground_marks.h; 0: not recorded yet */
+    GroundTrail trail;
+    double      followed_s;    /* the entity's own time up to which the trail has been followed */
+} EntityMarks;
 
 /* Where what matters is: entity_table_focus. */
 typedef struct EntityFocus {
@@ -66,6 +80,8 @@ struct EntityTable {
     EntityRate       *rate;
     EntityCounters    counters;
     EffectHistory    *effects;
+    EntityMarks      *mark;        /* [config.capacity + 1] */
+    GroundHistory    *ground;
 };
 
 static inline bool entity_slot_lives(const EntitySlot *slot) { return slot->generation & 1; }
@@ -115,6 +131,16 @@ bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const Ent
                             const SnapshotEntity *entity, double t_s);
 Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
                                int carried_count, Arena *arena);
+/* entity_marks.c: before a report changes the slot; after it; at Stop/Freeze and Start/Resume; when the entity ends
+ * (silent: by a timeout), or is of another type now. */
+void entity_marks_before(EntityTable *table, EntitySlot *slot, double t_s);
+void entity_marks_report(EntityTable *table, EntitySlot *slot, bool is_first, double t_s);
+void entity_marks_stop(EntityTable *table, EntitySlot *slot, double t_s);
+void entity_marks_start(EntityTable *table, EntitySlot *slot, double t_s);
+void entity_marks_end(EntityTable *table, EntitySlot *slot, bool silent, double t_s);
+void entity_marks_detonation(EntityTable *table, const DisDetonation *pdu, double t_s);
+/* trailing[count]: slots of the snapshot that trail, by id. */
+Status entity_marks_snapshot(Snapshot *snapshot, const EntityTable *table, const int *trailing, int count, Arena *arena);
 /* reports: of joints, by the sender. */
 void entity_effects_wreck_joints(double *joint_value, const Model *model, const SnapshotEntity *entity, int reports);
 

@@ -5,6 +5,7 @@
 
 #include "dis/pdu.h"
 #include "entities/effects/effects.h"
+#include "entities/marks/ground_marks.h"
 #include "entities/models/articulation.h"
 
 typedef struct SnapshotEntity {
@@ -46,6 +47,7 @@ typedef struct Snapshot {
     int64_t         puffs_left_out; /* the oldest, beyond effect_puff_capacity */
     int             left_out;       /* entities beyond the table's config.shown: the farthest */
     const EffectTable *effect_table; /* NULL where there are no puffs */
+    GroundMarks     marks;  /* what was left on the ground until t_s */
 } Snapshot;
 
 /* Whether a puff came out of this entity: its own trail, flames or plume. */

@@ -133,6 +133,64 @@ void frame_fields_snapshot(Fields *f, FrameFile *file)
     if (f->from) check_order(f, s);
 }
 
+/* ---- ground marks ------------------------------------------------------------------------------- */
+
+static const float largest_m = 1000, hottest_j_m2 = 1e9f;
+
+static void stand_fields(Fields *f, GroundStand *s)
+{
+    field_reals(f, "place of a stand", s->p_ecef, 3, earth_m);
+    field_rotation(f, "attitude of a stand", s->r_ecef_from_body);
+    field_floats(f, "box of a stand", s->low_m, 3, -largest_m, largest_m);
+    for (int k = 0; k < 3; k++) field_floats(f, "box of a stand", &s->high_m[k], 1, f->from ? s->low_m[k] : 0, largest_m);
+    field_real(f, "begin of a stand", &s->from_s, -long_s, long_s);
+    field_real(f, "end of a stand", &s->to_s, s->from_s, INFINITY);
+    field_u64(f, &s->owner);
+}
+
+static void track_fields(Fields *f, GroundTrack *t)
+{
+    field_reals(f, "begin of a track", t->a_ecef, 3, earth_m);
+    field_reals(f, "end of a track", t->b_ecef, 3, earth_m);
+    field_real(f, "time of a track", &t->a_s, -long_s, long_s);
+    field_real(f, "time of a track", &t->b_s, t->a_s, long_s);
+    field_floats(f, "width of a track", &t->width_m, 1, 0, largest_m);
+    field_floats(f, "width of a track", &t->apart_m, 1, 0, largest_m);
+    field_floats(f, "heat of a track", &t->heat_j_m2, 1, 0, hottest_j_m2);
+    field_bool(f, "kind of a track", &t->tracked);
+}
+
+static void burn_fields(Fields *f, GroundBurn *b)
+{
+    field_reals(f, "place of a burn", b->p_ecef, 3, earth_m);
+    field_real(f, "time of a burn", &b->t_s, -long_s, long_s);
+    field_floats(f, "size of a burn", &b->radius_m, 1, 0, largest_m);
+    field_floats(f, "size of a burn", &b->crater_m, 1, 0, largest_m);
+    field_floats(f, "heat of a burn", &b->heat_j_m2, 1, 0, hottest_j_m2);
+}
+
+void frame_fields_marks(Fields *f, FrameFile *file)
+{
+    enum { stand_octets = 144, track_octets = 80, burn_octets = 44 };
+    GroundMarks *m = &file->snapshot.marks;
+    GroundStand *stand = (GroundStand *)m->stand; /* written: not changed */
+    GroundTrack *track = (GroundTrack *)m->track;
+    GroundBurn  *burn = (GroundBurn *)m->burn;
+    uint64_t     forgotten = (uint64_t)m->forgotten;
+    field_u64(f, &forgotten);
+    m->forgotten = (int64_t)forgotten;
+    if (f->from && m->forgotten < 0 && fields_good(f)) f->fault = "marks forgotten";
+    if (!field_array(f, "stands", &m->stands, (void **)&stand, sizeof *stand, stand_octets, ground_stand_capacity)) return;
+    m->stand = stand;
+    for (int i = 0; i < m->stands && fields_good(f); i++) stand_fields(f, &stand[i]);
+    if (!field_array(f, "tracks", &m->tracks, (void **)&track, sizeof *track, track_octets, ground_tracks_most)) return;
+    m->track = track;
+    for (int i = 0; i < m->tracks && fields_good(f); i++) track_fields(f, &track[i]);
+    if (!field_array(f, "burns", &m->burns, (void **)&burn, sizeof *burn, burn_octets, ground_burn_capacity)) return;
+    m->burn = burn;
+    for (int i = 0; i < m->burns && fields_good(f); i++) burn_fields(f, &burn[i]);
+}
+
 /* ---- view and request ---------------------------------------------------------------------------- */
 
 /* A lens is rebuilt from its coefficients: its other fields follow from them. */

@@ -7,16 +7,24 @@
 
 typedef void ChunkFields(Fields *f, FrameFile *file);
 
+static bool has_marks(const FrameFile *file)
+{
+    const GroundMarks *m = &file->snapshot.marks;
+    return m->stands > 0 || m->tracks > 0 || m->burns > 0 || m->forgotten > 0;
+}
+
+static bool has_woods(const FrameFile *file) { return file->planted; }
+
 static const struct Chunk {
     const char  *name;
     ChunkFields *fields; /* NULL: the ground, which may be a cut-out */
-    bool         of_woods; /* there only where there are plants */
+    bool       (*is_there)(const FrameFile *file); /* NULL: in every file */
 } chunks[] = {
-    {"about", frame_fields_about, false},     {"settings", frame_fields_settings, false},
-    {"tables", frame_fields_tables, false},   {"models", frame_fields_models, false},
-    {"snapshot", frame_fields_snapshot, false}, {"request", frame_fields_request, false},
-    {"planes", frame_fields_planes, false},   {"ground", NULL, false},
-    {"woods", frame_fields_woods, true},
+    {"about", frame_fields_about, NULL},       {"settings", frame_fields_settings, NULL},
+    {"tables", frame_fields_tables, NULL},     {"models", frame_fields_models, NULL},
+    {"snapshot", frame_fields_snapshot, NULL}, {"request", frame_fields_request, NULL},
+    {"planes", frame_fields_planes, NULL},     {"ground", NULL, NULL},
+    {"woods", frame_fields_woods, has_woods},  {"marks", frame_fields_marks, has_marks},
 };
 enum { chunk_kinds = sizeof chunks / sizeof *chunks };
 
@@ -27,7 +35,7 @@ Status frame_file_pack(ByteSink *out, const FrameFile *file, const GroundCutout 
     for (int c = 0; c < chunk_kinds; c++) {
         ByteSink content = {0};
         Fields   f       = {.to = &content, .version = chunks_version};
-        if (chunks[c].of_woods && !file->planted) continue;
+        if (chunks[c].is_there && !chunks[c].is_there(file)) continue;
         if (chunks[c].fields) chunks[c].fields(&f, &fields);
         else frame_fields_ground(&f, &fields, kept);
         chunks_put(out, chunks[c].name, &content);
@@ -94,7 +102,7 @@ Status frame_file_parse(FrameFile *out, const uint8_t *bytes, size_t count, cons
     *out          = (FrameFile){0};
     Status status = chunks_open(&source, bytes, count, arena);
     if (status == STATUS_OK) status = parse(out, &source, &met, &field);
-    for (int c = 0; c < chunk_kinds; c++) met |= (unsigned)chunks[c].of_woods << c;
+    for (int c = 0; c < chunk_kinds; c++) met |= (chunks[c].is_there ? 1u : 0u) << c;
     if (status == STATUS_OK && met != (1u << chunk_kinds) - 1) {
         int c = 0;
         while (met >> c & 1) c++;

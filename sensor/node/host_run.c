@@ -143,6 +143,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
               .entities_evicted = result->entities.evicted, .entities_refused = result->entities.refused,
               .entities_over_rate = result->entities.over_rate, .tombstones_dropped = result->entities.tombstones_dropped,
+              .marks_forgotten = result->entities.marks_forgotten,
               .shots_forgotten = result->shots_forgotten, .munitions_forgotten = result->munitions_forgotten,
               .frames_crowded = result->frames_crowded, .most_left_out = result->most_left_out,
               .at_limit = result->at_limit,

@@ -311,6 +311,7 @@ static json_t *counters_json(const RunRecord *r)
     set_count(entities, "refused", r->entities_refused);
     set_if_any(entities, "over_rate", r->entities_over_rate);
     set_if_any(entities, "tombstones_dropped", r->tombstones_dropped);
+    set_if_any(entities, "marks_forgotten", r->marks_forgotten);
     set_if_any(entities, "shots_forgotten", r->shots_forgotten);
     set_if_any(entities, "munitions_forgotten", r->munitions_forgotten);
     set_count(entities, "most_left_out_of_a_frame", (uint64_t)r->most_left_out);

@@ -83,6 +83,8 @@ static const ReferenceField fields[] = {
      "reports of new ones beyond entities.new_per_s of their sender"},
     {"counters.entities.tombstones_dropped", "integer", "", "", "when 0",
      "ends forgotten while a late report could still come"},
+    {"counters.entities.marks_forgotten", "integer", "", "", "when 0",
+     "the oldest ground marks (stands, tracks, burns), beyond capacity"},
     {"counters.entities.shots_forgotten", "integer", "", "", "when 0",
      "Fire PDUs, of which the latest 1024 are known"},
     {"counters.entities.munitions_forgotten", "integer", "", "", "when 0",

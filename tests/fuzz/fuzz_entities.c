@@ -115,6 +115,15 @@ static void check_snapshot(const EntityTable *table, double t_s, Arena *arena)
         const EffectPuff *p = snapshot.puff + i;
         if (!v3_is_finite(p->p_ecef) || !isfinite(p->mass_kg) || !(p->age_s >= 0)) abort();
     }
+    const GroundMarks *m = &snapshot.marks;
+    for (int i = 0; i < m->stands; i++)
+        if (!v3_is_finite(m->stand[i].p_ecef) || !(m->stand[i].from_s <= fmin(m->stand[i].to_s, t_s))) abort();
+    for (int i = 0; i < m->tracks; i++) {
+        const GroundTrack *t = &m->track[i];
+        if (!v3_is_finite(t->a_ecef) || !v3_is_finite(t->b_ecef) || !(t->a_s < t->b_s) || !(t->heat_j_m2 >= 0)) abort();
+    }
+    for (int i = 0; i < m->burns; i++)
+        if (!v3_is_finite(m->burn[i].p_ecef) || !(m->burn[i].t_s <= t_s)) abort();
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

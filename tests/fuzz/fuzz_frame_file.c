@@ -14,7 +14,7 @@ const int fuzz_rounds = 3000;
 
 static void identity(double r[9]) { m3_identity(r); }
 
-/* Two entities, a puff; ground of two nested levels with cover and a photograph, or invented; with plants or without. */
+/* Two entities, a puff, a mark of each sort; ground of two nested levels with cover and a photograph, or invented; with plants or without. */
 static void small_file(ByteSink *out, bool invented, bool planted)
 {
     static uint16_t stored[elevation_tile_posts];
@@ -44,6 +44,13 @@ static void small_file(ByteSink *out, bool invented, bool planted)
                         .throw_s = 1, .scale = 1, .mass_kg = 1};
     file.snapshot = (Snapshot){.count = 2, .node_count = 2, .entity = entity, .node = node, .puff_count = 1,
                                .puff = &puff};
+    static GroundStand stand = {.p_ecef = {6378137, 0, 0}, .low_m = {-4, -2, -3}, .high_m = {4, 2, 0}, .from_s = -3600,
+                                .to_s = INFINITY, .owner = 7};
+    static GroundTrack track = {.a_ecef = {6378137, 0, 0}, .b_ecef = {6378137, 4, 0}, .a_s = 1, .b_s = 2, .width_m = 0.5f,
+                                .apart_m = 2.5f, .heat_j_m2 = 9000, .tracked = true};
+    static GroundBurn  burn  = {.p_ecef = {6378137, 0, 9}, .t_s = 3, .radius_m = 2, .crater_m = 1, .heat_j_m2 = 1e5f};
+    identity(stand.r_ecef_from_body);
+    if (planted) file.snapshot.marks = (GroundMarks){1, 1, 1, &stand, &track, &burn, 5};
     file.request  = (RenderRequest){.view = {.width = 16, .height = 12, .focal_px = 30}, .bands = 15, .truth = true,
                                     .samples = 1, .hidden_entity = 0, .profile_bins = 16, .profile_bin_m = 0.3};
     identity(file.request.view.r_enu_from_cam);
@@ -95,6 +102,13 @@ static bool parse(const uint8_t *data, size_t size)
             if (!v3_is_finite(s->entity[e].p_ecef) || s->entity[e].first_node > s->node_count) abort();
         if (file->request.hidden_entity >= s->count || file->eye.host_index >= s->count) abort();
         if (!(file->request.view.focal_px > 0) || file->plane_count > frame_max_planes) abort();
+        const GroundMarks *m = &s->marks;
+        for (int i = 0; i < m->stands; i++)
+            if (!v3_is_finite(m->stand[i].p_ecef) || !(m->stand[i].from_s <= m->stand[i].to_s)) abort();
+        for (int i = 0; i < m->tracks; i++)
+            if (!v3_is_finite(m->track[i].a_ecef) || !(m->track[i].a_s <= m->track[i].b_s)) abort();
+        for (int i = 0; i < m->burns; i++)
+            if (!v3_is_finite(m->burn[i].p_ecef) || !(m->burn[i].radius_m >= 0)) abort();
         const WoodsConfig *w = &file->woods;
         if (file->planted && !(w->half_width_m >= 50 && w->most_trees <= woods_most_trees)) abort();
         for (int i = 0; i < w->path_count; i++)

@@ -1,0 +1,307 @@
+/* entities/table/entity_marks.c: which marks an entity leaves on the ground, by its type and motion. Whatever is
+ * recorded follows from PDUs: nothing from a snapshot, a timeout or a tick. */
+#include "entities/table/entity_table_private.h"
+
+static const double moving_mps = 0.3;  /* as heat.c */
+static const double stood_s = 60;      /* shorter ones leave no mark */
+static const double near_ground_m = 3; /* the elevation of senders differs from ours by metres */
+static const double gravity_mps2 = 9.80665;
+
+/* ---- the entity ------------------------------------------------------------------------------- */
+
+static EntityMarks *marks_of(const EntityTable *table, const EntitySlot *slot)
+{
+    return &table->mark[slot - table->slot];
+}
+
+static bool is_vehicle(const EntitySlot *slot)
+{
+    return slot->type.kind == dis_kind_platform && slot->type.domain == dis_domain_land;
+}
+
+static bool is_aircraft(const EntitySlot *slot)
+{
+    return slot->type.kind == dis_kind_platform && slot->type.domain == dis_domain_air;
+}
+
+/* A hovering helicopter has no speed either: without elevation data no aircraft is parked. */
+static bool is_on_ground(const EntityTable *table, const EntitySlot *slot, const double p_ecef[3])
+{
+    if (contact_applies(slot->type)) return true;
+    return is_aircraft(slot) && fabs(contact_above_m(&table->config.ground, p_ecef)) <= near_ground_m;
+}
+
+/* The model's origin, the centre of the base, for a reported position. */
+static void base_of(double p_base_ecef[3], const EntitySlot *slot, const Model *model, const double p_ecef[3],
+                    const double r_ecef_from_body[9])
+{
+    const double below_m = slot->origin == ORIGIN_CENTRE ? 0.5 * model->height_m : 0;
+    for (int i = 0; i < 3; i++) p_base_ecef[i] = p_ecef[i] + r_ecef_from_body[3 * i + 2] * below_m;
+}
+
+/* ---- stands ----------------------------------------------------------------------------------- */
+
+static double lasts_until_s(const EntitySlot *slot) { return slot->report_s + slot->timeout_s; }
+
+static void begin_stand(EntityTable *table, EntitySlot *slot, const double p_ecef[3], bool is_first, double t_s)
+{
+    EntityMarks *m = marks_of(table, slot);
+    m->stands = true;
+    m->from_s = is_first ? t_s - table->config.ambient_s : t_s;
+    m->stand = 0;
+    memcpy(m->p_ecef, p_ecef, sizeof m->p_ecef);
+    memcpy(m->r_ecef_from_body, slot->reported.r_ecef_from_body, sizeof m->r_ecef_from_body);
+    if (!is_first) return;
+    GroundStand stand = {.from_s = m->from_s, .to_s = lasts_until_s(slot), .owner = entity_key(slot->id) + 1};
+    memcpy(stand.p_ecef, m->p_ecef, sizeof stand.p_ecef);
+    memcpy(stand.r_ecef_from_body, m->r_ecef_from_body, sizeof stand.r_ecef_from_body);
+    m->stand = ground_stand_again(&m->from_s, table->ground, &stand, t_s - table->config.ambient_s);
+    if (m->stand) ground_stand_until(table->ground, m->stand, stand.to_s);
+}
+
+/* Recorded with the first report that finds it old enough, or that ends it. */
+static void record_stand(EntityTable *table, const EntitySlot *slot, EntityMarks *m, double to_s, double t_s)
+{
+    if (m->stand) {
+        ground_stand_until(table->ground, m->stand, to_s);
+        return;
+    }
+    if (!(t_s - m->from_s >= stood_s)) return;
+    const Model *model = catalog_model(table->catalog, slot->model);
+    GroundStand  stand = {.from_s = m->from_s, .to_s = to_s, .owner = entity_key(slot->id) + 1};
+    memcpy(stand.p_ecef, m->p_ecef, sizeof stand.p_ecef);
+    memcpy(stand.r_ecef_from_body, m->r_ecef_from_body, sizeof stand.r_ecef_from_body);
+    for (int k = 0; k < 3; k++) {
+        stand.low_m[k]  = (float)model->box_low[k];
+        stand.high_m[k] = (float)model->box_high[k];
+    }
+    m->stand = ground_stand_open(table->ground, &stand);
+}
+
+static void end_stand(EntityTable *table, const EntitySlot *slot, EntityMarks *m, double t_s)
+{
+    if (m->stands) record_stand(table, slot, m, t_s, t_s);
+    m->stands = false;
+    m->stand = 0;
+}
+
+/* ---- trails ----------------------------------------------------------------------------------- */
+
+/* Categories of land platforms with tracks, where the model does not show them: tanks, armoured fighting vehicles,
+ * self-propelled artillery, tracked utility vehicles (SISO-REF-010). */
+static bool is_tracked(const EntitySlot *slot)
+{
+    const uint8_t c = slot->type.category;
+    if (slot->roles >> HEAT_TRACK & 1) return true;
+    if (slot->roles >> HEAT_WHEEL & 1) return false;
+    return c == 1 || c == 2 || c == 4 || c == 8 || c == 9;
+}
+
+/* Widths and friction heat. Rolling resistance of 5 % of the weight for tracks and 3 % for tyres on soil: middle of the
+ * ranges in Wong, Theory of Ground Vehicles. Estimates: weight by the bounding box (a tank of 59 m3: 53 t; a lorry of
+ * 55 m3: 19 t), width of a track or tyre as a share of the vehicle's, and half of the heat in the ground. Within a
+ * factor of two. */
+static GroundTrack track_of(const EntitySlot *slot, const Model *model)
+{
+    const bool   tracked = is_tracked(slot);
+    const double resistance = tracked ? 0.05 : 0.03, t_m3 = tracked ? 0.9 : 0.35, share = tracked ? 0.16 : 0.1;
+    const double in_ground = 0.5;
+    const double width_m = share * model->width_m;
+    const double weight_n = 1000 * t_m3 * model->length_m * model->width_m * model->height_m * gravity_mps2;
+    const double heat_j_m2 = width_m > 0 ? in_ground * resistance * weight_n / (2 * width_m) : 0;
+    return (GroundTrack){.width_m = (float)width_m, .apart_m = (float)(model->width_m - width_m),
+                         .heat_j_m2 = (float)fmin(heat_j_m2, 1e6), .tracked = tracked};
+}
+
+static double speed_of(const EntitySlot *slot)
+{
+    return entity_slot_frozen(slot) ? 0 : v3_length(slot->reported.v_mps);
+}
+
+/* Interval of the points of an extrapolated path: 3 degrees of course at a time, but not below 1 m; a power of two of
+ * 1/16 s. INFINITY: it is straight. */
+static double step_of(const EntitySlot *slot, double span_s, int most)
+{
+    static const double turn_rad = 3 * rad_per_deg, least_m = 1, tick_s = 0.0625;
+    const int    algorithm = slot->reported.algorithm;
+    const double speed_mps = speed_of(slot);
+    const bool   body = dead_reckoning_in_body_axes(algorithm);
+    const double w_rps = body && dead_reckoning_turns(algorithm) ? v3_length(slot->reported.w_body_rps) : 0;
+    const double turn_rps = w_rps + v3_length(slot->reported.a_mps2) / fmax(speed_mps, 1);
+    if (algorithm <= 1 || !(speed_mps > 0) || !(turn_rps * span_s > turn_rad)) return INFINITY;
+    double step_s = tick_s;
+    while (2 * step_s <= fmax(turn_rad / turn_rps, least_m / speed_mps) || step_s * most < span_s) step_s *= 2;
+    return step_s;
+}
+
+/* A point of a path, and where it goes: into the history, or into out[*count]. */
+typedef struct TrailSink {
+    GroundHistory *history;
+    GroundTrack   *out;
+    int            count;
+} TrailSink;
+
+static void put_point(TrailSink *sink, GroundTrail *trail, const double p_ecef[3], double t_s, bool last)
+{
+    if (sink->history) ground_trail_point(sink->history, trail, p_ecef, t_s, last);
+    else sink->count += ground_trail_tail(sink->out + sink->count, trail, p_ecef, t_s, last);
+}
+
+static void path_point(TrailSink *sink, GroundTrail *trail, const EntitySlot *slot, const Model *model, double own_s,
+                       bool last)
+{
+    Motion motion;
+    double p_ecef[3];
+    dead_reckon(&motion, &slot->reported, own_s - slot->report_s);
+    base_of(p_ecef, slot, model, motion.p_ecef, motion.r_ecef_from_body);
+    put_point(sink, trail, p_ecef, own_s + slot->paused_s, last);
+}
+
+/* The extrapolated path after from_s, with its end or without; times: the entity's own. */
+static void follow(TrailSink *sink, GroundTrail *trail, const EntityTable *table, const EntitySlot *slot, double from_s,
+                   double to_s, int most, bool with_end)
+{
+    const Model *model = catalog_model(table->catalog, slot->model);
+    const double step_s = step_of(slot, to_s - from_s, most), first = floor(from_s / step_s) + 1;
+    for (int i = 0; isfinite(step_s) && i < most && (first + i) * step_s < to_s; i++)
+        path_point(sink, trail, slot, model, (first + i) * step_s, false);
+    if (with_end && to_s > from_s) path_point(sink, trail, slot, model, to_s, true);
+}
+
+/* End of the extrapolation for t_s, the entity's own time. */
+static double own_end_s(const EntitySlot *slot, double t_s)
+{
+    return slot->report_s + entity_slot_dt(slot, t_s);
+}
+
+enum { most_points = 64, most_tail_points = 7 };
+
+void entity_marks_before(EntityTable *table, EntitySlot *slot, double t_s)
+{
+    if (!slot->trails) return;
+    EntityMarks *m = marks_of(table, slot);
+    TrailSink    sink = {.history = table->ground};
+    const double to_s = own_end_s(slot, t_s);
+    follow(&sink, &m->trail, table, slot, m->followed_s, to_s, most_points, false);
+    m->followed_s = to_s;
+}
+
+/* After a report. */
+static void report_trail(EntityTable *table, EntitySlot *slot, EntityMarks *m, const double p_ecef[3], double speed_mps,
+                         double t_s)
+{
+    const bool moves = speed_mps >= moving_mps;
+    if (m->trail.on) {
+        m->trail.speed_mps = fmax(m->trail.speed_mps, speed_mps);
+        ground_trail_point(table->ground, &m->trail, p_ecef, t_s, !moves);
+    } else if (moves) {
+        m->trail = (GroundTrail){.on = true, .t_s = t_s, .shape = track_of(slot, catalog_model(table->catalog, slot->model))};
+        memcpy(m->trail.p_ecef, p_ecef, sizeof m->trail.p_ecef);
+    }
+    m->trail.speed_mps = speed_mps;
+    m->trail.on = slot->trails = moves;
+    m->followed_s = t_s;
+}
+
+/* ---- reports ---------------------------------------------------------------------------------- */
+
+void entity_marks_report(EntityTable *table, EntitySlot *slot, bool is_first, double t_s)
+{
+    const bool vehicle = is_vehicle(slot), aircraft = is_aircraft(slot);
+    if (!vehicle && !aircraft && !contact_applies(slot->type)) return;
+    const double speed_mps = speed_of(slot);
+    const bool   still = speed_mps < moving_mps;
+    if (!(fabs(t_s) < effect_latest_s) || (aircraft && !still && !slot->marks)) return;
+
+    EntityMarks *m = marks_of(table, slot);
+    if (!slot->marks) memset(m, 0, sizeof *m);
+    slot->marks = true;
+    double p_ecef[3];
+    const double *r = slot->reported.r_ecef_from_body;
+    base_of(p_ecef, slot, catalog_model(table->catalog, slot->model), slot->reported.p_ecef, r);
+    if (vehicle) report_trail(table, slot, m, p_ecef, speed_mps, t_s);
+
+    if (m->stands && !(still && ground_stand_same_place(p_ecef, r, m->p_ecef, m->r_ecef_from_body)))
+        end_stand(table, slot, m, t_s);
+    if (!m->stands && still && is_on_ground(table, slot, p_ecef)) begin_stand(table, slot, p_ecef, is_first, t_s);
+    if (m->stands) record_stand(table, slot, m, lasts_until_s(slot), t_s);
+    table->counters.marks_forgotten = (uint64_t)ground_history_forgotten(table->ground);
+}
+
+/* A stopped entity does not time out. */
+void entity_marks_stop(EntityTable *table, EntitySlot *slot, double t_s)
+{
+    if (!slot->marks) return;
+    EntityMarks *m = marks_of(table, slot);
+    if (m->stands) ground_stand_until(table->ground, m->stand, INFINITY);
+    if (!slot->trails) return;
+    TrailSink    sink = {.history = table->ground};
+    const double to_s = own_end_s(slot, t_s);
+    follow(&sink, &m->trail, table, slot, m->followed_s, to_s, most_points, true);
+    m->followed_s = to_s;
+}
+
+void entity_marks_start(EntityTable *table, EntitySlot *slot, double t_s)
+{
+    if (!slot->marks) return;
+    EntityMarks *m = marks_of(table, slot);
+    if (m->stands) ground_stand_until(table->ground, m->stand, fmax(t_s, lasts_until_s(slot)));
+    if (!slot->trails) return;
+    m->trail.t_s = m->followed_s + slot->paused_s; /* the pause is not part of its speed */
+    m->trail.piece = 0;
+}
+
+/* After a timeout its stand ends when it was due to report; the path since its last report was never confirmed. */
+void entity_marks_end(EntityTable *table, EntitySlot *slot, bool silent, double t_s)
+{
+    if (!slot->marks) return;
+    EntityMarks *m = marks_of(table, slot);
+    if (!silent) {
+        entity_marks_stop(table, slot, t_s);
+        end_stand(table, slot, m, t_s);
+    }
+    slot->marks = slot->trails = false;
+}
+
+/* ---- bursts ----------------------------------------------------------------------------------- */
+
+/* Estimates, as a burst of 1 kg of explosive on bare soil leaves 2.5 m of scorched ground about a crater of 0.4 m; both
+ * scale with the cube root of the charge. Heat: 100 kJ/m2. Within a factor of two. A penetrator burns no ground. */
+void entity_marks_detonation(EntityTable *table, const DisDetonation *pdu, double t_s)
+{
+    static const double radius_m = 2.5, crater_m = 0.4;
+    static const float  heat_j_m2 = 1e5f;
+    const double r_m = v3_length(pdu->p_ecef), size = cbrt(effect_charge_kg(&pdu->descriptor, false));
+    if (!(r_m >= 1e5 && r_m <= 1e8) || !(fabs(t_s) < effect_latest_s) || effect_is_kinetic(&pdu->descriptor) ||
+        effect_result_is_none(pdu->result) || effect_result_is_water(pdu->result))
+        return;
+    if (!effect_result_is_ground(pdu->result) &&
+        !(fabs(contact_above_m(&table->config.ground, pdu->p_ecef)) <= near_ground_m))
+        return;
+    GroundBurn burn = {.t_s = t_s, .radius_m = (float)(radius_m * size), .crater_m = (float)(crater_m * size),
+                       .heat_j_m2 = heat_j_m2};
+    memcpy(burn.p_ecef, pdu->p_ecef, sizeof burn.p_ecef);
+    ground_burn(table->ground, &burn);
+    table->counters.marks_forgotten = (uint64_t)ground_history_forgotten(table->ground);
+}
+
+/* ---- at one instant ----------------------------------------------------------------------------- */
+
+Status entity_marks_snapshot(Snapshot *snapshot, const EntityTable *table, const int *trailing, int count, Arena *arena)
+{
+    enum { most_tail = most_tail_points + 1, most_trailing = (ground_tracks_most - ground_track_capacity) / most_tail };
+    GroundTrack *tail;
+    if (count > most_trailing) count = most_trailing;
+    const int room = most_tail * count;
+    const Status status = ground_marks_at(&snapshot->marks, &tail, table->ground, snapshot->t_s, room, arena);
+    if (status != STATUS_OK) return status;
+    TrailSink sink = {.out = tail};
+    for (int i = 0; i < count; i++) {
+        const EntitySlot *slot = table->slot + trailing[i];
+        GroundTrail       trail = marks_of(table, slot)->trail;
+        follow(&sink, &trail, table, slot, marks_of(table, slot)->followed_s, own_end_s(slot, snapshot->t_s),
+               most_tail_points, true);
+    }
+    snapshot->marks.tracks += sink.count;
+    return STATUS_OK;
+}
