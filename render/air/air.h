@@ -18,7 +18,7 @@ typedef struct Air {
                                              * disc */
     double    eye_height_m;
     AirTable *table;                        /* in the arena of air_at; NULL: homogeneous atmosphere, see air_even */
-    const struct HeatNow *heat;             /* of the ground (render/heat/heat.h); NULL: all of it as warm as the air */
+    const struct HeatScene *heat;           /* of the ground (render/heat/heat_scene.h); NULL: all of it as warm as the air */
     double    even_per_m;                   /* extinction of a homogeneous atmosphere, whose radiance is that of its
                                              * sky */
 } Air;

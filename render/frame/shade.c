@@ -73,7 +73,9 @@ void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const double t0 = wall_clock_s();
     uint8_t      dark[hits_capacity];
-    if (s->channels & ~(1u << AIR_LWIR))
+    bool         leaves = false; /* whose temperature follows the same ray */
+    for (int i = 0; i < s->hits.count && !leaves; i++) leaves = s->hits.kind[i] == hit_plant;
+    if (leaves || s->channels & ~(1u << AIR_LWIR))
         visibility_shadow(dark, scene->visibility, &s->hits, scene->air->light.sun_d_enu, &shader->counters);
     else
         memset(dark, 0, (size_t)s->hits.count);
@@ -204,7 +206,7 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
     const World *world = scene->world;
     if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature)
         thermal_temperature(s->temp_k, scene->air, &world->materials, world->catalog, scene->snapshot, &s->hits,
-                            s->hits.material, shader->photo, shader->warmth_k);
+                            s->hits.material, s->sun, shader->photo, shader->warmth_k);
     if (!s->channels) return;
     air_paths_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
 

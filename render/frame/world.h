@@ -4,10 +4,12 @@
 
 #include "render/air/air.h"
 #include "render/forest/forest.h"
+#include "render/heat/heat_scene.h"
 #include "render/light/canopy.h"
 #include "render/radar/radar_image.h"
 #include "render/visibility/visibility.h"
 #include "terrain/landscape/detail.h"
+#include "terrain/weather/weather_course.h"
 
 typedef struct World {
     const Catalog   *catalog;
@@ -22,6 +24,10 @@ typedef struct World {
     PlanckTable     *planck_mwir, *planck_lwir;
     Atmosphere      *atmosphere;     /* NULL after world_open; the caller may open one here; world_close closes it */
     RadarConfig      radar;
+    WeatherCourse   *course;         /* NULL after world_open, with heat and shadow: ground as warm as the air */
+    Heat            *heat;
+    ShadowMap       *shadow;         /* NULL with heat: nothing shaded the ground */
+    struct HeatDrive *drive;         /* of heat */
 } World;
 
 /* frame: the landscape's, or any where there is none. */
@@ -29,6 +35,13 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
 /* Grows the prototypes and opens the forest over woods, which must outlive the world. Once, before the first frame; on
  * failure only world_close may follow. */
 Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool);
+/* Warms the ground up to unix_s, that of exercise time 0. course becomes the world's, on failure too. shadow_m: cells of
+ * its shadow map, with plants half of that; 0: none. After world_plant, with an atmosphere; once. */
+Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool);
+/* The ground's heat at a time, in the arena; *out NULL where the world is not warm. marks: may be NULL. */
+Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena);
+/* Sun and all of its radiation at the frame's origin under this weather: what the ground is warmed by. */
+Status world_daylight(Daylight *out, const World *world, const Weather *weather, double unix_s);
 void   world_close(World *world);
 
 #endif

@@ -15,6 +15,12 @@ typedef struct GroundKinds {
 /* path: etc/ground_heat.csv. Every kind must have its row; failures are logged with file, line, column and range. */
 Status      ground_kinds_open(GroundKinds *out, const char *path, const Materials *materials);
 const char *ground_kind_name(int kind);
+/* Soil and what grows on it, that tracks and wheels tear open. */
+static inline bool ground_kind_loosens(int kind)
+{
+    return (kind >= SURFACE_GRASS && kind <= SURFACE_TRACK) || kind == SURFACE_SCRUB || kind == SURFACE_WETLAND ||
+           kind == ground_forest_floor;
+}
 int         ground_kind_find(const char *name); /* -1: none */
 
 #endif

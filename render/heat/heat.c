@@ -219,6 +219,7 @@ static void respond(void *user, int worker, int kind)
         const double before = state.heat_j_m2;
         column_step(&state, c, &b, dt_s);
         const double per_w_m2 = (before - state.heat_j_m2) / falls / pulse_j_m2;
+        job->past->watt_k[kind][i] = (float)per_w_m2;
         job->past->sun_k[kind][i] = (float)(per_w_m2 * k->absorptance * direct);
         job->past->sky_k[kind][i] = (float)(per_w_m2 * (k->absorptance * diffuse - k->emissivity * loss));
     }
@@ -237,6 +238,8 @@ static void fill_past(Heat *h, HeatPast *out)
         h->config.weather(&w, out->unix_s[i], h->config.user);
         memcpy(out->sun_d_enu[i], w.sun_d_enu, sizeof w.sun_d_enu);
     }
+    for (int k = 1; k < ground_kinds; k++) /* of the first element: its half and its conductance have the same size */
+        out->effusivity[k] = (float)sqrt(2 * h->layers[k].capacity_j_m2k[0] * h->layers[k].conductance_w_m2k[0]);
     run(h, respond, &(PastJob){h, interval, count, out});
 }
 

@@ -35,13 +35,14 @@ typedef struct HeatConfig {
 } HeatConfig;
 HeatConfig heat_default_config(void); /* without weather */
 
-/* What shade at past instants took from the surface by now, for each kind: kelvins per unit cosine of the sun facing the
- * surface; and what a hidden sky did (its light and its cold). Newest first. */
+/* What flux over past intervals does to the surface by now, for each kind: kelvins for 1 W/m2; for the direct sun that was, per
+ * unit cosine; for the sky that was, its light and its cold. Newest first. */
 typedef struct HeatPast {
     int    count;
     double unix_s[heat_past], span_s[heat_past]; /* middle of each interval, and its length */
     double sun_d_enu[heat_past][3];
-    float  sun_k[ground_kinds][heat_past], sky_k[ground_kinds][heat_past];
+    float  watt_k[ground_kinds][heat_past], sun_k[ground_kinds][heat_past], sky_k[ground_kinds][heat_past];
+    float  effusivity[ground_kinds];        /* of what lies on top, J/(m2 K s^1/2) */
 } HeatPast;
 
 /* At a time of the grid, or between two. */

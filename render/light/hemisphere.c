@@ -139,7 +139,7 @@ static void resolve(Paths *p, const HemisphereScene *scene, unsigned bands, cons
     for (int i = 0; i < p->hits.count; i++) p->sun[i] = dark[i] ? 0 : 1;
     if (bands & (1 << AIR_MWIR | 1 << AIR_LWIR))
         thermal_temperature(p->temp_k, scene->air, scene->materials, scene->catalog, scene->snapshot, &p->hits,
-                            p->hits.material, p->texture, p->warmth_k);
+                            p->hits.material, p->sun, p->texture, p->warmth_k);
 }
 
 /* Radiance of level, open ground. */

@@ -4,7 +4,7 @@
 #include "render/materials/surface_balance.h"
 
 static const double heat_j_mol_k = 29.3, vapour_j_mol = 44000; /* of air; of water's evaporation */
-static const double pressure_pa = 101325, humidity = 0.6;
+static const double pressure_pa = 101325;
 static const double leaf_m = 0.05, least_wind_mps = 0.3;       /* free convection takes over below */
 
 /* Saturation over water, Pa, and its slope, Pa/K: Tetens, as in Campbell & Norman (1998), eq. 3.8. */
@@ -15,11 +15,12 @@ static double saturation_pa(double *slope, double temp_k)
     return e;
 }
 
-double leaf_temp_k(const Daylight *light, const Material *m, double air_temp_k, double open)
+double leaf_temp_k(const Daylight *light, const Material *m, double air_temp_k, double open, double lit)
 {
     const double wind_mps = fmax(light->weather.wind_mps, least_wind_mps);
     const double layer = 1.4 * 0.135 * sqrt(wind_mps / (0.72 * leaf_m)); /* mol/(m2 s), one side */
-    const double sun_w_m2 = open * (0.5 * light->solar_direct_w_m2 * (light->sun_d_enu[2] > 0) + light->solar_diffuse_w_m2);
+    const double sun_w_m2 = lit * 0.5 * light->solar_direct_w_m2 * (light->sun_d_enu[2] > 0) + open * light->solar_diffuse_w_m2;
+    const double humidity = light->weather.humidity;
     const double stomata = 0.2 * (0.05 + 0.95 * fmin(sun_w_m2 / 250, 1)); /* full by half of full sunlight */
     const double vapour = 1 / (1 / stomata + 1 / (1.09 * layer));
     double       slope;

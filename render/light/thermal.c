@@ -1,13 +1,14 @@
 /* render/light/thermal.c: surface temperatures, and their radiance at the aperture.
  *
- * Temperatures follow exposure, not the present shadow: a surface takes the sunlight its slope would get unobstructed,
- * in steady balance with the wind of the moment. Layered conduction with a history of shadow is not modelled.
+ * Ground remembers (render/heat/heat.h). Parts are still in steady balance with the sun on their slope unobstructed and the
+ * wind of the moment, over the heat of their role.
  *
  * Radiance = emissivity Planck(T) + (1 - emissivity) surroundings + sunlight, each attenuated by the air path
  * according to its own spectrum. In a closed isothermal cavity every surface has the radiance Planck(T), whatever
  * its material (tests/render/test_thermal.c). */
 #include "render/light/thermal.h"
 
+#include "render/heat/heat_scene.h"
 #include "render/light/plant_heat.h"
 #include "render/materials/surface_balance.h"
 #include "pitviper_simd.h"
@@ -28,26 +29,6 @@ static double passive_part_k(const Air *air, double air_temp_k, const Material *
     return air_temp_k + gain_w_m2 / (film + emission_w_m2_k(emissivity, air_temp_k));
 }
 
-/* Constants of a class: its excess in this wind, and the temperatures between which it is valid. */
-typedef struct GroundDay {
-    float rise_k[SURFACE_COUNT], fall_k[SURFACE_COUNT], least_k[SURFACE_COUNT], most_k[SURFACE_COUNT];
-} GroundDay;
-
-static void ground_day(GroundDay *out, const Air *air, const Materials *materials)
-{
-    static const double melts_k = 273.15, sea_freezes_k = 271.35;
-    for (int s = 0; s < SURFACE_COUNT; s++) {
-        const Material *m = &materials->material[materials->surface[s]];
-        const double    other = emission_w_m2_k(1 - m->rho_lwir, air->light.weather.air_temp_k) +
-                             daily_wave_w_m2_k(m->conductivity_w_mk, m->density_kg_m3, m->heat_capacity_j_kgk);
-        const double share = ground_heat_share(air->light.weather.wind_mps, other);
-        out->rise_k[s]  = (float)(share * materials->ground_rise_k[s]);
-        out->fall_k[s]  = (float)(share * materials->ground_fall_k[s]);
-        out->least_k[s] = s == SURFACE_WATER ? (float)sea_freezes_k : 0;
-        out->most_k[s]  = s == SURFACE_SNOW ? (float)melts_k : INFINITY;
-    }
-}
-
 /* Temperature of the air at eight hits: straight between the nodes, as air_temp_at. */
 static F32x8 air_k8(const Air *air, const Hits *hits, int first)
 {
@@ -60,69 +41,62 @@ static F32x8 air_k8(const Air *air, const Hits *hits, int first)
     return f32x8_lerp(low, high, at - f32x8_of_ints(node)) + f32x8_set(air->light.weather.air_temp_k);
 }
 
-/* Ground by class, with the sun on its own slope, and the class's noise in kelvins (etc/ground_detail.csv; by day the
- * sun makes it stronger: twice that of the night at 800 W/m2, an estimate). The noise stands for all that differs
- * within a class: moisture, cover, conduction, reflectance; once heat is computed from such properties they replace
- * it, and never are both added. Darkness is therefore taken from the photograph alone, which shows what the noise does
- * not contain: half of its relative brightness becomes relative warmth (a guess), within 0.6 .. 1.4, since a white
- * roof is six times as bright as its class's mean, and by that relation would be colder than the air at noon. Eight
- * hits at once, within 3e-5 K; what is not ground becomes air. */
-static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, F32x8 air_k, const uint8_t surface[8],
-                      const float *const n_enu[3], const float photo[8], const float warmth_k[8])
+/* Ground, with the class's noise in kelvins (etc/ground_detail.csv), twice that of the night where the sun has lifted it by
+ * 16 K, an estimate. The noise stands for what differs within a class: moisture, cover, reflectance. Darkness is
+ * therefore taken from the photograph alone, which shows what the noise does not contain: half of its relative
+ * brightness becomes relative absorptance (a guess), within 0.6 .. 1.4. Snow is no warmer than it melts, the sea no
+ * colder than it freezes. */
+static double ground_k(const HeatScene *heat, double warmer_k, int surface, const double p_enu[3], const double n_enu[3],
+                       double photo, double warmth_k)
 {
-    const I32x8 class = i32x8_of_bytes(surface);
-    const F32x8    along = f32x8_fma(f32x8_load(n_enu[0]), f32x8_set(air->light.sun_d_enu[0]),
-                                     f32x8_fma(f32x8_load(n_enu[1]), f32x8_set(air->light.sun_d_enu[1]),
-                                               f32x8_load(n_enu[2]) * f32x8_set(air->light.sun_d_enu[2])));
-    const F32x8 rise = f32x8_gather(day->rise_k, class), fall = f32x8_gather(day->fall_k, class);
-    const F32x8 level = (f32x8_set(1) + f32x8_load(n_enu[2])) * f32x8_set(0.5 * air->light.solar_diffuse_w_m2);
-    const F32x8 slope_kw_m2 =
-        f32x8_fma(f32x8_max(along, f32x8_set(0)), f32x8_set(air->light.solar_direct_w_m2), level) * f32x8_set(1e-3);
-    const F32x8 dark = f32x8_set(1.5) - f32x8_set(0.5) * f32x8_clamp(f32x8_load(photo), 0.6, 1.4);
-    const F32x8 noise_k = f32x8_load(warmth_k) * f32x8_fma(slope_kw_m2, f32x8_set(1.25), f32x8_set(1));
-    const F32x8 above = noise_k + f32x8_fma(rise * slope_kw_m2, dark, fall * f32x8_set(-1e-2 *
-                                                                                       air->light.longwave_loss_w_m2));
-    const F32x8 least = f32x8_gather(day->least_k, class), most = f32x8_gather(day->most_k, class);
-    f32x8_store(temp_k, f32x8_min(f32x8_max(above + air_k, least), most));
+    static const double melts_k = 273.15, sea_freezes_k = 271.35;
+    double       lifted_k;
+    const double dark = 1.5 - 0.5 * clamp(photo, 0.6, 1.4);
+    double       temp_k = heat_scene_ground_k(&lifted_k, heat, surface, p_enu, n_enu, dark) + warmer_k;
+    temp_k += warmth_k * (1 + lifted_k / 16);
+    if (surface == SURFACE_SNOW) return fmin(temp_k, melts_k);
+    return surface == SURFACE_WATER ? fmax(temp_k, sea_freezes_k) : temp_k;
+}
+
+/* Leaves and branches. */
+static double plant_k(const Air *air, const Material *m, double air_k, const Hits *hits, int i, const float *sun)
+{
+    const double n[3] = {(double)hits->n_enu[0][i], (double)hits->n_enu[1][i], (double)hits->n_enu[2][i]};
+    if (material_is_leaf(m))
+        return leaf_temp_k(&air->light, m, air_k, (double)hits->open_up[i], sun ? (double)sun[i] : (double)hits->open_up[i]);
+    return bark_temp_k(&air->light, m, air_k, n, (double)hits->radius_m[i], (double)hits->open_up[i]);
 }
 
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
-                         const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *photo,
-                         const float *warmth_k)
+                         const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *sun,
+                         const float *photo, const float *warmth_k)
 {
     const double sun_level_w_m2 = air->light.solar_direct_w_m2 * fmax(air->light.sun_d_enu[2], 0) + air->light.solar_diffuse_w_m2;
     const double film = film_w_m2_k(air->light.weather.wind_mps);
-    GroundDay    day;
-    ground_day(&day, air, materials);
 
     for (int first = 0; first < hits->count; first += 8) {
-        const float *const n_enu[3] = {hits->n_enu[0] + first, hits->n_enu[1] + first, hits->n_enu[2] + first};
-        const int          some = hits->count - first < 8 ? hits->count - first : 8;
-        uint8_t            surface[8] = {0};
-        float              found[8], air_k[8];
-        for (int k = 0; k < some; k++)
-            surface[k] = hits->surface[first + k] < SURFACE_COUNT ? hits->surface[first + k] : SURFACE_NONE;
-        const F32x8 there_k = air_k8(air, hits, first);
-        f32x8_store(air_k, there_k);
-        ground_k8(found, air, &day, there_k, surface, n_enu, photo + first, warmth_k + first);
+        const int some = hits->count - first < 8 ? hits->count - first : 8;
+        float     air_k[8];
+        f32x8_store(air_k, air_k8(air, hits, first));
         for (int k = 0; k < some; k++) {
-            const int i = first + k;
-            temp_k[i] = found[k];
+            const int       i = first + k;
+            const double    here_k = (double)air_k[k];
+            const Material *m = &materials->material[material[i]];
             if (!(hits->range_m[i] < INFINITY)) {
                 temp_k[i] = NAN;
             } else if (hits->kind[i] == hit_plant) {
-                const Material *m = &materials->material[material[i]];
-                const double    n[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
-                temp_k[i] = (float)(m->tau[optical_channel_nir] > 0
-                                        ? leaf_temp_k(&air->light, m, (double)air_k[k], (double)hits->open_up[i])
-                                        : bark_temp_k(&air->light, m, (double)air_k[k], n, (double)hits->radius_m[i],
-                                                      (double)hits->open_up[i]));
+                temp_k[i] = (float)plant_k(air, m, here_k, hits, i, sun);
             } else if (hits->entity[i]) {
-                const HeatRole  role = catalog_model(catalog, hits->model[i])->part[hits->part[i] - 1].role;
-                const double    above_k = snapshot->entity[hits->entity[i] - 1].heat[role];
-                const Material *m = &materials->material[material[i]];
-                temp_k[i] = (float)(passive_part_k(air, (double)air_k[k], m, (double)hits->n_enu[2][i], sun_level_w_m2,
-                                                  film) + above_k);
+                const HeatRole role = catalog_model(catalog, hits->model[i])->part[hits->part[i] - 1].role;
+                const double   above_k = snapshot->entity[hits->entity[i] - 1].heat[role];
+                temp_k[i] = (float)(passive_part_k(air, here_k, m, (double)hits->n_enu[2][i], sun_level_w_m2, film) + above_k);
+            } else if (!air->heat || hits->surface[i] == SURFACE_NONE) {
+                temp_k[i] = (float)here_k;
+            } else {
+                const double p[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
+                const double n[3] = {(double)hits->n_enu[0][i], (double)hits->n_enu[1][i], (double)hits->n_enu[2][i]};
+                temp_k[i] = (float)ground_k(air->heat, here_k - air->light.weather.air_temp_k, hits->surface[i], p, n,
+                                            (double)photo[i], (double)warmth_k[i]);
             }
         }
     }

@@ -228,43 +228,6 @@ done:
     return status;
 }
 
-static Status read_ground_heat(Materials *m)
-{
-    char path[1024];
-    if (!etc_path(path, sizeof path, "ground_heat.csv")) return STATUS_BAD_VALUE;
-    Table table = {0};
-    Status status = table_open(&table, path);
-    if (status != STATUS_OK) return status;
-
-    status = STATUS_BAD_VALUE;
-    bool seen[SURFACE_COUNT] = {0};
-    const int surface_column = table_column(&table, "surface"), rise_column = table_column(&table, "day_rise_k"),
-              fall_column = table_column(&table, "night_fall_k");
-    if (surface_column < 0 || rise_column < 0 || fall_column < 0) {
-        log_error("materials: column missing: file=%s columns=surface,day_rise_k,night_fall_k", path);
-        goto done;
-    }
-    for (int row = 0; row < table.rows; row++) {
-        SurfaceClass surface;
-        double rise_k, fall_k;
-        if (find_surface(&surface, &table, row, surface_column) != STATUS_OK ||
-            table_number(&rise_k, &table, row, rise_column, 0, 60) != STATUS_OK ||
-            table_number(&fall_k, &table, row, fall_column, 0, 20) != STATUS_OK)
-            goto done;
-        if (seen[surface]) {
-            log_error("materials: surface repeated: file=%s line=%d", path, table.line[row + 1]);
-            goto done;
-        }
-        seen[surface] = true;
-        m->ground_rise_k[surface] = (float)rise_k;
-        m->ground_fall_k[surface] = (float)fall_k;
-    }
-    status = check_materials_used(seen, path);
-done:
-    table_close(&table);
-    return status;
-}
-
 static Status find_part_material(int *out, const Materials *m, const Model *model, int part, const char *name, const char *path)
 {
     *out = materials_find(m, name);
@@ -305,7 +268,6 @@ Status materials_open(Materials *out, const char *path, const char *surfaces_pat
     Materials m = {0};
     Status status = read_materials(&m, path);
     if (status == STATUS_OK) status = read_surfaces(&m, surfaces_path);
-    if (status == STATUS_OK) status = read_ground_heat(&m);
     if (status == STATUS_OK && catalog) status = resolve_parts(&m, catalog, path);
     if (status != STATUS_OK) {
         materials_close(&m);

@@ -38,9 +38,6 @@ typedef struct Materials {
     int     **damaged;               /* [model][part * model_damage_states + damage]; NULL: as undamaged. The
                                       * model's own entry, else `burnt` for destroyed, where there is such a row */
     int       model_count;
-    /* Ground of each surface class: kelvins above the air at 1000 W/m2 of sun, below it for each 100 W/m2 that
-     * a horizontal plane loses to the sky (etc/ground_heat.csv). 0: at air temperature. */
-    float     ground_rise_k[SURFACE_COUNT], ground_fall_k[SURFACE_COUNT];
     float     ground_rho[optical_channel_count]; /* mean of the land classes: what lights things from below */
 } Materials;
 

@@ -1,16 +1,10 @@
-/* render/materials/surface_balance.h: heat losses of a surface warmer than the air, and so how wind changes the excess.
- *
- * A surface in a steady balance: excess over the air = heat gain / heat loss per kelvin. Losses: the air's film
+/* render/materials/surface_balance.h: heat losses of a surface warmer than the air in a steady balance: the air's film
  * (McAdams, Heat Transmission, 1954: 5.7 + 3.8 v W/(m2 K), plates below 5 m/s; used above that too), longwave emission
- * (4 e sigma T^3, 5 W/(m2 K) at 288 K) and conduction into the ground by the daily wave (sqrt(k rho c omega), 2 .. 20).
- * Evaporation and the lag of the ground behind the sun are not included. Against NOAA/ARL Bondville, May 1998:
- * tests/render/test_thermal.c. */
+ * (4 e sigma T^3, 5 W/(m2 K) at 288 K) and what the daily wave conducts (sqrt(k rho c omega), 2 .. 20). */
 #ifndef RENDER_MATERIALS_SURFACE_BALANCE_H
 #define RENDER_MATERIALS_SURFACE_BALANCE_H
 
 #include "pitviper.h"
-
-static const double ground_heat_wind_mps = 3; /* that the figures of etc/ground_heat.csv hold for */
 
 /* wind_mps >= 0 */
 static inline double film_w_m2_k(double wind_mps) { return 5.7 + 3.8 * wind_mps; }
@@ -25,13 +19,6 @@ static inline double daily_wave_w_m2_k(double conductivity_w_mk, double density_
 {
     static const double per_day_rad_s = 7.292e-5;
     return sqrt(conductivity_w_mk * density_kg_m3 * heat_capacity_j_kgk * per_day_rad_s);
-}
-
-/* Excess of ground over the air in this wind, over that at ground_heat_wind_mps. other_w_m2_k: of emission and
- * conduction. */
-static inline double ground_heat_share(double wind_mps, double other_w_m2_k)
-{
-    return (film_w_m2_k(ground_heat_wind_mps) + other_w_m2_k) / (film_w_m2_k(wind_mps) + other_w_m2_k);
 }
 
 #endif

@@ -58,7 +58,7 @@ Status frame_again(FrameAgain *out, const FrameFile *file, const Snapshot *snaps
 {
     RenderRequest  request = file->request;
     const double  *p_ecef = file->eye.p_ecef;
-    const FrameEye at = {file->unix_s + file->time_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &request.view, request.bands};
+    const FrameEye at = {file->unix_s + file->time_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &request.view, request.bands, &snapshot->marks};
     Air            air;
     double         r_host_from_enu[9];
     request.skips_off = no_skip ? skips_all_off : 0;

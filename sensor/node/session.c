@@ -142,7 +142,7 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     Air            air;
     double         r_host_from_enu[9] = {0};
     const double  *p_ecef = eye.state.p_ecef;
-    const FrameEye at = {f->unix_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &eye.view, shared->bands};
+    const FrameEye at = {f->unix_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &eye.view, shared->bands, &f->seen.snapshot.marks};
     status = frame_light(&air, &f->sun, r_host_from_enu, shared->world, shared->config, &at, shared->pool, f->arena);
     make_request(&f->request, s, &eye, t_s);
     const double posed_s = wall_clock_s();

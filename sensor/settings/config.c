@@ -193,13 +193,27 @@ static const Setting keys[] = {
      "pcapng file to which `run` records all received datagrams; empty: none"},
     {"weather.atmosphere", SETTING_NAME_OR_PATH, AT(weather.atmosphere), 0, 0, NULL, "",
      "us1976, midlat_summer, or another folder of etc/atmosphere; or the path of such a folder, ./NAME"},
+    {"weather.day", SETTING_NAME_OR_PATH, AT(weather.day), 0, 0, NULL, "",
+     "clear: a day of clear sky with a daily course of the air's temperature; constant: the values below at all times; or a "
+     "weather file (EPW, TMY3, CSV)"},
+    {"weather.air_range_k", SETTING_DOUBLE, AT(weather.air_range_k), 0, 60, NULL, "K",
+     "warmest less coldest air of a clear day, whose mean is weather.air_temp_k"},
+    {"weather.humidity_pct", SETTING_DOUBLE, AT(weather.humidity_pct), 0, 100, NULL, "%",
+     "relative humidity at weather.air_temp_k: what ground and leaves evaporate; that of the air's own bands is the atmosphere's"},
+    {"weather.cloud", SETTING_DOUBLE, AT(weather.cloud), 0, 1, NULL, "",
+     "mean share of the sky that clouds cover: they dim the sun and warm the sky"},
+    {"heat.step_s", SETTING_DOUBLE, AT(heat.step_s), 60, 3600, NULL, "s", "time grid of the ground's heat"},
+    {"heat.facets", SETTING_INT, AT(heat.facets), 3, 17, NULL, "",
+     "slopes and azimuths of the ground's heat: a grid of so many a side, odd"},
+    {"heat.shadow_m", SETTING_DOUBLE, AT(heat.shadow_m), 0, 1000, NULL, "m",
+     "cells of the shadows that relief and plants cast over the day, half of it with plants; 0: no shadow cools the ground"},
     {"weather.visibility_m", SETTING_DOUBLE, AT(weather.visibility_m), 100, 300000, NULL, "m", "meteorological range"},
     {"weather.air_temp_k", SETTING_DOUBLE, AT(weather.air_temp_k), 220, 330, NULL, "K",
      "at ground level at the terrain origin, with the atmosphere's lapse above; unset: the atmosphere's own"},
     {"weather.pressure_mbar", SETTING_DOUBLE, AT(weather.pressure_mbar), 300, 1100, NULL, "mbar",
      "air pressure, for the refraction of sunlight"},
     {"weather.wind_mps", SETTING_DOUBLE, AT(weather.wind_mps), 0, 60, NULL, "m/s",
-     "wind speed; cools ground and vehicles (steady state), moves smoke"},
+     "wind speed; cools ground and vehicles, moves smoke"},
     {"weather.wind_from_deg", SETTING_DOUBLE, AT(weather.wind_from_deg), 0, 360, NULL, "deg",
      "direction the wind comes from, clockwise from north"},
     {"terrain.relief_m", SETTING_DOUBLE, AT(terrain.relief_m), 0, 200, NULL, "m",
@@ -355,6 +369,12 @@ Config config_default(void)
     c.weather.wind_mps              = 3;
     c.weather.wind_from_deg         = 270;
     c.terrain.relief_m              = 15;
+    strcpy(c.weather.day, "clear");
+    c.weather.air_range_k           = 10;
+    c.weather.humidity_pct          = 60;
+    c.heat.step_s                   = 600;
+    c.heat.facets                   = 9;
+    c.heat.shadow_m                 = 16;
     strcpy(c.terrain.vertical, "auto");
     strcpy(c.terrain.ground, "auto");
     strcpy(c.terrain.detail, "on");

@@ -93,8 +93,15 @@ typedef struct Config {
     } record;
     struct {
         char   atmosphere[1024];   /* a folder of etc/atmosphere; with a dot or a slash, any folder */
+        char   day[1024];          /* clear, constant or a file */
         double visibility_m, air_temp_k, pressure_mbar, wind_mps, wind_from_deg; /* air_temp_k NaN: the atmosphere's */
+        double air_range_k, humidity_pct, cloud;
     } weather;
+    struct {
+        double step_s;             /* of the ground's state */
+        int    facets;             /* normals of the ground, a side */
+        double shadow_m;           /* cells of the shadow map; 0: none */
+    } heat;
     struct {
         double relief_m, spacing_m;
         char   store[1024];        /* a terrain store; empty: none */

@@ -1,21 +1,21 @@
 /* sensor/world/frame_light.c: sun and atmosphere of one frame from time, position, weather and view. */
 #include "sensor/world/frame_light.h"
 
+#include "sensor/world/frame_world.h"
+
 Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *world, const Config *config,
                    const FrameEye *eye, Pool *pool, Arena *arena)
 {
-    Weather              weather = {.visibility_m = config->weather.visibility_m,
-                                    .air_temp_k = config->weather.air_temp_k,
-                                    .pressure_mbar = config->weather.pressure_mbar,
-                                    .wind_mps = config->weather.wind_mps,
-                                    .wind_from_rad = config->weather.wind_from_deg * rad_per_deg};
-    if (isnan(weather.air_temp_k)) weather.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
+    Weather    weather = frame_weather(config, world);
+    HeatScene *heat = NULL;
+    if (world->course) weather_at(&weather, world->course, eye->unix_s);
     Geodetic place;
     double   p_ecef[3], r_ecef_from_host[9], d_ecef[3];
     Status   status = geodetic_from_ecef(&place, eye->p_ecef);
     if (status == STATUS_OK) status = ecef_from_geodetic(p_ecef, r_ecef_from_host, &place);
     if (status == STATUS_OK)
         status = sun_at(sun, eye->unix_s, &place, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
+    if (status == STATUS_OK) status = world_heat_at(&heat, world, eye->marks, eye->unix_s, arena);
     if (status != STATUS_OK) return status;
     Sun local = *sun;
     m3_mul_v3(d_ecef, r_ecef_from_host, sun->d_enu);
@@ -26,9 +26,12 @@ Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *w
     const double     *p_enu = eye->view->p_enu;
     const double      ground_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
     const double      eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
-    const AirSource   source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
+    const double      ground_k = heat ? heat_ground_k(heat->now, SURFACE_GRASS, (const double[3]){0, 0, 1}, 0, 1, 1) : 0;
+    const AirSource   source = {world->atmosphere, world->planck_mwir, world->planck_lwir, ground_k};
     const AirEye      air_eye = {eye_height_m, render_air_bands(eye->bands, config_optical(config)), eye->view};
-    return air_at(air, &source, &weather, &local, &air_eye, pool, arena);
+    status = air_at(air, &source, &weather, &local, &air_eye, pool, arena);
+    air->heat = heat;
+    return status;
 }
 
 void turn_normals(Picture *picture, const double r_host_from_enu[9])

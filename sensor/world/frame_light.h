@@ -11,6 +11,7 @@ typedef struct FrameEye {
     double      p_ecef[3];
     const View *view;
     unsigned    bands;
+    const GroundMarks *marks; /* NULL: none */
 } FrameEye;
 
 /* Sun at the sensor position, its direction rotated into the world's frame. r_host_from_enu: from the world's ENU to

@@ -26,3 +26,36 @@ Status frame_world_plant(World *world, const Woods *woods, const Config *config,
     log_detail("woods: grown in %.0f ms", 1e3 * (wall_clock_s() - begun_s));
     return status;
 }
+
+Weather frame_weather(const Config *config, const World *world)
+{
+    Weather base = weather_default();
+    base.visibility_m  = config->weather.visibility_m;
+    base.air_temp_k    = isnan(config->weather.air_temp_k) ? atmosphere_temp_k(world->atmosphere, 0) : config->weather.air_temp_k;
+    base.pressure_mbar = config->weather.pressure_mbar;
+    base.wind_mps      = config->weather.wind_mps;
+    base.wind_from_rad = config->weather.wind_from_deg * rad_per_deg;
+    base.humidity      = 0.01 * config->weather.humidity_pct;
+    base.cloud         = config->weather.cloud;
+    return base;
+}
+
+Status frame_world_warm(World *world, const Config *config, double unix_s, Pool *pool)
+{
+    const WeatherCourseConfig about = {frame_weather(config, world), config->weather.air_range_k, world->frame.origin.lon_rad,
+                                       world->frame.origin.lat_rad};
+    WeatherCourse *course;
+    HeatConfig     heat = heat_default_config();
+    const double   begun_s = wall_clock_s();
+    Status         status = weather_course_open(&course, config->weather.day, &about);
+    if (status != STATUS_OK) return status;
+    log_detail("weather: %s", weather_course_about(course));
+    heat.step_s = config->heat.step_s;
+    heat.facets = config->heat.facets;
+    heat.unix_s = unix_s;
+    status = world_warm(world, course, &heat, config->heat.shadow_m, pool);
+    if (status == STATUS_OK)
+        log_detail("heat: ground warmed up over two days in %.0f ms, %.1f MB, %.1f MB of shadows", 1e3 * (wall_clock_s() - begun_s),
+                   1e-6 * (double)heat_bytes(world->heat), world->shadow ? 1e-6 * (double)shadow_map_bytes(world->shadow) : 0.0);
+    return status;
+}

@@ -10,5 +10,9 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
                    const LocalFrame *frame, const char *isa);
 /* Its plants, as terrain.woods_* say. woods must outlive the world; NULL: there are none. */
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool);
+/* Of the settings alone: what a course of the weather starts from. With an atmosphere. */
+Weather frame_weather(const Config *config, const World *world);
+/* Its heat, over the weather of weather.* up to unix_s, that of exercise time 0. After the plants. */
+Status frame_world_warm(World *world, const Config *config, double unix_s, Pool *pool);
 
 #endif
