@@ -1,5 +1,5 @@
 /* entities/marks/ground_file.c: ground marks as a CSV file, over a restart. */
-#include "entities/marks/ground_private.h"
+#include "entities/marks/ground_marks_private.h"
 
 #include <errno.h>
 #include <stdlib.h>
