@@ -96,9 +96,9 @@ Status ground_marks_at(GroundMarks *out, GroundTrack **tail, const GroundHistory
 /* A CSV file, written to PATH.part and renamed. unix_s: Unix time of exercise time 0. Times of the file are Unix time,
  * so those of marks come back to 0.3 us; places and figures to the bit. */
 Status ground_marks_save(const GroundHistory *history, double unix_s, const char *path);
-/* Into a history without marks (else STATUS_UNSUPPORTED). Stands that still went on end at the latest time known when
- * they were saved, or go on where the same entity stands there again: ground_stand_again. Every value is checked; on
- * failure, logged with file and line, the history is unchanged. */
+/* Into a history without marks (else STATUS_UNSUPPORTED). Stands that still went on end when their entity would have
+ * timed out (those of a paused exercise: at exercise time 0), or go on where the same entity stands there again:
+ * ground_stand_again. Every value is checked; on failure, logged with file and line, the history is unchanged. */
 Status ground_marks_load(GroundHistory *history, double unix_s, const char *path);
 
 #endif
