@@ -1,5 +1,5 @@
 /* entities/marks/ground_file.c: ground marks as a CSV file, over a restart. */
-#include "entities/marks/ground_private.h"
+#include "entities/marks/ground_marks_private.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -177,7 +177,7 @@ static void take_stand(GroundHistory *h, Row *r)
     const char *to = table_text(r->table, r->row, r->column[at_to]);
     s.owner  = (uint64_t)number(r, at_owner, 1, 0x1p49);
     s.from_s = time_of(r, at_from);
-    s.to_s   = *to ? time_of(r, at_to) : INFINITY;
+    s.to_s   = *to ? time_of(r, at_to) : fmax(s.from_s, 0); /* of a paused exercise */
     place(s.p_ecef, r, at_p);
     numbers(s.r_ecef_from_body, r, at_r, 9, 2);
     lengths(s.low_m, r, at_low, 3, -largest_m, largest_m);

@@ -1,5 +1,5 @@
 /* entities/marks/ground_marks.c: three ring buffers of ground marks, and trails from points on them. */
-#include "entities/marks/ground_private.h"
+#include "entities/marks/ground_marks_private.h"
 
 #include <stdlib.h>
 

@@ -14,8 +14,9 @@ enum { ground_stand_capacity = 4096, ground_track_capacity = 32768, ground_burn_
 /* Longer pieces are refused by readers: those made are shorter than 60 m/s for a long timeout. */
 static const double ground_track_longest_m = 20000;
 
-/* An entity that stood still, or stands. One that first appears standing is taken to have stood for
- * EntityTableConfig.ambient_s before: from_s is its first report less that. */
+/* An entity that stood still within 0.5 m and 5 degrees for 60 s or more, or stands: recorded with the first report that
+ * finds it so. One that first appears standing is taken to have stood for EntityTableConfig.ambient_s before: from_s is
+ * its first report less that. Ends with the report that shows it moved or turned, its removal, or its timeout. */
 typedef struct GroundStand {
     double   p_ecef[3];            /* the model's origin (base centre), as reported: not clamped to the ground */
     double   r_ecef_from_body[9];
@@ -96,9 +97,9 @@ Status ground_marks_at(GroundMarks *out, GroundTrack **tail, const GroundHistory
 /* A CSV file, written to PATH.part and renamed. unix_s: Unix time of exercise time 0. Times of the file are Unix time,
  * so those of marks come back to 0.3 us; places and figures to the bit. */
 Status ground_marks_save(const GroundHistory *history, double unix_s, const char *path);
-/* Into a history without marks (else STATUS_UNSUPPORTED). Stands that still went on end at the latest time known when
- * they were saved, or go on where the same entity stands there again: ground_stand_again. Every value is checked; on
- * failure, logged with file and line, the history is unchanged. */
+/* Into a history without marks (else STATUS_UNSUPPORTED). Stands that still went on end when their entity would have
+ * timed out (those of a paused exercise: at exercise time 0), or go on where the same entity stands there again:
+ * ground_stand_again. Every value is checked; on failure, logged with file and line, the history is unchanged. */
 Status ground_marks_load(GroundHistory *history, double unix_s, const char *path);
 
 #endif

@@ -259,6 +259,7 @@ void entity_marks_end(EntityTable *table, EntitySlot *slot, bool silent, double 
     if (!silent) {
         entity_marks_stop(table, slot, t_s);
         end_stand(table, slot, m, t_s);
+        table->counters.marks_forgotten = (uint64_t)ground_history_forgotten(table->ground);
     }
     slot->marks = slot->trails = false;
 }

@@ -122,7 +122,7 @@ void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64
         table->counters.tombstones_dropped = tombstones_dropped(table->tombstones);
     }
     entity_effects_end(table, slot, t_s);
-    entity_marks_end(table, slot, counter == &table->counters.timed_out, t_s);
+    entity_marks_end(table, slot, entity_slot_silent(slot, t_s), t_s);
     entity_slot_free(table, slot);
     ++*counter;
 }

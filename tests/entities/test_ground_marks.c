@@ -119,6 +119,38 @@ static void marks_depend_on_pdus_alone(void **state)
     fixture_close(&g);
 }
 
+/* Traffic with silences, removals and turns: the same marks whether those silent are removed every 0.1 s, at their next
+ * report, or after marks were looked at. */
+static void timeouts_found_late_change_nothing(void **state)
+{
+    (void)state;
+    enum { entities = 40 };
+    Fixture  f = fixture_open(NULL), g = fixture_open(NULL);
+    uint32_t draw = 12345;
+    double   t_s = 0, north_m[entities] = {0}, reported_s[entities] = {0}, speed_mps[entities] = {0};
+    for (int i = 0; i < 6000; i++) {
+        draw = draw * 1664525u + 1013904223u;
+        const int e = (int)(draw >> 16) % entities;
+        north_m[e] += speed_mps[e] * fmin(t_s - reported_s[e], 12);
+        reported_s[e] = t_s;
+        if (draw >> 8 & 1) speed_mps[e] = draw >> 9 & 1 ? 0 : 1 + (draw >> 10) % 12;
+        DisEntityState pdu = driving(e, e % 2 ? tank_type : truck_type, north_m[e], speed_mps[e]);
+        pdu.p_ecef[1] = 30 * e;
+        if ((draw >> 5) % 50 == 0) pdu.appearance |= deactivated_bit;
+        hear(&f, &pdu, t_s), hear(&g, &pdu, t_s);
+        if (i % 1000 == 999) same_marks(marks_at(&f, t_s + 0.3), marks_at(&g, t_s + 0.3));
+        const double next_s = t_s + (draw >> 3 & 127) * 0.01;
+        for (double tick_s = ceil(10 * t_s) / 10; tick_s <= next_s; tick_s += 0.1) entity_table_expire(g.table, tick_s);
+        t_s = next_s;
+    }
+    CHECK(entity_table_counters(f.table)->timed_out > 500 && entity_table_counters(f.table)->deactivated > 30);
+    const GroundMarks *m = marks_at(&f, t_s);
+    CHECK(m->tracks > 500 && m->stands > 20);
+    same_marks(m, marks_at(&g, t_s));
+    fixture_close(&f);
+    fixture_close(&g);
+}
+
 /* Between reports the trail follows the extrapolated path, up to the vehicle. */
 static void the_trail_reaches_its_vehicle(void **state)
 {
@@ -518,6 +550,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tank_leaves_tracks_and_a_stand),
         cmocka_unit_test(marks_depend_on_pdus_alone),
+        cmocka_unit_test(timeouts_found_late_change_nothing),
         cmocka_unit_test(the_trail_reaches_its_vehicle),
         cmocka_unit_test(bends_are_followed),
         cmocka_unit_test(who_stands_has_stood),

@@ -1,6 +1,6 @@
-/* entities/marks/ground_private.h: the rings of ground marks; the last of each is at (n - 1) % capacity. */
-#ifndef ENTITIES_MARKS_GROUND_PRIVATE_H
-#define ENTITIES_MARKS_GROUND_PRIVATE_H
+/* entities/marks/ground_marks_private.h: the rings of ground marks; the last of each is at (n - 1) % capacity. */
+#ifndef ENTITIES_MARKS_GROUND_MARKS_PRIVATE_H
+#define ENTITIES_MARKS_GROUND_MARKS_PRIVATE_H
 
 #include "entities/marks/ground_marks.h"
 
