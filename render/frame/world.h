@@ -36,7 +36,7 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
  * failure only world_close may follow. */
 Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool);
 /* Warms the ground up to unix_s, that of exercise time 0. course becomes the world's, on failure too. shadow_m: cells of
- * its shadow map, with plants half of that; 0: none. After world_plant, with an atmosphere; once. */
+ * its shadow map; 0: none. After world_plant, with an atmosphere; once. */
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool);
 /* The ground's heat at a time, in the arena; *out NULL where the world is not warm. marks: may be NULL. */
 Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena);

@@ -43,20 +43,20 @@ static void weather_then(GroundWeather *out, double unix_s, const void *user)
     memcpy(out->sun_d_enu, light.sun_d_enu, sizeof out->sun_d_enu);
 }
 
-static double area_above(const void *canopy, double x_m, double y_m, double height_m)
+static void stand_there(ShadowStand *out, const void *canopy, double x_m, double y_m)
 {
-    return canopy_leaf_area_above(canopy, x_m, y_m, height_m);
+    CanopyStand c;
+    canopy_stand(&c, canopy, x_m, y_m);
+    *out = (ShadowStand){(float)c.leaf_area, (float)c.base_m, (float)c.top_m, (float)c.open};
 }
-static double open_sky(const void *canopy, double x_m, double y_m) { return canopy_open(canopy, x_m, y_m); }
 
 static Status cast_shadows(World *world, double shadow_m, Pool *pool)
 {
-    const ShadowPlants plants = {area_above, open_sky, world->canopy, canopy_most_m};
-    float              d_enu[3][heat_day_slots];
-    const int          slots = heat_slots(d_enu, world->heat);
-    _Static_assert(shadow_most_slots >= heat_day_slots, "room for a day");
-    return shadow_map_create(&world->shadow, &world->landscape->elevation, world->canopy ? 0.5 * shadow_m : shadow_m, slots, d_enu,
-                             world->canopy ? &plants : NULL, pool);
+    float     d_enu[3][heat_day_slots];
+    const int slots = heat_slots(d_enu, world->heat);
+    _Static_assert((int)shadow_most_slots >= (int)heat_day_slots, "room for a day");
+    return shadow_map_create(&world->shadow, &world->landscape->elevation, shadow_m, slots, d_enu,
+                             world->canopy ? stand_there : NULL, world->canopy, pool);
 }
 
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool)

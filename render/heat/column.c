@@ -83,24 +83,39 @@ static double surface_root(const ColumnBoundary *b, const void *law, double line
     return temp_k;
 }
 
-/* (C / dt + K) T = right + flux(T_0) e_0. Returns the flux into the surface. */
-static double solve_stage(double temp_k[], const Column *c, const ColumnBoundary *b, const void *law, const double right[],
-                          double dt_s)
+/* Of (C / stage + K), without the surface's own exchange. */
+static void eliminate(ColumnFactors *f, const Column *c, double stage_s)
+{
+    const double *g = c->conductance_w_m2k;
+    const int     last = c->nodes - 1;
+    double        steep = c->capacity_j_m2k[last] / stage_s + g[last] + (last > 0 ? g[last - 1] : 0);
+    f->over[last] = 1 / steep;
+    for (int i = last - 1; i >= 0; i--) {
+        f->share[i] = g[i] * f->over[i + 1];
+        steep = c->capacity_j_m2k[i] / stage_s + (i > 0 ? g[i - 1] : 0) + g[i] * (1 - f->share[i]);
+        f->over[i] = 1 / steep;
+    }
+    f->steep0 = steep;
+}
+
+static const double tr_gamma = 0.58578643762690495; /* 2 - sqrt 2 */
+
+void column_factors(ColumnFactors *out, const Column *column, double dt_s)
+{
+    out->dt_s = dt_s;
+    eliminate(out, column, 0.5 * tr_gamma * dt_s);
+}
+
+/* (C / stage + K) T = right + flux(T_0) e_0. */
+static void solve_stage(double temp_k[], const Column *c, const ColumnFactors *f, const ColumnBoundary *b, const void *law,
+                        const double right[])
 {
     const int last = c->nodes - 1;
-    double    steep[column_most_nodes], line[column_most_nodes];
-    const double *g = c->conductance_w_m2k;
-    steep[last] = c->capacity_j_m2k[last] / dt_s + g[last] + (last > 0 ? g[last - 1] : 0);
-    line[last]  = right[last] + g[last] * b->deep_k;
-    for (int i = last - 1; i >= 0; i--) {
-        const double share = g[i] / steep[i + 1];
-        steep[i] = c->capacity_j_m2k[i] / dt_s + (i > 0 ? g[i - 1] : 0) + g[i] * (1 - share);
-        line[i]  = right[i] + share * line[i + 1];
-    }
-    temp_k[0] = surface_root(b, law, line[0], steep[0], temp_k[0]);
-    for (int i = 1; i <= last; i++) temp_k[i] = (line[i] + g[i - 1] * temp_k[i - 1]) / steep[i];
-    double falls;
-    return b->flux(&falls, temp_k[0], law);
+    double    line[column_most_nodes];
+    line[last] = right[last] + c->conductance_w_m2k[last] * b->deep_k;
+    for (int i = last - 1; i >= 0; i--) line[i] = right[i] + f->share[i] * line[i + 1];
+    temp_k[0] = surface_root(b, law, line[0], f->steep0, temp_k[0]);
+    for (int i = 1; i <= last; i++) temp_k[i] = line[i] * f->over[i] + f->share[i - 1] * temp_k[i - 1];
 }
 
 /* Heat into each node by conduction, W/m2. */
@@ -123,17 +138,12 @@ typedef struct Step {
     double                dt_s; /* of the whole step */
 } Step;
 
-/* Of (C / dt + K + falls) x = right / dt, x at the surface. */
-static double filtered_k(const Column *c, const double right_j_m2[], double falls, double dt_s)
+/* Of (C / stage + K + falls) x = right / stage, x at the surface. */
+static double filtered_k(const Column *c, const ColumnFactors *f, const double right_j_m2[], double falls, double stage_s)
 {
-    double steep = 0, line = 0;
-    for (int i = c->nodes - 1, last = i; i >= 0; i--) {
-        const double below = c->conductance_w_m2k[i], above = i > 0 ? c->conductance_w_m2k[i - 1] : falls;
-        const double share = i < last ? below / steep : 0;
-        line  = right_j_m2[i] / dt_s + share * line;
-        steep = c->capacity_j_m2k[i] / dt_s + above + below * (1 - share);
-    }
-    return line / steep;
+    double line = right_j_m2[c->nodes - 1];
+    for (int i = c->nodes - 2; i >= 0; i--) line = right_j_m2[i] + f->share[i] * line;
+    return line / stage_s / (f->steep0 + falls);
 }
 
 /* Backward Euler over [from, from + width] of the step: first order, and without overshoot whatever its length. */
@@ -141,23 +151,23 @@ static void euler(ColumnState *s, const Step *step, double from, double width)
 {
     const Column *c = step->column;
     _Alignas(16) char law[column_law_octets];
-    double       right[column_most_nodes] = {0};
+    ColumnFactors f;
+    double       right[column_most_nodes] = {0}, falls;
     const double h_s = width * step->dt_s;
     const int    last = c->nodes - 1;
+    eliminate(&f, c, h_s);
     step->boundary->at(law, from + width, step->boundary->user);
     for (int i = 0; i <= last; i++) right[i] = c->capacity_j_m2k[i] / h_s * s->temp_k[i];
-    const double q = solve_stage(s->temp_k, c, step->boundary, law, right, h_s);
+    solve_stage(s->temp_k, c, &f, step->boundary, law, right);
+    const double q = step->boundary->flux(&falls, s->temp_k[0], law);
     s->heat_j_m2 += h_s * (q + c->conductance_w_m2k[last] * (step->boundary->deep_k - s->temp_k[last]));
 }
 
-/* Heat into each node, conducted and through the surface. */
-static void flows(double out[], double *q, double *deep, const Step *step, double share, const double temp_k[])
+/* Heat into each node, conducted and through the surface under this law. */
+static void flows(double out[], double *q, double *deep, double *falls, const Step *step, const void *law, const double temp_k[])
 {
     const ColumnBoundary *b = step->boundary;
-    _Alignas(16) char law[column_law_octets];
-    double falls;
-    b->at(law, share, b->user);
-    *q    = b->flux(&falls, temp_k[0], law);
+    *q    = b->flux(falls, temp_k[0], law);
     *deep = b->deep_k - temp_k[step->column->nodes - 1];
     conducted(out, step->column, b, temp_k);
     out[0] += *q;
@@ -165,7 +175,7 @@ static void flows(double out[], double *q, double *deep, const Step *step, doubl
 
 /* TR-BDF2 over [from, from + width] of the step. Returns the estimate of its error at the surface, K (Hosea &
  * Shampine, Applied Numerical Mathematics 20, 1996). */
-static double tr_bdf2(ColumnState *s, const Step *step, double from, double width)
+static double tr_bdf2(ColumnState *s, const Step *step, const ColumnFactors *f, double from, double width)
 {
     static const double gamma = 0.58578643762690495, w = 0.35355339059327376; /* 2 - sqrt 2; sqrt 2 / 4 */
     const double alpha = 1 / (gamma * (2 - gamma)), beta = (1 - gamma) * (1 - gamma) / (gamma * (2 - gamma));
@@ -175,19 +185,20 @@ static double tr_bdf2(ColumnState *s, const Step *step, double from, double widt
     double       flow[3][column_most_nodes] = {{0}}, right[column_most_nodes] = {0}, before_k[column_most_nodes];
     double       q[3], deep[3], falls;
     const int    n = c->nodes;
-    const double h_s = width * step->dt_s, stage_s = 0.5 * gamma * h_s; /* the same for both stages */
+    const double h_s = width * step->dt_s, stage_s = 0.5 * gamma * h_s, per_s = 1 / stage_s; /* the same for both stages */
 
-    flows(flow[0], &q[0], &deep[0], step, from, s->temp_k);
+    b->at(law, from, b->user);
+    flows(flow[0], &q[0], &deep[0], &falls, step, law, s->temp_k);
     memcpy(before_k, s->temp_k, (size_t)n * sizeof *before_k);
-    for (int i = 0; i < n; i++) right[i] = c->capacity_j_m2k[i] / stage_s * before_k[i] + flow[0][i];
+    for (int i = 0; i < n; i++) right[i] = c->capacity_j_m2k[i] * per_s * before_k[i] + flow[0][i];
     b->at(law, from + gamma * width, b->user);
-    solve_stage(s->temp_k, c, b, law, right, stage_s);
-    flows(flow[1], &q[1], &deep[1], step, from + gamma * width, s->temp_k);
+    solve_stage(s->temp_k, c, f, b, law, right);
+    flows(flow[1], &q[1], &deep[1], &falls, step, law, s->temp_k);
 
-    for (int i = 0; i < n; i++) right[i] = c->capacity_j_m2k[i] / stage_s * (alpha * s->temp_k[i] - beta * before_k[i]);
+    for (int i = 0; i < n; i++) right[i] = c->capacity_j_m2k[i] * per_s * (alpha * s->temp_k[i] - beta * before_k[i]);
     b->at(law, from + width, b->user);
-    solve_stage(s->temp_k, c, b, law, right, stage_s);
-    flows(flow[2], &q[2], &deep[2], step, from + width, s->temp_k);
+    solve_stage(s->temp_k, c, f, b, law, right);
+    flows(flow[2], &q[2], &deep[2], &falls, step, law, s->temp_k);
 
     const double d = 0.5 * gamma;
     s->heat_j_m2 += h_s * (w * (q[0] + q[1]) + d * q[2]);
@@ -195,29 +206,30 @@ static double tr_bdf2(ColumnState *s, const Step *step, double from, double widt
     if (!(b->tolerance_k > 0)) return 0;
     for (int i = 0; i < n; i++)
         right[i] = h_s * ((w - (1 - w) / 3) * flow[0][i] - 1.0 / 3 * flow[1][i] + (2 * d / 3) * flow[2][i]);
-    b->flux(&falls, s->temp_k[0], law);
-    return fabs(filtered_k(c, right, fmax(falls, 0), stage_s));
+    return fabs(filtered_k(c, f, right, fmax(falls, 0), stage_s));
 }
 
 enum { most_halvings = 14 };
 
-static void advance(ColumnState *s, const Step *step, double from, double width, int depth)
+static void advance(ColumnState *s, const Step *step, const ColumnFactors *given, double from, double width, int depth)
 {
-    ColumnState before = *s;
+    const ColumnState before = *s;
+    ColumnFactors     own;
     if (depth == most_halvings) {
         euler(s, step, from, width);
         return;
     }
-    const double error_k = tr_bdf2(s, step, from, width);
+    if (!given) column_factors(&own, step->column, width * step->dt_s);
+    const double error_k = tr_bdf2(s, step, given ? given : &own, from, width);
     if (!(step->boundary->tolerance_k > 0) || error_k <= step->boundary->tolerance_k) return;
     *s = before;
     s->halved++;
-    advance(s, step, from, 0.5 * width, depth + 1);
-    advance(s, step, from + 0.5 * width, 0.5 * width, depth + 1);
+    advance(s, step, NULL, from, 0.5 * width, depth + 1);
+    advance(s, step, NULL, from + 0.5 * width, 0.5 * width, depth + 1);
 }
 
-void column_step(ColumnState *state, const Column *column, const ColumnBoundary *boundary, double dt_s)
+void column_step(ColumnState *state, const Column *column, const ColumnFactors *factors, const ColumnBoundary *boundary, double dt_s)
 {
     const Step step = {column, boundary, dt_s};
-    advance(state, &step, 0, 1, 0);
+    advance(state, &step, factors && factors->dt_s == dt_s ? factors : NULL, 0, 1, 0);
 }

@@ -28,6 +28,12 @@ typedef struct Column {
     double depth_m[column_most_nodes];
 } Column;
 
+/* What steps of one length share: the elimination, from the bottom up. */
+typedef struct ColumnFactors {
+    double dt_s;                                /* of a step; 0: none yet */
+    double share[column_most_nodes], over[column_most_nodes], steep0; /* g / pivot of the node below; 1 / pivot */
+} ColumnFactors;
+
 /* Elements of at most first_m at the surface and at each layer's upper face, growing by `growth` (1: even). STATUS_BAD_VALUE: no
  * layer, a thickness, conductivity or capacity that is not positive, or more nodes than column_most_nodes. */
 Status column_create(Column *out, const ColumnLayer *layer, int layers, double first_m, double growth);
@@ -54,8 +60,9 @@ typedef struct ColumnState {
 } ColumnState;
 
 void column_start(ColumnState *out, const Column *column, double temp_k);
-/* One step of dt_s > 0. */
-void column_step(ColumnState *state, const Column *column, const ColumnBoundary *boundary, double dt_s);
+/* One step of dt_s > 0. factors: of column_factors for it, or NULL: found here. */
+void column_step(ColumnState *state, const Column *column, const ColumnFactors *factors, const ColumnBoundary *boundary, double dt_s);
+void column_factors(ColumnFactors *out, const Column *column, double dt_s);
 double column_heat_j_m2(const ColumnState *state, const Column *column); /* stored, over 0 K */
 double column_temp_k(const ColumnState *state, const Column *column, double depth_m);
 

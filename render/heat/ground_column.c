@@ -53,6 +53,7 @@ void ground_flux(SurfaceFlux *out, const GroundColumn *c, const GroundWeather *w
                                            : k->vapour == GROUND_LEAVES ? leaves_s_m(k->resistance_s_m, level)
                                            : k->vapour == GROUND_WATER  ? 0
                                                                         : INFINITY};
+    surface_flux_prepare(out);
 }
 
 typedef struct Between {
@@ -70,8 +71,11 @@ static void law_between(void *law, double share, const void *user)
     *out = *p;
     out->air.temp_k += share * (q->air.temp_k - p->air.temp_k);
     out->air.vapour_pa += share * (q->air.vapour_pa - p->air.vapour_pa);
-    out->air.wind_mps += share * (q->air.wind_mps - p->air.wind_mps);
+    out->neutral_mps += share * (q->neutral_mps - p->neutral_mps);
+    out->stable_per_k += share * (q->stable_per_k - p->stable_per_k);
+    out->unstable += share * (q->unstable - p->unstable);
     out->absorbed_w_m2 += share * (q->absorbed_w_m2 - p->absorbed_w_m2);
+    out->air_kg_m3 += share * (q->air_kg_m3 - p->air_kg_m3);
     if (p->resistance_s_m < INFINITY) out->resistance_s_m += share * (q->resistance_s_m - p->resistance_s_m);
 }
 
@@ -83,7 +87,7 @@ void ground_column_step(GroundColumn *c, double tolerance_k, const GroundWeather
     ground_flux(&between.to, c, after, exposure);
     const ColumnBoundary boundary = {surface_flux_w_m2, law_between, &between, 0, tolerance_k};
     const double begun_k = c->state.temp_k[0];
-    column_step(&c->state, c->column, &boundary, dt_s);
+    column_step(&c->state, c->column, c->factors, &boundary, dt_s);
     if (c->state.temp_k[0] > c->kind->melts_k) { /* what is too much melts, and runs off */
         for (int i = 0; i < c->column->nodes && c->state.temp_k[i] > c->kind->melts_k; i++)
             c->state.temp_k[i] = c->kind->melts_k;

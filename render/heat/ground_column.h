@@ -40,6 +40,7 @@ typedef struct GroundExposure {
 typedef struct GroundColumn {
     const GroundKind *kind;
     const Column     *column;     /* ground_layers of that kind */
+    const ColumnFactors *factors; /* of its usual step; NULL: found at each */
     ColumnState       state;
     double            saturation; /* at the top */
 } GroundColumn;

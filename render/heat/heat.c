@@ -7,7 +7,7 @@
 
 HeatConfig heat_default_config(void)
 {
-    return (HeatConfig){.grid = ground_grid_default, .step_s = 600, .spin_up_s = 2 * 86400, .facets = 9};
+    return (HeatConfig){.grid = ground_grid_default, .step_s = 600, .spin_up_s = 2 * 86400, .facets = 7};
 }
 
 static const double day_s = 86400, slot_s = 1800;
@@ -28,6 +28,7 @@ struct Heat {
     GroundKinds   kinds;
     HeatConfig    config;
     Column        layers[ground_kinds];
+    ColumnFactors factors[2][ground_kinds]; /* of step_s, and of half hours */
     int           columns;              /* a kind */
     KindState     state[ground_kinds];
     GroundColumn *begun;                /* all columns at the beginning of the exercise */
@@ -36,7 +37,7 @@ struct Heat {
     int64_t       index, begun_index;   /* time of the columns: unix = index * step_s */
     int64_t       first;                /* of the spin-up */
     GroundWeather weather[2];           /* at the columns' time, and a step before */
-    HeatTable    *table;                /* [2]: a step before, and now; past alike */
+    GroundHeatTable    *table;                /* [2]: a step before, and now; past alike */
     HeatPast     *past;
     int           slots, slot_of[heat_day_slots]; /* place of each half hour of UTC; -1: night */
     float         slot_d_enu[3][heat_day_slots];
@@ -85,6 +86,12 @@ static GroundWeather no_sun(const GroundWeather *w)
     return out;
 }
 
+/* Place of a time of the grid, before 1970 too, in what is remembered. */
+static int place_of(int64_t index) { return (int)((index % history + history) % history); }
+
+/* In steps. */
+static int64_t half_hour(const Heat *h) { return (int64_t)fmax(1, round(slot_s / h->config.step_s)); }
+
 typedef struct StepJob {
     Heat  *heat;
     double dt_s;
@@ -104,6 +111,7 @@ static void step_kind(void *user, int worker, int task)
     for (int c = 0; c < h->columns; c++) {
         const bool night = without_sun(h, c), hidden = c == h->columns - 1;
         const GroundExposure e = exposure_of(h, c, hidden ? job->before->air.temp_k : level_k);
+        s->column[c].factors = &h->factors[job->dt_s > h->config.step_s][task];
         ground_column_step(&s->column[c], h->config.grid.tolerance_k, night ? &dark[0] : job->before,
                            night ? &dark[1] : job->after, &e, job->dt_s);
     }
@@ -116,10 +124,10 @@ static void run(const Heat *h, PoolTask *task, void *user)
         for (int k = 0; k < ground_kinds; k++) task(user, 0, k);
 }
 
-/* The sky of a time, and how each level column there gives heat away. */
-static void remember(Heat *h)
+/* The sky of a time, and how each level column there gives heat away; of the times since the last one too. */
+static void remember(Heat *h, int steps)
 {
-    const int            at = (int)(h->index % history), level = h->config.facets * h->config.facets / 2;
+    const int            at = place_of(h->index), level = h->config.facets * h->config.facets / 2;
     const GroundWeather *w = &h->weather[1];
     const double         air_w_m2 = stefan_w_m2k4 * pow(w->air.temp_k, 4);
     h->sky[at] = (Sky){w->direct_w_m2, w->diffuse_w_m2, air_w_m2 - w->longwave_w_m2, {w->sun_d_enu[0], w->sun_d_enu[1], w->sun_d_enu[2]}};
@@ -131,8 +139,9 @@ static void remember(Heat *h)
         ground_flux(&flux, c, w, &e);
         const double warm = surface_flux_w_m2(&a, c->state.temp_k[0] + 0.5, &flux);
         const double cold = surface_flux_w_m2(&b, c->state.temp_k[0] - 0.5, &flux);
-        h->state[k].falls_w_m2k[at] = (float)fmax(cold - warm, 0.1);
+        for (int s = 0; s < steps; s++) h->state[k].falls_w_m2k[place_of(h->index - s)] = (float)fmax(cold - warm, 0.1);
     }
+    for (int s = 1; s < steps; s++) h->sky[place_of(h->index - s)] = h->sky[at];
 }
 
 static void advance(Heat *h, int steps)
@@ -143,7 +152,7 @@ static void advance(Heat *h, int steps)
     run(h, step_kind, &(StepJob){h, steps * h->config.step_s, &h->weather[0], &after});
     h->index += steps;
     h->weather[1] = after;
-    remember(h);
+    remember(h, steps);
 }
 
 /* ---- responses --------------------------------------------------------------------------------- */
@@ -210,14 +219,14 @@ static void respond(void *user, int worker, int kind)
         double          falls = 0, direct = 0, diffuse = 0, loss = 0;
         const double    count = (double)(p->to - p->from + 1);
         for (int64_t t = p->from; t <= p->to; t++) {
-            const Sky *sky = &h->sky[t % history];
-            falls += (double)h->state[kind].falls_w_m2k[t % history] / count;
+            const Sky *sky = &h->sky[place_of(t)];
+            falls += (double)h->state[kind].falls_w_m2k[place_of(t)] / count;
             direct += sky->direct_w_m2 / count, diffuse += sky->diffuse_w_m2 / count, loss += sky->loss_w_m2 / count;
         }
         const double dt_s = (double)(p->to - p->from) * h->config.step_s;
         const ColumnBoundary b = {linear_flux, linear_law, &(Linear){falls}, 0, 1e-4 * pulse_j_m2 / c->capacity_j_m2k[0]};
         const double before = state.heat_j_m2;
-        column_step(&state, c, &b, dt_s);
+        column_step(&state, c, NULL, &b, dt_s);
         const double per_w_m2 = (before - state.heat_j_m2) / falls / pulse_j_m2;
         job->past->watt_k[kind][i] = (float)per_w_m2;
         job->past->sun_k[kind][i] = (float)(per_w_m2 * k->absorptance * direct);
@@ -245,12 +254,12 @@ static void fill_past(Heat *h, HeatPast *out)
 
 /* ---- tables ------------------------------------------------------------------------------------ */
 
-static int slot_at(double unix_s) { return (int)(fmod(unix_s, day_s) / slot_s); }
+static int slot_at(double unix_s) { return (int)((unix_s - floor(unix_s / day_s) * day_s) / slot_s) % heat_day_slots; }
 
-static void fill_table(Heat *h, HeatTable *out, const HeatPast *past)
+static void fill_table(Heat *h, GroundHeatTable *out, const HeatPast *past)
 {
     const int all = h->config.facets * h->config.facets;
-    *out = (HeatTable){.unix_s = (double)h->index * h->config.step_s, .facets = h->config.facets,
+    *out = (GroundHeatTable){.unix_s = (double)h->index * h->config.step_s, .facets = h->config.facets,
                        .air_k = h->weather[1].air.temp_k};
     for (int k = 1; k < ground_kinds; k++) {
         const GroundColumn *c = h->state[k].column;
@@ -276,7 +285,7 @@ static void fill_table(Heat *h, HeatTable *out, const HeatPast *past)
 static void next_table(Heat *h)
 {
     const double begun_s = wall_clock_s();
-    HeatTable    table = h->table[1];
+    GroundHeatTable    table = h->table[1];
     HeatPast     past = h->past[1];
     h->table[0] = table;
     h->past[0] = past;
@@ -308,7 +317,7 @@ static void find_slots(Heat *h)
 /* A day of level ground from the mean of the air: the mean of its surface is what the ground below has. */
 static void start_columns(Heat *h)
 {
-    const int64_t day = (int64_t)round(day_s / h->config.step_s), stride = (int64_t)fmax(1, round(1800 / h->config.step_s));
+    const int64_t day = (int64_t)round(day_s / h->config.step_s), stride = half_hour(h);
     double        air_k = 0;
     int           count = 0;
     GroundWeather w[2];
@@ -381,16 +390,20 @@ Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *confi
         heat_destroy(h);
         return status;
     }
+    for (int k = 0; k < ground_kinds; k++) {
+        column_factors(&h->factors[0][k], &h->layers[k], config->step_s);
+        column_factors(&h->factors[1][k], &h->layers[k], (double)half_hour(h) * config->step_s);
+    }
     for (int s = 0; s < SURFACE_COUNT; s++) h->kind_of[s] = s == SURFACE_NONE ? SURFACE_BARE_SOIL : s;
     if (plants) h->kind_of[SURFACE_FOREST_BROADLEAF] = h->kind_of[SURFACE_FOREST_CONIFER] = ground_forest_floor;
     find_slots(h);
     const int64_t begun = (int64_t)floor(config->unix_s / config->step_s), spin = (int64_t)round(steps);
-    const int64_t wide = (int64_t)fmax(1, round(1800 / config->step_s)), fine = (int64_t)ceil(32 * 3600 / config->step_s);
+    const int64_t wide = half_hour(h), fine = (int64_t)ceil(8 * 3600 / config->step_s);
     h->first = h->index = begun - spin;
     start_columns(h);
     config->weather(&h->weather[1], (double)h->index * config->step_s, config->user);
-    remember(h);
-    while (begun - h->index > fine && begun - h->index > wide) advance(h, (int)wide); /* by half hours, till a day before */
+    remember(h, 1);
+    while (begun - h->index > fine && begun - h->index > wide) advance(h, (int)wide); /* by half hours, till the morning before */
     while (h->index < begun) advance(h, 1);
     keep_begun(h);
     back_to_begun(h);
@@ -441,11 +454,11 @@ Status heat_now(HeatNow **out, Heat *h, double unix_s, Arena *arena)
     while (at > (double)h->index) next_table(h);
     HeatNow *now = arena_alloc(arena, 1, sizeof *now);
     if (!now) return STATUS_NO_MEMORY;
-    const HeatTable *a = &h->table[0], *b = &h->table[1];
+    const GroundHeatTable *a = &h->table[0], *b = &h->table[1];
     const float      share = (float)(at - (double)(h->index - 1));
     now->share = (double)share;
-    now->table = (HeatTable){.unix_s = unix_s, .facets = a->facets, .air_k = a->air_k + (double)share * (b->air_k - a->air_k)};
-    const size_t floats = (sizeof(HeatTable) - offsetof(HeatTable, sun_k)) / sizeof(float);
+    now->table = (GroundHeatTable){.unix_s = unix_s, .facets = a->facets, .air_k = a->air_k + (double)share * (b->air_k - a->air_k)};
+    const size_t floats = (sizeof(GroundHeatTable) - offsetof(GroundHeatTable, sun_k)) / sizeof(float);
     blend(&now->table.sun_k[0][0], &a->sun_k[0][0], &b->sun_k[0][0], share, floats);
     memcpy(now->slot_d_enu, h->slot_d_enu, sizeof now->slot_d_enu);
     memcpy(now->kind_of, h->kind_of, sizeof now->kind_of);
@@ -466,7 +479,7 @@ static double by_up(const float k[heat_ups], double n_up)
 
 double heat_ground_k(const HeatNow *now, int kind, const double n_enu[3], double taken, double open, double dark)
 {
-    const HeatTable *t = &now->table;
+    const GroundHeatTable *t = &now->table;
     double           uv[2];
     heat_facet(uv, n_enu);
     const int    last = t->facets - 1;

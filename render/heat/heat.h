@@ -46,17 +46,17 @@ typedef struct HeatPast {
 } HeatPast;
 
 /* At a time of the grid, or between two. */
-typedef struct HeatTable {
+typedef struct GroundHeatTable {
     double unix_s;
     int    facets;
     double air_k;
     float  sun_k[ground_kinds][heat_most_facets * heat_most_facets]; /* [v * facets + u] */
     float  shade_k[ground_kinds][heat_ups], dark_k[ground_kinds][heat_ups], hidden_k[ground_kinds];
     float  slot_k[ground_kinds][heat_day_slots];                     /* of slot_d_enu: per unit cosine */
-} HeatTable;
+} GroundHeatTable;
 
 typedef struct HeatNow {
-    HeatTable table;
+    GroundHeatTable table;
     int       slots;                       /* half hours with the sun up; padded to a multiple of 8 with weight 0 */
     float     slot_d_enu[3][heat_day_slots];
     int       kind_of[SURFACE_COUNT];      /* forest floor for forests whose plants stand */

@@ -6,7 +6,9 @@
 struct ShadowMap {
     int      nx, ny, slots, stride; /* stride: slots, padded */
     double   x0_m, y0_m, cell_m;
-    float   *z_m, *leaf_area;       /* while it is made */
+    float   *z_m;                   /* while it is made, as all of these */
+    ShadowStand *stand;
+    float    most_m;                /* highest plant */
     uint8_t *shadow;                /* [ny][nx][stride] */
     uint8_t *open;                  /* [ny][nx] of 255 */
 };
@@ -41,31 +43,44 @@ static size_t cell_at(const ShadowMap *m, const Sweep *s, int row, int k)
 
 typedef struct Job {
     ShadowMap          *map;
-    const ShadowPlants *plants;
+    ShadowPlants       *plants;
+    const void         *user;
     float             (*d_enu)[shadow_most_slots];
     const Elevation    *elevation;
     bool                failed[shadow_most_slots];
 } Job;
 
-/* Direct light that plants let through on its way to the ground of a cell. */
-static double light_through(const ShadowMap *m, const ShadowPlants *plants, int i, int j, double x, double y, double up)
+static double area_above(const ShadowStand *s, double height_m)
 {
-    const double level = hypot(x, y), x_m = m->x0_m + i * m->cell_m, y_m = m->y0_m + j * m->cell_m;
-    const double ground_m = (double)m->z_m[(size_t)j * (size_t)m->nx + (size_t)i];
-    const double along_m = 0.5 * m->cell_m, most = plants->most_m / up, stride_m = level > 1e-3 ? fmin(along_m / level, most) : most;
+    if (height_m >= (double)s->top_m) return 0;
+    return (double)s->leaf_area * (height_m <= (double)s->base_m ? 1 : ((double)s->top_m - height_m) / (double)(s->top_m - s->base_m));
+}
+
+/* Direct light that plants let through on its way to the ground of a cell: a cell's width at a time. */
+static double light_through(const ShadowMap *m, int i, int j, double x, double y, double up)
+{
+    const double level = hypot(x, y), ground_m = (double)m->z_m[(size_t)j * (size_t)m->nx + (size_t)i];
+    const double most = (double)m->most_m / up, stride_m = level > 1e-3 ? fmin(m->cell_m / level, most) : most;
     double       depth = 0;
     for (double way_m = 0; way_m < most && depth < 8; way_m += stride_m) {
-        const double at_x = x_m + (way_m + 0.5 * stride_m) * x, at_y = y_m + (way_m + 0.5 * stride_m) * y;
-        const double ci = (at_x - m->x0_m) / m->cell_m, cj = (at_y - m->y0_m) / m->cell_m;
+        const double ci = i + (way_m + 0.5 * stride_m) * x / m->cell_m, cj = j + (way_m + 0.5 * stride_m) * y / m->cell_m;
         if (!(ci >= 0 && cj >= 0 && ci <= m->nx - 1 && cj <= m->ny - 1)) break;
-        const size_t there = (size_t)lround(cj) * (size_t)m->nx + (size_t)lround(ci);
-        if (m->leaf_area[there] == 0) continue;
-        const double there_m = (double)m->z_m[there];
-        const double low_m = ground_m + way_m * up - there_m, high_m = low_m + stride_m * up;
-        depth += 0.5 * (plants->area_above(plants->user, at_x, at_y, fmax(low_m, 0)) -
-                        plants->area_above(plants->user, at_x, at_y, fmax(high_m, 0))) / up;
+        const size_t       there = (size_t)(cj + 0.5) * (size_t)m->nx + (size_t)(ci + 0.5);
+        const ShadowStand *stand = &m->stand[there];
+        if (stand->leaf_area == 0) continue;
+        const double low_m = ground_m + way_m * up - (double)m->z_m[there];
+        depth += 0.5 * (area_above(stand, low_m) - area_above(stand, low_m + stride_m * up)) / up;
     }
     return exp(-depth);
+}
+
+/* Height of a shadow's edge at cell k of a row, from the edges of the row before, less what it drops. */
+static double edge_at(const double *before, const Sweep *s, int k, int wide)
+{
+    const double at = k + s->across;
+    const int    low = (int)floor(at);
+    if (low >= 0 && low + 1 < wide) return before[low] + (at - low) * (before[low + 1] - before[low]) - s->drop_m;
+    return low == wide - 1 && at == low ? before[low] - s->drop_m : -1e9;
 }
 
 static void fill_slot(void *user, int worker, int slot)
@@ -75,27 +90,30 @@ static void fill_slot(void *user, int worker, int slot)
     const double  x = (double)job->d_enu[0][slot], y = (double)job->d_enu[1][slot], up = (double)job->d_enu[2][slot];
     const Sweep   s = sweep_of(m, x, y, up);
     const int     wide = s.along_x ? m->ny : m->nx;
-    double       *edge = malloc(2 * (size_t)wide * sizeof *edge), *before = edge, *here = edge ? edge + wide : NULL;
+    double       *edge = malloc(4 * (size_t)wide * sizeof *edge); /* of the ground and of plants, two rows of each */
     (void)worker;
     job->failed[slot] = !edge;
     if (!edge) return;
-    for (int k = 0; k < wide; k++) before[k] = -INFINITY;
+    double *ground[2] = {edge, edge + wide}, *plants[2] = {edge + 2 * wide, edge + 3 * wide};
+    for (int k = 0; k < 4 * wide; k++) edge[k] = -1e9;
     for (int row = s.from; row != s.to; row += s.step) {
         for (int k = 0; k < wide; k++) {
             const size_t cell = cell_at(m, &s, row, k);
-            const double at = k + s.across, z_m = (double)m->z_m[cell];
-            const int    low = (int)floor(at);
-            double       shade_m = -INFINITY;
-            if (low >= 0 && low + 1 < wide) shade_m = before[low] + (at - low) * (before[low + 1] - before[low]) - s.drop_m;
-            else if (low == wide - 1 && at == low) shade_m = before[low] - s.drop_m;
-            double lit = isfinite(shade_m) ? clamp(0.5 - (shade_m - z_m) / s.soft_m, 0, 1) : 1;
-            if (job->plants && lit > 0)
-                lit *= light_through(m, job->plants, s.along_x ? row : k, s.along_x ? k : row, x, y, up);
+            const double z_m = (double)m->z_m[cell], shade_m = edge_at(ground[0], &s, k, wide);
+            double       lit = clamp(0.5 - (shade_m - z_m) / s.soft_m, 0, 1);
+            ground[1][k] = fmax(z_m, shade_m);
+            if (m->most_m > 0) {
+                const ShadowStand *stand = &m->stand[cell];
+                const double       crowns_m = fmax(edge_at(plants[0], &s, k, wide), z_m + (stand->leaf_area > 0 ? (double)stand->top_m : -1e6));
+                if (lit > 0 && crowns_m > z_m - s.drop_m) lit *= light_through(m, s.along_x ? row : k, s.along_x ? k : row, x, y, up);
+                plants[1][k] = crowns_m;
+            }
             m->shadow[cell * (size_t)m->stride + (size_t)slot] = (uint8_t)lround(255 * (1 - lit));
-            here[k] = fmax(z_m, isfinite(shade_m) ? shade_m : z_m);
         }
-        double *swap = before;
-        before = here, here = swap;
+        double *swap = ground[0];
+        ground[0] = ground[1], ground[1] = swap;
+        swap = plants[0];
+        plants[0] = plants[1], plants[1] = swap;
     }
     free(edge);
 }
@@ -109,8 +127,8 @@ static void fill_row(void *user, int worker, int j)
         const double x_m = m->x0_m + i * m->cell_m, y_m = m->y0_m + j * m->cell_m;
         const size_t cell = (size_t)j * (size_t)m->nx + (size_t)i;
         m->z_m[cell] = (float)elevation_height(job->elevation, x_m, y_m, NULL);
-        m->open[cell] = (uint8_t)(job->plants ? lround(255 * clamp(job->plants->open(job->plants->user, x_m, y_m), 0, 1)) : 255);
-        m->leaf_area[cell] = job->plants ? (float)job->plants->area_above(job->plants->user, x_m, y_m, 0) : 0;
+        if (job->plants) job->plants(&m->stand[cell], job->user, x_m, y_m);
+        m->open[cell] = (uint8_t)(job->plants ? lround(255 * clamp((double)m->stand[cell].open, 0, 1)) : 255);
     }
 }
 
@@ -122,7 +140,7 @@ static void run(Pool *pool, int count, PoolTask *task, void *user)
 }
 
 Status shadow_map_create(ShadowMap **out, const Elevation *elevation, double cell_m, int slots,
-                         float d_enu[3][shadow_most_slots], const ShadowPlants *plants, Pool *pool)
+                         float d_enu[3][shadow_most_slots], ShadowPlants *plants, const void *user, Pool *pool)
 {
     if (elevation->level_count < 1 || !(cell_m > 0) || slots < 0 || slots > shadow_most_slots) return STATUS_BAD_VALUE;
     const ElevationLevel *level = &elevation->level[0];
@@ -136,19 +154,21 @@ Status shadow_map_create(ShadowMap **out, const Elevation *elevation, double cel
     m->slots = slots, m->stride = (slots + 7) / 8 * 8;
     const size_t cells = (size_t)m->nx * (size_t)m->ny;
     m->z_m    = malloc(cells * sizeof *m->z_m);
+    m->stand = plants ? malloc(cells * sizeof *m->stand) : NULL;
     m->open   = malloc(cells);
     m->shadow = calloc(cells, (size_t)(m->stride > 0 ? m->stride : 1));
-    Job    job = {m, plants, d_enu, elevation, {false}};
-    Status status = m->z_m && m->leaf_area && m->open && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
+    Job    job = {m, plants, user, d_enu, elevation, {false}};
+    Status status = m->z_m && (m->stand || !plants) && m->open && m->shadow ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         run(pool, m->ny, fill_row, &job);
+        for (size_t k = 0; plants && k < cells; k++) m->most_m = fmaxf(m->most_m, m->stand[k].leaf_area > 0 ? m->stand[k].top_m : 0);
         run(pool, slots, fill_slot, &job);
         for (int s = 0; s < slots; s++)
             if (job.failed[s]) status = STATUS_NO_MEMORY;
     }
     free(m->z_m);
-    free(m->leaf_area);
-    m->z_m = m->leaf_area = NULL;
+    free(m->stand);
+    m->z_m = NULL, m->stand = NULL;
     if (status == STATUS_OK) *out = m;
     else shadow_map_destroy(m);
     return status;
@@ -158,7 +178,7 @@ void shadow_map_destroy(ShadowMap *m)
 {
     if (!m) return;
     free(m->z_m);
-    free(m->leaf_area);
+    free(m->stand);
     free(m->open);
     free(m->shadow);
     free(m);

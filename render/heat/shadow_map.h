@@ -11,21 +11,19 @@
 
 typedef struct ShadowMap ShadowMap;
 
-/* Plants: leaf area above a height over the ground, and the share of an even sky that reaches the ground; none higher
- * than most_m. */
-typedef struct ShadowPlants {
-    double    (*area_above)(const void *user, double x_m, double y_m, double height_m);
-    double    (*open)(const void *user, double x_m, double y_m);
-    const void *user;
-    double      most_m;
-} ShadowPlants;
+/* Plants of a place: leaf area index between base and top over the ground, 0: none; and the share of an even sky that
+ * reaches the ground. */
+typedef struct ShadowStand {
+    float leaf_area, base_m, top_m, open;
+} ShadowStand;
+typedef void ShadowPlants(ShadowStand *out, const void *user, double x_m, double y_m);
 
 enum { shadow_most_slots = 48, shadow_most_cells = 4000000 };
 
 /* cell_m: made larger where the grid would have more than shadow_most_cells. d_enu: towards the sun, d_enu[2] > 0. plants:
  * NULL: none. pool: NULL: one thread; the same bits either way. */
 Status shadow_map_create(ShadowMap **out, const Elevation *elevation, double cell_m, int slots,
-                         float d_enu[3][shadow_most_slots], const ShadowPlants *plants, Pool *pool);
+                         float d_enu[3][shadow_most_slots], ShadowPlants *plants, const void *user, Pool *pool);
 void   shadow_map_destroy(ShadowMap *map); /* accepts NULL */
 /* Shares in the shade at a place, of 255, shadow[slots, padded to a multiple of 8 with 0]; and the share of its sky that
  * is open past plants. Beyond the grid: open. */

@@ -24,7 +24,12 @@ typedef struct SurfaceFlux {
     double     emissivity;
     double     roughness_m;
     double     resistance_s_m;     /* to vapour; INFINITY: nothing evaporates */
+    /* of surface_flux_prepare: speed of heat in neutral air; Richardson number of 1 K; the unstable form's factor */
+    double     neutral_mps, stable_per_k, unstable, air_kg_m3;
 } SurfaceFlux;
+
+/* After the members above: what does not depend on the surface's temperature. */
+void surface_flux_prepare(SurfaceFlux *law);
 
 /* Saturation over water, Pa. */
 double saturation_pa(double temp_k);

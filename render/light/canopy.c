@@ -186,9 +186,15 @@ double canopy_leaf_area_above(const Canopy *c, double x_m, double y_m, double he
     return sum;
 }
 
-double canopy_open(const Canopy *c, double x_m, double y_m)
+void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
 {
-    return gap_at(c, 0.5 * canopy_leaf_area_above(c, x_m, y_m, 0));
+    const double x = floor((x_m - c->x0_m) / cell_m), y = floor((y_m - c->y0_m) / cell_m);
+    *out = (CanopyStand){.open = 1};
+    if (!(x >= 0 && y >= 0 && x < c->nx && y < c->ny)) return;
+    const CanopyCell *cell = &c->cell[(size_t)y * (size_t)c->nx + (size_t)x];
+    if (cell->leaf_area == 0) return;
+    *out = (CanopyStand){leaf_area_step * cell->leaf_area, cell->base * top_step_m, cell->top * top_step_m,
+                         gap_at(c, 0.5 * leaf_area_step * cell->leaf_area)};
 }
 
 /* ---- hits ------------------------------------------------------------------------------------- */

@@ -36,9 +36,11 @@ void   canopy_destroy(Canopy *canopy);
 
 /* Leaf area index above a place, height_m above its ground. */
 double canopy_leaf_area_above(const Canopy *canopy, double x_m, double y_m, double height_m);
-/* Share of an even sky that reaches the ground there. */
-double canopy_open(const Canopy *canopy, double x_m, double y_m);
-static const double canopy_most_m = 64; /* no plant of the grid is higher */
+/* Plants of the cell there: leaf area, where it is, and the share of an even sky that reaches the ground. */
+typedef struct CanopyStand {
+    double leaf_area, base_m, top_m, open;
+} CanopyStand;
+void canopy_stand(CanopyStand *out, const Canopy *canopy, double x_m, double y_m);
 /* 2 E3(x), x >= 0: within 1e-4. */
 double canopy_gap(double x);
 

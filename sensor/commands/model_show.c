@@ -188,7 +188,7 @@ static Status light(Stage *stage, const RenderRequest *request)
     const Status status = sun_at(&sun, stage->unix_s, &world->frame.origin, weather.pressure_mbar,
                                  weather.air_temp_k - 273.15, NAN);
     if (status != STATUS_OK) return status;
-    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
+    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, 0};
     const AirEye    eye = {request->view.p_enu[2], render_air_bands(request->bands, request->optical), &request->view};
     return air_at(&stage->air, &source, &weather, &sun, &eye, stage->pool, stage->air_arena);
 }

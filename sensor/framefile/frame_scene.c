@@ -134,6 +134,7 @@ Status frame_scene_open(FrameScene *s, const FrameFile *file, bool forced, const
     if (status == STATUS_OK)
         status = frame_world(&s->world, &s->config, s->catalog, &s->landscape, &file->ground.frame, isa);
     if (status == STATUS_OK) status = frame_ground_plant(&s->world, &s->woods, file, &s->config, isa, pool);
+    if (status == STATUS_OK) status = frame_world_warm(&s->world, &s->config, file->unix_s, pool);
     s->snapshot.effect_table = &s->effects;
     return status;
 }

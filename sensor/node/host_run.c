@@ -215,6 +215,7 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     if (status == STATUS_OK) status = frame_world(world, &o->config, run->catalog, landscape, &frame, o->isa);
     if (status == STATUS_OK)
         status = frame_world_plant(world, woods->on ? &woods->woods : NULL, &o->config, o->isa, run->pool);
+    if (status == STATUS_OK) status = frame_world_warm(world, &o->config, *unix_s, run->pool);
     if (status != STATUS_OK) return status;
     report_visibility(choices, &o->config, world->atmosphere);
     report_air_temp(choices, &o->config, world->atmosphere, elevation_height(&landscape->elevation, 0, 0, NULL));

@@ -100,7 +100,7 @@ static Status light(TrialFrame *f)
         sun_at(&f->sun, scene->unix_s, &world->frame.origin, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
     if (status != STATUS_OK) return status;
     const double    ground_m = elevation_height(&scene->landscape->elevation, 0, 0, NULL);
-    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
+    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, 0};
     const AirEye    eye = {f->request.view.p_enu[2] - ground_m, render_air_bands(f->request.bands, f->request.optical),
                            &f->request.view};
     return air_at(&f->air, &source, &weather, &f->sun, &eye, f->pool, f->arena);

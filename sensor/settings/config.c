@@ -206,7 +206,7 @@ static const Setting keys[] = {
     {"heat.facets", SETTING_INT, AT(heat.facets), 3, 17, NULL, "",
      "slopes and azimuths of the ground's heat: a grid of so many a side, odd"},
     {"heat.shadow_m", SETTING_DOUBLE, AT(heat.shadow_m), 0, 1000, NULL, "m",
-     "cells of the shadows that relief and plants cast over the day, half of it with plants; 0: no shadow cools the ground"},
+     "cells of the shadows that relief and plants cast over the day; 0: no shadow cools the ground"},
     {"weather.visibility_m", SETTING_DOUBLE, AT(weather.visibility_m), 100, 300000, NULL, "m", "meteorological range"},
     {"weather.air_temp_k", SETTING_DOUBLE, AT(weather.air_temp_k), 220, 330, NULL, "K",
      "at ground level at the terrain origin, with the atmosphere's lapse above; unset: the atmosphere's own"},
@@ -373,7 +373,7 @@ Config config_default(void)
     c.weather.air_range_k           = 10;
     c.weather.humidity_pct          = 60;
     c.heat.step_s                   = 600;
-    c.heat.facets                   = 9;
+    c.heat.facets                   = 7;
     c.heat.shadow_m                 = 16;
     strcpy(c.terrain.vertical, "auto");
     strcpy(c.terrain.ground, "auto");

@@ -47,7 +47,7 @@ static Sun sun_at_elevation(double elevation_deg)
 static Air air_of(const Weather *weather, double elevation_deg, double eye_m, unsigned bands, const View *view)
 {
     const Sun sun = sun_at_elevation(elevation_deg);
-    const AirSource source = {atmosphere, mwir, lwir};
+    const AirSource source = {atmosphere, mwir, lwir, 0};
     const AirEye eye = {eye_m, bands, view};
     Air air;
     arena_reset(arena);
@@ -242,7 +242,7 @@ static void daylight_needs_no_eye(void **state)
     (void)state;
     static Daylight sums, light;
     const Weather   weather = weather_default();
-    const AirSource source = {atmosphere, mwir, lwir};
+    const AirSource source = {atmosphere, mwir, lwir, 0};
     const unsigned  bands = 1 << AIR_PAN | 1 << AIR_MWIR | 1 << AIR_LWIR;
     for (double elevation_deg = -20; elevation_deg <= 80; elevation_deg += 25) {
         const Sun sun = sun_at_elevation(elevation_deg);

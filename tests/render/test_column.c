@@ -52,7 +52,7 @@ static void go(Run *r, const Load *load, double until_s, double dt_s)
     while (r->t_s < until_s - 1e-6) {
         const Now now = {*load, r->t_s, dt_s};
         const ColumnBoundary b = {flux, law_at, &now, 0, 0.001};
-        column_step(&r->state, &r->column, &b, dt_s);
+        column_step(&r->state, &r->column, NULL, &b, dt_s);
         r->t_s += dt_s;
     }
 }
@@ -169,7 +169,7 @@ static void steady_layers(void **state)
     const Now now = {{.film_w_m2k = 25, .out_k = 310}, 0, 1e4};
     r.column.conductance_w_m2k[r.column.nodes - 1] = 8;
     const ColumnBoundary b = {flux, law_at, &now, 295, 0.001};
-    for (int k = 0; k < 50; k++) column_step(&r.state, &r.column, &b, now.dt_s);
+    for (int k = 0; k < 50; k++) column_step(&r.state, &r.column, NULL, &b, now.dt_s);
     CHECK_NEAR(25 * (310 - r.state.temp_k[0]), 8.188922051969, 1e-8);
 }
 
