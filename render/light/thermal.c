@@ -91,7 +91,7 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
                 const double   above_k = snapshot->entity[hits->entity[i] - 1].heat[role];
                 temp_k[i] = (float)(passive_part_k(air, here_k, m, (double)hits->n_enu[2][i], sun_level_w_m2, film) + above_k);
             } else if (!air->heat || hits->surface[i] == SURFACE_NONE) {
-                temp_k[i] = (float)here_k;
+                temp_k[i] = (float)(here_k + (double)warmth_k[i]);
             } else {
                 const double p[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
                 const double n[3] = {(double)hits->n_enu[0][i], (double)hits->n_enu[1][i], (double)hits->n_enu[2][i]};

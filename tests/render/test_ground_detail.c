@@ -22,7 +22,6 @@ static int open_world(void **state)
         statistics[s][DETAIL_ALBEDO] = (DetailStatistics){0.2, 0.8, 0.2, 2.5, 0.8, 1};
         statistics[s][DETAIL_WARMTH] = (DetailStatistics){0.9, 1.0, 0.2, 2.5, 0.6, -0.3};
         m->surface[s] = m->surface[SURFACE_GRASS];
-        m->ground_rise_k[s] = m->ground_fall_k[s] = 0;
     }
     detail_table_close(hand.world.detail);
     hand.world.detail = NULL;

@@ -64,7 +64,7 @@ static void leaf_is_in_balance(void **state)
     for (int k = 0; k < 4 * 3 * 3 * 3; k++) {
         const double   sun = direct[k % 3], air = air_k[k / 3 % 3], share = open[k / 9 % 3];
         const Daylight light = day(sun, sun / 6, 90, wind[k / 27]);
-        const double   found = leaf_temp_k(&light, &m, air, share), expected = leaf_by_bisection(&light, &m, air, share);
+        const double   found = leaf_temp_k(&light, &m, air, share, share), expected = leaf_by_bisection(&light, &m, air, share);
         most = fmax(most, fabs(found - expected));
         warmest = fmax(warmest, found - air), coldest = fmin(coldest, found - air);
         CHECK_NEAR(found, expected, 0.05 + 0.05 * fabs(expected - air));
@@ -73,9 +73,9 @@ static void leaf_is_in_balance(void **state)
     CHECK(warmest < 15 && coldest > -8);
     /* by day warmer in calm air than in wind, and in the open than in the shade; by night colder than the air */
     const Daylight calm = day(800, 120, 90, 0.5), windy = day(800, 120, 90, 8), night = day(0, 0, 90, 2);
-    CHECK(leaf_temp_k(&calm, &m, 295, 1) > leaf_temp_k(&windy, &m, 295, 1));
-    CHECK(leaf_temp_k(&calm, &m, 295, 1) > leaf_temp_k(&calm, &m, 295, 0.1));
-    CHECK(leaf_temp_k(&night, &m, 285, 1) < 285);
+    CHECK(leaf_temp_k(&calm, &m, 295, 1, 1) > leaf_temp_k(&windy, &m, 295, 1, 1));
+    CHECK(leaf_temp_k(&calm, &m, 295, 1, 1) > leaf_temp_k(&calm, &m, 295, 0.1, 0.1));
+    CHECK(leaf_temp_k(&night, &m, 285, 1, 1) < 285);
 }
 
 enum { shells_most = 40 };
