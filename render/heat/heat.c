@@ -513,3 +513,17 @@ double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uin
     for (int i = 0; i < 8; i++) total += (double)sum[0][i], lost += (double)sum[1][i];
     return total > 1e-3 ? lost / (255 * total) : 0;
 }
+
+void heat_scales(double *sun, double *sky, const HeatNow *now, int kind)
+{
+    const HeatPast *p = &now->past[1];
+    const double    shade_k = (double)now->table.shade_k[kind][heat_ups - 1];
+    const double    sunlit_k = heat_ground_k(now, kind, (const double[3]){0, 0, 1}, 0, 1, 1);
+    double          sun_k = 0, sky_k = 0;
+    for (int i = 0; i < p->count; i++) {
+        sun_k += (double)p->sun_k[kind][i] * fmax(p->sun_d_enu[i][2], 0);
+        sky_k += (double)p->sky_k[kind][i];
+    }
+    *sun = fabs(sun_k) > 0.5 ? clamp((sunlit_k - shade_k) / sun_k, 0.5, 2) : 1;
+    *sky = fabs(sky_k) > 0.5 ? clamp((shade_k - (double)now->table.hidden_k[kind]) / sky_k, 0.5, 2) : 1;
+}

@@ -89,6 +89,10 @@ static inline void heat_facet(double uv[2], const double n_enu[3])
  * absorptance over that of its kind. */
 double heat_ground_k(const HeatNow *now, int kind, const double n_enu[3], double taken, double open, double dark);
 
+/* Kelvins that shade of all the past takes from level ground, and a hidden sky, over the sums of their responses: what linear
+ * responses are scaled by. 1 where there is little to scale. */
+void   heat_scales(double *sun, double *sky, const HeatNow *now, int kind);
+
 /* Share of the past direct sun on a normal that shade took: shadow[slot], 0 .. 255, are the shares of each slot. */
 double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uint8_t *shadow);
 

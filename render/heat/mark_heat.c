@@ -23,7 +23,7 @@ enum { most_entries = 1 << 20 };
 
 struct MarkHeat {
     const HeatNow *now;
-    double unix_s;
+    double unix_s, sun_scale[ground_kinds], sky_scale[ground_kinds];
     int    stands, tracks, burns;
     Stand *stand;
     Track *track;
@@ -129,6 +129,7 @@ Status mark_heat_create(MarkHeat **out, const GroundMarks *marks, const LocalFra
     MarkHeat *m = arena_alloc(arena, 1, sizeof *m);
     if (!m) return STATUS_NO_MEMORY;
     *m = (MarkHeat){.now = now, .unix_s = unix_s, .buckets = 1024};
+    for (int k = 1; k < ground_kinds; k++) heat_scales(&m->sun_scale[k], &m->sky_scale[k], now, k);
     while (m->buckets < all && m->buckets < 1 << 17) m->buckets *= 2;
     const int64_t room = 96 * (int64_t)marks->stands + 8 * (int64_t)marks->tracks + 64 * (int64_t)marks->burns + 4096;
     m->capacity = (int)(room < most_entries ? room : most_entries);
@@ -192,7 +193,8 @@ static void sun_then(double d_enu[3], const HeatPast *p, int i, double unix_s)
 }
 
 /* Kelvins that the stand took from the ground, by one time of the grid. Samples ten minutes apart. */
-static double stand_k(const Stand *s, const HeatPast *p, int kind, const double p_enu[3], const double n_enu[3], double lit)
+static double stand_k(const MarkHeat *m, const Stand *s, const HeatPast *p, int kind, const double p_enu[3], const double n_enu[3],
+                      double lit)
 {
     double taken_k = 0, sky_k = 0;
     for (int i = 0; i < p->count; i++) {
@@ -213,8 +215,7 @@ static double stand_k(const Stand *s, const HeatPast *p, int kind, const double 
         }
         taken_k += share * along * (double)p->sun_k[kind][i] * lit;
     }
-    if (sky_k != 0) taken_k += sky_k * hidden_share(s, p_enu);
-    return taken_k;
+    return m->sun_scale[kind] * taken_k + (sky_k != 0 ? m->sky_scale[kind] * sky_k * hidden_share(s, p_enu) : 0);
 }
 
 /* Kelvins that a pulse of heat, age_s ago, still makes. Within the newest interval: of a body without end. */
@@ -266,8 +267,8 @@ bool mark_heat_at(MarkedGround *out, const MarkHeat *m, int kind, const double p
         if (at->mark < m->stands) {
             const Stand *s = &m->stand[at->mark];
             if (hypot(p_enu[0] - s->p_enu[0], p_enu[1] - s->p_enu[1]) > s->reach_m) continue;
-            const double before_k = stand_k(s, &m->now->past[0], kind, from_enu, n_enu, lit);
-            const double after_k = stand_k(s, &m->now->past[1], kind, from_enu, n_enu, lit);
+            const double before_k = stand_k(m, s, &m->now->past[0], kind, from_enu, n_enu, lit);
+            const double after_k = stand_k(m, s, &m->now->past[1], kind, from_enu, n_enu, lit);
             out->add_k -= before_k + m->now->share * (after_k - before_k);
         } else if (at->mark < m->stands + m->tracks) {
             add_track(out, m, &m->track[at->mark - m->stands], kind, p_enu);

@@ -1,0 +1,240 @@
+/* The ground's heat over a day: tables against columns run by themselves, shade of hours past against columns shaded in
+ * those hours, and what everyone knows of slopes, snow, water and nights. */
+#include "tests/render/heat_day.h"
+
+static GroundKinds kinds;
+static Arena      *arena;
+
+static int open_kinds(void **state)
+{
+    (void)state;
+    paper_kinds(&kinds);
+    arena = arena_create();
+    return arena == NULL;
+}
+
+static int close_kinds(void **state)
+{
+    (void)state;
+    arena_destroy(arena);
+    return 0;
+}
+
+static HeatNow *at(Heat *h, double hour)
+{
+    HeatNow *now;
+    CHECK(heat_now(&now, h, paper_unix_s + 3600 * hour, arena) == STATUS_OK);
+    return now;
+}
+
+static const double level[3] = {0, 0, 1};
+
+static double ground_k(const HeatNow *now, int kind, double x, double y, double z)
+{
+    double n[3];
+    CHECK(v3_normalize(n, (double[3]){x, y, z}));
+    return heat_ground_k(now, kind, n, 0, 1, 1);
+}
+
+/* A column by itself from the same beginning: eight days before, so that its start is forgotten. shaded: from and to, hours
+ * of the last day, without direct sun. */
+static double column_k(int kind, const PaperDay *day, const double n_enu[3], double until_h, double from_h, double to_h)
+{
+    static const double step_s = 300, before_s = 3 * 86400;
+    Column        layers;
+    GroundColumn  c;
+    GroundWeather w[2];
+    CHECK(ground_layers(&layers, &kinds.kind[kind], &(GroundGrid){0.0015, 1.2, 3, 0.01}) == STATUS_OK);
+    ground_column_start(&c, &kinds.kind[kind], &layers, day->air_k + 3);
+    paper_weather(&w[0], paper_unix_s - before_s, day);
+    for (double t = -before_s; t < 3600 * until_h - 1; t += step_s) {
+        const double hour = (t + 0.5 * step_s) / 3600;
+        const bool   shaded = hour > from_h && hour < to_h;
+        paper_weather(&w[1], paper_unix_s + t + step_s, day);
+        const GroundExposure e = {{n_enu[0], n_enu[1], n_enu[2]}, shaded ? 0 : 1, 1, c.state.temp_k[0]};
+        ground_column_step(&c, 0.01, &w[0], &w[1], &e, step_s);
+        w[0] = w[1];
+    }
+    return c.state.temp_k[0];
+}
+
+static void tables_are_columns(void **state)
+{
+    (void)state;
+    static const int which[] = {SURFACE_GRASS, SURFACE_BARE_SOIL, SURFACE_ROAD, SURFACE_SAND, SURFACE_ROCK};
+    static const double hours[] = {5, 13, 20};
+    Heat  *h = paper_heat(&kinds, &paper_summer, 4, NULL);
+    double worst_k = 0;
+    for (int t = 0; t < 3; t++) {
+        const HeatNow *now = at(h, hours[t]);
+        for (int k = 0; k < 5; k++)
+            worst_k = fmax(worst_k, fabs(ground_k(now, which[k], 0, 0, 1) - column_k(which[k], &paper_summer, level, hours[t], 0, 0)));
+        arena_reset(arena);
+    }
+    print_message("level ground against columns run by themselves: %.2f K\n", worst_k);
+    CHECK(worst_k < 0.8); /* what two days of spin-up leave of deep ground, and the elements */
+    heat_destroy(h);
+}
+
+/* Sun 30 degrees up in the east: the balance of a slope facing it and one facing away. */
+static void slopes_face_the_sun(void **state)
+{
+    (void)state;
+    Heat          *h = paper_heat(&kinds, &paper_summer, 0, NULL);
+    const double   tilt = 30 * rad_per_deg;
+    const HeatNow *morning = at(h, 7.7), *evening = at(h, 16.3), *night = at(h, 27);
+    const double   low = sin(tilt), high = cos(tilt);
+    const double   east_am = ground_k(morning, SURFACE_GRASS, low, 0, high), west_am = ground_k(morning, SURFACE_GRASS, -low, 0, high);
+    const double   east_pm = ground_k(evening, SURFACE_GRASS, low, 0, high), west_pm = ground_k(evening, SURFACE_GRASS, -low, 0, high);
+    const double   wall_e = ground_k(morning, SURFACE_BUILT, 1, 0, 0), wall_w = ground_k(morning, SURFACE_BUILT, -1, 0, 0);
+    print_message("slopes of 30 degrees, east less west: %+.1f K in the morning, %+.1f K in the afternoon; walls %+.1f K\n",
+                  east_am - west_am, east_pm - west_pm, wall_e - wall_w);
+    CHECK(east_am - west_am > 6 && east_am - west_am < 25);
+    CHECK(west_pm - east_pm > 6 && west_pm - east_pm < 25);
+    CHECK(wall_e - wall_w > 6);
+    CHECK(fabs(ground_k(night, SURFACE_GRASS, low, 0, high) - ground_k(night, SURFACE_GRASS, -low, 0, high)) < 1.5);
+    heat_destroy(h);
+    arena_reset(arena);
+}
+
+/* Normals between the facets, against columns run for them. */
+static void facets_are_close(void **state)
+{
+    (void)state;
+    static const double n[][3] = {{0.3, 0.1, 0.95}, {-0.5, 0.4, 0.77}, {0.2, -0.7, 0.68}, {-0.1, -0.2, 0.97}, {0.75, 0.6, 0.28}};
+    Heat  *h = paper_heat(&kinds, &paper_summer, 4, NULL);
+    double sum = 0;
+    for (int k = 0; k < 5; k++) {
+        double unit[3];
+        CHECK(v3_normalize(unit, n[k]));
+        const double found = heat_ground_k(at(h, 9), SURFACE_DRY_GRASS, unit, 0, 1, 1), want = column_k(SURFACE_DRY_GRASS, &paper_summer, unit, 9, 0, 0);
+        print_message("normal %+.1f %+.1f: %+.2f K\n", unit[0], unit[1], found - want);
+        CHECK_NEAR(found, want, 2.5);
+        sum += (found - want) * (found - want) / 5;
+    }
+    CHECK(sqrt(sum) < 1.3);
+    heat_destroy(h);
+    arena_reset(arena);
+}
+
+/* In the shade for some hours of the day: the share of slots in those hours, against a column without that sun. */
+static void shade_of_the_hours_before(void **state)
+{
+    (void)state;
+    static const int which[] = {SURFACE_GRASS, SURFACE_BARE_SOIL, SURFACE_ROAD};
+    static const double from_h[] = {6, 9, 9, 12, 4}, to_h[] = {9, 12, 12, 15, 20}, until_h[] = {9.5, 12, 14, 18, 13};
+    Heat *h = paper_heat(&kinds, &paper_summer, 4, NULL);
+    for (int c = 0; c < 5; c++) {
+        const HeatNow *now = at(h, until_h[c]);
+        uint8_t shadow[heat_day_slots] = {0};
+        for (int s = 0; s < now->slots; s++) {
+            double hour = 0.25; /* the half hour with the sun in that place */
+            for (double least = INFINITY, mid = 0.25; mid < 24; mid += 0.5) {
+                GroundWeather w;
+                double        miss[3];
+                paper_weather(&w, paper_unix_s + 3600 * mid, &paper_summer);
+                for (int k = 0; k < 3; k++) miss[k] = w.sun_d_enu[k] - (double)now->slot_d_enu[k][s];
+                if (v3_length(miss) < least) least = v3_length(miss), hour = mid;
+            }
+            shadow[s] = hour > from_h[c] && hour < to_h[c] ? 255 : 0;
+        }
+        for (int k = 0; k < 3; k++) {
+            const double taken = heat_taken(now, which[k], level, shadow);
+            const double sunlit_k = heat_ground_k(now, which[k], level, 0, 1, 1), found_k = heat_ground_k(now, which[k], level, taken, 1, 1);
+            const double want_k = column_k(which[k], &paper_summer, level, until_h[c], from_h[c], to_h[c]) -
+                                  column_k(which[k], &paper_summer, level, until_h[c], 0, 0);
+            print_message("%s at %.1f h, shaded %g to %g h: %.2f K, column %.2f K (%.2f of the sun)\n", kinds.kind[which[k]].name,
+                          until_h[c], from_h[c], to_h[c], found_k - sunlit_k, want_k, taken);
+            CHECK_NEAR(found_k - sunlit_k, want_k, 0.5 + 0.12 * fabs(want_k));
+        }
+        arena_reset(arena);
+    }
+    heat_destroy(h);
+}
+
+static void what_everyone_knows(void **state)
+{
+    (void)state;
+    Heat          *h = paper_heat(&kinds, &paper_summer, 0, NULL);
+    const HeatNow *noon = at(h, 13), *dawn = at(h, 28);
+    double         spread = 0, mean = 0, water[2] = {400, 0};
+    int            count = 0;
+    for (int s = 1; s < SURFACE_COUNT; s++) {
+        const double day_k = ground_k(noon, s, 0, 0, 1), night_k = ground_k(dawn, s, 0, 0, 1);
+        print_message("%-17s noon %.1f  dawn %.1f K\n", kinds.kind[s].name, day_k, night_k);
+        if (s == SURFACE_SNOW) {
+            CHECK(day_k <= 273.1501);
+            continue;
+        }
+        if (s != SURFACE_WATER) CHECK(day_k > night_k + 2);
+        mean += night_k, spread += night_k * night_k, count++;
+    }
+    mean /= count;
+    print_message("spread of the classes at dawn: %.1f K\n", sqrt(spread / count - mean * mean));
+    CHECK(sqrt(spread / count - mean * mean) > 1);
+    for (int hour = 0; hour < 24; hour++) {
+        const double k = ground_k(at(h, hour), SURFACE_WATER, 0, 0, 1);
+        water[0] = fmin(water[0], k), water[1] = fmax(water[1], k);
+    }
+    print_message("water over the day: %.2f K\n", water[1] - water[0]);
+    CHECK(water[1] - water[0] < 2); /* follows days */
+    CHECK(ground_k(noon, SURFACE_ROAD, 0, 0, 1) > ground_k(noon, SURFACE_GRASS, 0, 0, 1) + 5);
+    CHECK(ground_k(dawn, SURFACE_ROAD, 0, 0, 1) > ground_k(dawn, SURFACE_GRASS, 0, 0, 1));
+    CHECK(ground_k(noon, SURFACE_ROCK, 0, 0, 1) < ground_k(noon, SURFACE_SAND, 0, 0, 1)); /* it conducts */
+    /* dark ground by day warmer, by night as all */
+    CHECK(heat_ground_k(noon, SURFACE_BARE_SOIL, level, 0, 1, 1.2) > heat_ground_k(noon, SURFACE_BARE_SOIL, level, 0, 1, 0.8) + 2);
+    /* under crowns: colder by day, warmer by night */
+    CHECK(heat_ground_k(noon, SURFACE_GRASS, level, 0.9, 0.2, 1) < heat_ground_k(noon, SURFACE_GRASS, level, 0, 1, 1) - 3);
+    CHECK(heat_ground_k(dawn, SURFACE_GRASS, level, 0.9, 0.2, 1) > heat_ground_k(dawn, SURFACE_GRASS, level, 0, 1, 1) + 0.5);
+    heat_destroy(h);
+    arena_reset(arena);
+}
+
+/* The same bits whatever was asked before, and for any number of threads; no steps at times of the grid. */
+static void a_function_of_time_alone(void **state)
+{
+    (void)state;
+    Pool *pool;
+    CHECK(pool_create(&pool, 3) == STATUS_OK);
+    Heat *one = paper_heat(&kinds, &paper_summer, 10, NULL), *three = paper_heat(&kinds, &paper_summer, 10, pool);
+    static const double hours[] = {10.02, 12.5, 11.03, 10.0, 13.9, 12.5};
+    HeatNow *first = NULL;
+    for (int k = 0; k < 6; k++) {
+        HeatNow *a = at(one, hours[k]), *b = at(three, hours[5 - k]);
+        if (k == 1) first = a;
+        if (k == 5) CHECK(memcmp(first, a, sizeof *a) == 0);
+        if (k == 0) CHECK(memcmp(at(one, 12.5), b, sizeof *b) == 0);
+    }
+    const double before = ground_k(at(one, 12 - 1e-6), SURFACE_SAND, 0, 0, 1), after = ground_k(at(one, 12 + 1e-6), SURFACE_SAND, 0, 0, 1);
+    CHECK_NEAR(before, after, 1e-3);
+    CHECK(memcmp(at(one, 5), at(one, 10), offsetof(HeatNow, slots)) != 0 || ground_k(at(one, 5), SURFACE_SAND, 0, 0, 1) == ground_k(at(one, 10), SURFACE_SAND, 0, 0, 1));
+    heat_destroy(one);
+    heat_destroy(three);
+    pool_destroy(pool);
+    arena_reset(arena);
+}
+
+static void settings_out_of_range(void **state)
+{
+    (void)state;
+    HeatConfig c = heat_default_config();
+    Heat      *h = NULL;
+    c.weather = paper_weather, c.user = &paper_summer;
+    const HeatConfig good = c;
+    c.facets = 8;
+    CHECK(heat_create(&h, &kinds, &c, false) == STATUS_BAD_VALUE);
+    c = good, c.step_s = 0;
+    CHECK(heat_create(&h, &kinds, &c, false) == STATUS_BAD_VALUE);
+    c = good, c.unix_s = NAN;
+    CHECK(heat_create(&h, &kinds, &c, false) == STATUS_BAD_VALUE && h == NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tables_are_columns), cmocka_unit_test(slopes_face_the_sun), cmocka_unit_test(facets_are_close),
+        cmocka_unit_test(shade_of_the_hours_before), cmocka_unit_test(what_everyone_knows),
+        cmocka_unit_test(a_function_of_time_alone), cmocka_unit_test(settings_out_of_range),
+    };
+    return cmocka_run_group_tests(tests, open_kinds, close_kinds);
+}
