@@ -1,0 +1,118 @@
+/* Shadows over the day on a grid: the length of a ridge's shadow by its height and the sun's, at any azimuth; what an even
+ * stand lets through by Beer's law; the ground's own slopes; bounds. */
+#include "tests/check.h"
+#include "render/heat/shadow_map.h"
+
+enum { posts = 201 };
+static const double spacing_m = 8;
+static Elevation    ground;
+
+/* Flat, but for a ridge of high_m that stands where x is within half a post of 0. */
+static void ridge(double high_m)
+{
+    elevation_destroy(&ground);
+    ground = (Elevation){0};
+    CHECK(elevation_level_create(&ground, 0, posts, posts, -800, -800, spacing_m, -100, 1.0 / 64) == STATUS_OK);
+    for (int t = 0; t < ground.level[0].tiles_x * ground.level[0].tiles_y; t++) ground.level[0].tile[t] = (ElevationTile){0, 0};
+    ground.level[0].plain = true;
+    for (int j = 0; j < posts; j++)
+        for (int i = 0; i < posts; i++)
+            elevation_set_post(&ground.level[0], i, j, (int32_t)(64 * (100 + (i == posts / 2 ? high_m : 0))));
+    elevation_build_pyramids(&ground);
+}
+
+static void slot(float d[3][shadow_most_slots], int s, double azimuth_deg, double high_deg)
+{
+    const double a = azimuth_deg * rad_per_deg, h = high_deg * rad_per_deg;
+    d[0][s] = (float)(sin(a) * cos(h)), d[1][s] = (float)(cos(a) * cos(h)), d[2][s] = (float)sin(h);
+}
+
+static void length_of_a_shadow(void **state)
+{
+    (void)state;
+    static const double azimuth[] = {90, 90, 60, 120, 270, 135}, high[] = {20, 45, 20, 30, 15, 25};
+    float      d[3][shadow_most_slots] = {{0}};
+    ShadowMap *map;
+    Pool      *pool;
+    ridge(40);
+    for (int s = 0; s < 6; s++) slot(d, s, azimuth[s], high[s]);
+    CHECK(pool_create(&pool, 2) == STATUS_OK);
+    CHECK(shadow_map_create(&map, &ground, 8, 6, d, NULL, NULL, pool) == STATUS_OK);
+    for (int s = 0; s < 6; s++) {
+        /* across the ridge */
+        const double reach_m = 40 / tan(high[s] * rad_per_deg) * fabs(sin(azimuth[s] * rad_per_deg));
+        const double away = azimuth[s] < 180 ? -1 : 1;
+        uint8_t      shadow[shadow_most_slots];
+        double       open, shaded_m = 0;
+        for (double x = 12; x < 400; x += 2) {
+            shadow_map_at(shadow, &open, map, away * x, 0);
+            shaded_m += 2 * shadow[s] / 255.0;
+            CHECK(open == 1);
+        }
+        shadow_map_at(shadow, &open, map, -away * 40, 0);
+        CHECK(shadow[s] == 0);
+        print_message("sun %g, %g degrees up: shaded to %.0f m, %.0f m by its height\n", azimuth[s], high[s], 12 + shaded_m, reach_m);
+        CHECK_NEAR(12 + shaded_m, reach_m, 8);
+    }
+    uint8_t shadow[shadow_most_slots];
+    double  open;
+    shadow_map_at(shadow, &open, map, 5000, 0);
+    CHECK(shadow[0] == 0 && shadow[5] == 0 && open == 1);
+    shadow_map_at(shadow, &open, map, NAN, 0);
+    CHECK(shadow[0] == 0 && open == 1);
+    shadow_map_destroy(map);
+    pool_destroy(pool);
+}
+
+static void even_stand(ShadowStand *out, const void *user, double x_m, double y_m)
+{
+    (void)user, (void)y_m;
+    *out = x_m < 0 ? (ShadowStand){3, 4, 20, 0.2f} : (ShadowStand){0, 0, 0, 1};
+}
+
+static void light_below_a_stand(void **state)
+{
+    (void)state;
+    float      d[3][shadow_most_slots] = {{0}};
+    ShadowMap *map;
+    ridge(0);
+    slot(d, 0, 90, 50);
+    slot(d, 1, 270, 30);
+    slot(d, 2, 180, 90);
+    CHECK(shadow_map_create(&map, &ground, 8, 3, d, even_stand, NULL, NULL) == STATUS_OK);
+    uint8_t shadow[shadow_most_slots];
+    double  open;
+    shadow_map_at(shadow, &open, map, -300, 40);
+    for (int s = 0; s < 3; s++) CHECK_NEAR(1 - shadow[s] / 255.0, exp(-0.5 * 3 / (double)d[2][s]), 0.02);
+    CHECK_NEAR(open, 0.2, 0.01);
+    shadow_map_at(shadow, &open, map, 300, 40);
+    CHECK(shadow[0] == 0 && shadow[1] == 0 && open == 1);
+    /* beside it: the sun in the west shines through, and below the crowns */
+    shadow_map_at(shadow, &open, map, 16, 0);
+    CHECK(shadow[1] > 100 && shadow[0] == 0);
+    shadow_map_at(shadow, &open, map, 20 / tan(30 * rad_per_deg) + 20, 0);
+    CHECK(shadow[1] == 0);
+    shadow_map_destroy(map);
+}
+
+static void large_terrain_has_larger_cells(void **state)
+{
+    (void)state;
+    float      d[3][shadow_most_slots] = {{0}};
+    ShadowMap *map;
+    ridge(5);
+    slot(d, 0, 90, 50);
+    CHECK(shadow_map_create(&map, &ground, 0.5, 1, d, NULL, NULL, NULL) == STATUS_OK);
+    CHECK(shadow_map_cell_m(map) == 1 && shadow_map_bytes(map) < 9 * (size_t)shadow_most_cells);
+    shadow_map_destroy(map);
+    CHECK(shadow_map_create(&map, &ground, 0, 1, d, NULL, NULL, NULL) == STATUS_BAD_VALUE);
+    CHECK(shadow_map_create(&map, &(Elevation){0}, 8, 1, d, NULL, NULL, NULL) == STATUS_BAD_VALUE);
+    elevation_destroy(&ground);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(length_of_a_shadow), cmocka_unit_test(light_below_a_stand),
+                                       cmocka_unit_test(large_terrain_has_larger_cells)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
