@@ -59,6 +59,22 @@ static Status cast_shadows(World *world, double shadow_m, Pool *pool)
                              world->canopy ? stand_there : NULL, world->canopy, pool);
 }
 
+/* The wood of the plants that stand, each material once. */
+static int branch_kinds(BranchKind out[branch_most_kinds], const Materials *m)
+{
+    int count = 0;
+    for (int k = 0; k < PLANT_KINDS; k++) {
+        const int row = m->plant[k][PLANT_BARK];
+        bool      known = row == 0;
+        for (int i = 0; i < count; i++) known |= out[i].material == row;
+        if (known || count == branch_most_kinds) continue;
+        const Material *bark = &m->material[row];
+        out[count++] = (BranchKind){row, (double)bark->conductivity_w_mk, (double)bark->density_kg_m3 * (double)bark->heat_capacity_j_kgk,
+                                    (double)bark->solar_absorptance, 1 - (double)bark->rho_lwir};
+    }
+    return count;
+}
+
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool)
 {
     char        path[512];
@@ -71,7 +87,9 @@ Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config,
     c.weather = weather_then, c.user = world->drive, c.pool = pool;
     if (!etc_path(path, sizeof path, "ground_heat.csv")) return STATUS_BAD_VALUE;
     Status status = ground_kinds_open(&kinds, path, &world->materials);
-    if (status == STATUS_OK) status = heat_create(&world->heat, &kinds, &c, world->forest != NULL);
+    BranchKind branch[branch_most_kinds];
+    const int  branches = world->forest ? branch_kinds(branch, &world->materials) : 0;
+    if (status == STATUS_OK) status = heat_create(&world->heat, &kinds, &c, branch, branches);
     if (status == STATUS_OK && world->landscape && shadow_m > 0) status = cast_shadows(world, shadow_m, pool);
     return status;
 }

@@ -42,6 +42,9 @@ struct Heat {
     int           slots, slot_of[heat_day_slots]; /* place of each half hour of UTC; -1: night */
     float         slot_d_enu[3][heat_day_slots];
     int           kind_of[SURFACE_COUNT];
+    int           branches;
+    BranchKind    branch_kind[branch_most_kinds];
+    Branch        branch[branch_most_kinds][branch_radii][2], begun_branch[branch_most_kinds][branch_radii][2];
     double        spent_s;
     int           steps;
 };
@@ -117,6 +120,15 @@ static void step_kind(void *user, int worker, int task)
     }
 }
 
+/* In the sun, and in the shade; below them grass. */
+static void step_branches(Heat *h, const GroundWeather *after, double dt_s)
+{
+    const double grass_k = h->state[SURFACE_GRASS].column[h->config.facets * h->config.facets / 2].state.temp_k[0];
+    for (int k = 0; k < h->branches; k++)
+        for (int r = 0; r < branch_radii; r++)
+            for (int shade = 0; shade < 2; shade++) branch_step(&h->branch[k][r][shade], after, shade ? 0 : 1, grass_k, dt_s);
+}
+
 static void run(const Heat *h, PoolTask *task, void *user)
 {
     if (h->config.pool) pool_run(h->config.pool, ground_kinds, task, user);
@@ -150,6 +162,7 @@ static void advance(Heat *h, int steps)
     h->weather[0] = h->weather[1];
     h->config.weather(&after, (double)(h->index + steps) * h->config.step_s, h->config.user);
     run(h, step_kind, &(StepJob){h, steps * h->config.step_s, &h->weather[0], &after});
+    step_branches(h, &after, steps * h->config.step_s);
     h->index += steps;
     h->weather[1] = after;
     remember(h, steps);
@@ -270,6 +283,9 @@ static void fill_table(Heat *h, GroundHeatTable *out, const HeatPast *past)
         }
         out->hidden_k[k] = (float)c[h->columns - 1].state.temp_k[0];
     }
+    for (int k = 0; k < h->branches; k++)
+        for (int r = 0; r < branch_radii; r++)
+            for (int shade = 0; shade < 2; shade++) branch_sides(&out->branch[k][r][shade], &h->branch[k][r][shade]);
     for (int i = 0; i < past->count; i++) {
         /* by halves of an hour: what is longer falls on several */
         const int parts = (int)fmax(1, round(past->span_s[i] / slot_s));
@@ -341,6 +357,9 @@ static void start_columns(Heat *h)
         for (int c = 0; c < h->columns; c++)
             ground_column_start(&h->state[k].column[c], &h->kinds.kind[k], &h->layers[k], sum / count);
     }
+    for (int k = 0; k < h->branches; k++)
+        for (int r = 0; r < branch_radii; r++)
+            for (int shade = 0; shade < 2; shade++) branch_start(&h->branch[k][r][shade], &h->branch_kind[k], branch_radius_m[r], air_k);
 }
 
 static void keep_begun(Heat *h)
@@ -349,6 +368,7 @@ static void keep_begun(Heat *h)
         memcpy(h->begun + (size_t)k * (size_t)h->columns, h->state[k].column, (size_t)h->columns * sizeof *h->begun);
         memcpy(h->begun_falls[k], h->state[k].falls_w_m2k, sizeof h->begun_falls[k]);
     }
+    memcpy(h->begun_branch, h->branch, sizeof h->branch);
     memcpy(h->begun_sky, h->sky, sizeof h->sky);
     h->begun_index = h->index;
 }
@@ -360,6 +380,7 @@ static void back_to_begun(Heat *h)
         memcpy(h->state[k].falls_w_m2k, h->begun_falls[k], sizeof h->begun_falls[k]);
     }
     memcpy(h->sky, h->begun_sky, sizeof h->sky);
+    memcpy(h->branch, h->begun_branch, sizeof h->branch);
     h->index = h->begun_index;
     h->config.weather(&h->weather[1], (double)h->index * h->config.step_s, h->config.user);
     fill_past(h, &h->past[1]);
@@ -367,11 +388,11 @@ static void back_to_begun(Heat *h)
     next_table(h);
 }
 
-Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, bool plants)
+Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, const BranchKind *branch, int branches)
 {
     const double steps = config->spin_up_s / config->step_s;
     if (!(config->facets >= 3 && config->facets <= heat_most_facets && config->facets % 2 == 1 && config->step_s >= 60 &&
-          config->step_s <= 3600 && steps >= 1 && steps <= 1e5 && fabs(config->unix_s) < 1e11))
+          config->step_s <= 3600 && steps >= 1 && steps <= 1e5 && fabs(config->unix_s) < 1e11 && branches >= 0 && branches <= branch_most_kinds))
         return STATUS_BAD_VALUE;
     Heat *h = calloc(1, sizeof *h);
     if (!h) return STATUS_NO_MEMORY;
@@ -395,7 +416,9 @@ Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *confi
         column_factors(&h->factors[1][k], &h->layers[k], (double)half_hour(h) * config->step_s);
     }
     for (int s = 0; s < SURFACE_COUNT; s++) h->kind_of[s] = s == SURFACE_NONE ? SURFACE_BARE_SOIL : s;
-    if (plants) h->kind_of[SURFACE_FOREST_BROADLEAF] = h->kind_of[SURFACE_FOREST_CONIFER] = ground_forest_floor;
+    if (branches > 0) h->kind_of[SURFACE_FOREST_BROADLEAF] = h->kind_of[SURFACE_FOREST_CONIFER] = ground_forest_floor;
+    h->branches = branches;
+    for (int k = 0; k < branches; k++) h->branch_kind[k] = branch[k];
     find_slots(h);
     const int64_t begun = (int64_t)floor(config->unix_s / config->step_s), spin = (int64_t)round(steps);
     const int64_t wide = half_hour(h), fine = (int64_t)ceil(8 * 3600 / config->step_s);
@@ -464,6 +487,8 @@ Status heat_now(HeatNow **out, Heat *h, double unix_s, Arena *arena)
     memcpy(now->kind_of, h->kind_of, sizeof now->kind_of);
     memcpy(now->past, h->past, sizeof now->past);
     now->slots = h->slots;
+    now->branches = h->branches;
+    for (int k = 0; k < h->branches; k++) now->branch_material[k] = h->branch_kind[k].material;
     *out = now;
     return STATUS_OK;
 }
@@ -492,6 +517,24 @@ double heat_ground_k(const HeatNow *now, int kind, const double n_enu[3], double
     const double dark_k = by_up(t->dark_k[kind], n_enu[2]), hidden_k = (double)t->hidden_k[kind];
     const double lit_k = sun_k + taken * (shade_k - sun_k), seen_k = dark_k + dark * (lit_k - dark_k);
     return seen_k + (1 - open) * (hidden_k - (dark_k + (dark) * (shade_k - dark_k)));
+}
+
+double heat_branch_k(const HeatNow *now, int material, double radius_m, const double n_enu[3], double open)
+{
+    int    kind = 0, r = 0;
+    double k[2];
+    if (now->branches == 0) return NAN;
+    for (int i = 0; i < now->branches; i++)
+        if (now->branch_material[i] == material) kind = i;
+    const double radius = clamp(radius_m, branch_radius_m[0], branch_radius_m[branch_radii - 1]);
+    while (r < branch_radii - 2 && radius > branch_radius_m[r + 1]) r++;
+    const double share = log(radius / branch_radius_m[r]) / log(branch_radius_m[r + 1] / branch_radius_m[r]);
+    for (int i = 0; i < 2; i++) {
+        const BranchSides *s = now->table.branch[kind][r + i];
+        const double       shade_k = branch_side_k(&s[1], n_enu);
+        k[i] = shade_k + open * (branch_side_k(&s[0], n_enu) - shade_k);
+    }
+    return k[0] + share * (k[1] - k[0]);
 }
 
 double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uint8_t *shadow)

@@ -15,6 +15,7 @@
 #ifndef RENDER_HEAT_HEAT_H
 #define RENDER_HEAT_HEAT_H
 
+#include "render/heat/branch.h"
 #include "render/heat/ground_kinds.h"
 
 /* Normals: octahedral, a square of facets x facets nodes of which the middle is level and the edge are walls. ups:
@@ -53,6 +54,7 @@ typedef struct GroundHeatTable {
     float  sun_k[ground_kinds][heat_most_facets * heat_most_facets]; /* [v * facets + u] */
     float  shade_k[ground_kinds][heat_ups], dark_k[ground_kinds][heat_ups], hidden_k[ground_kinds];
     float  slot_k[ground_kinds][heat_day_slots];                     /* of slot_d_enu: per unit cosine */
+    BranchSides branch[branch_most_kinds][branch_radii][2];          /* in the sun, in the shade */
 } GroundHeatTable;
 
 typedef struct HeatNow {
@@ -60,14 +62,16 @@ typedef struct HeatNow {
     int       slots;                       /* half hours with the sun up; padded to a multiple of 8 with weight 0 */
     float     slot_d_enu[3][heat_day_slots];
     int       kind_of[SURFACE_COUNT];      /* forest floor for forests whose plants stand */
+    int       branches, branch_material[branch_most_kinds];
     double    share;                       /* between the two times of the grid */
     HeatPast  past[2];
 } HeatNow;
 
 typedef struct Heat Heat;
 
-/* Spins up. kinds are copied. STATUS_NO_MEMORY, STATUS_BAD_VALUE. plants: forests are seen as their floor. */
-Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, bool plants);
+/* Spins up. kinds and branch are copied. STATUS_NO_MEMORY, STATUS_BAD_VALUE. branches: 0 .. branch_most_kinds, of the plants
+ * that stand; with some, forests are seen as their floor. */
+Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, const BranchKind *branch, int branches);
 void   heat_destroy(Heat *heat); /* accepts NULL */
 /* In the arena. Advances the state; times before the exercise: as at its beginning. */
 Status heat_now(HeatNow **out, Heat *heat, double unix_s, Arena *arena);
@@ -88,6 +92,10 @@ static inline void heat_facet(double uv[2], const double n_enu[3])
  * the past, weighted by what is left of it, that was taken; 0: none, 1: all. open: share of its sky that is open. dark: its
  * absorptance over that of its kind. */
 double heat_ground_k(const HeatNow *now, int kind, const double n_enu[3], double taken, double open, double dark);
+
+/* Bark of this material, radius and normal, K, at the height of the weather's thermometer. open: share of sun and sky that
+ * reached it. Of other materials: the first; NAN where there is none. */
+double heat_branch_k(const HeatNow *now, int material, double radius_m, const double n_enu[3], double open);
 
 /* Kelvins that shade of all the past takes from level ground, and a hidden sky, over the sums of their responses: what linear
  * responses are scaled by. 1 where there is little to scale. */

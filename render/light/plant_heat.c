@@ -32,17 +32,3 @@ double leaf_temp_k(const Daylight *light, const Material *m, double air_temp_k, 
                         vapour_j_mol * vapour * slope / pressure_pa;
     return air_temp_k + gain / loss;
 }
-
-double bark_temp_k(const Daylight *light, const Material *m, double air_temp_k, const double n_enu[3], double radius_m,
-                   double open)
-{
-    static const double per_day_rad_s = 7.292e-5;
-    const double        k = (double)m->conductivity_w_mk, c = (double)m->density_kg_m3 * (double)m->heat_capacity_j_kgk;
-    const double        depth_m = sqrt(2 * k / (c * per_day_rad_s)), emissivity = 1 - (double)m->rho_lwir;
-    const double        along = v3_dot(n_enu, light->sun_d_enu), up = 0.5 * (1 + n_enu[2]);
-    const double        sun_w_m2 = open * (light->solar_direct_w_m2 * fmax(along, 0) + light->solar_diffuse_w_m2 * up);
-    const double        gain = (double)m->solar_absorptance * sun_w_m2 - emissivity * light->longwave_loss_w_m2 * up * open;
-    const double        wood = daily_wave_w_m2_k((double)m->conductivity_w_mk, (double)m->density_kg_m3,
-                                                 (double)m->heat_capacity_j_kgk) * fmin(radius_m / (2 * depth_m), 1);
-    return air_temp_k + gain / (film_w_m2_k(light->weather.wind_mps) + emission_w_m2_k(emissivity, air_temp_k) + wood);
-}

@@ -58,13 +58,14 @@ static double ground_k(const HeatScene *heat, double warmer_k, int surface, cons
     return surface == SURFACE_WATER ? fmax(temp_k, sea_freezes_k) : temp_k;
 }
 
-/* Leaves and branches. */
-static double plant_k(const Air *air, const Material *m, double air_k, const Hits *hits, int i, const float *sun)
+/* Leaves by the sun of now, wood by that of the day (air->heat; NULL: as the air). */
+static double plant_k(const Air *air, const Material *m, int material, double air_k, const Hits *hits, int i, const float *sun)
 {
     const double n[3] = {(double)hits->n_enu[0][i], (double)hits->n_enu[1][i], (double)hits->n_enu[2][i]};
-    if (material_is_leaf(m))
-        return leaf_temp_k(&air->light, m, air_k, (double)hits->open_up[i], sun ? (double)sun[i] : (double)hits->open_up[i]);
-    return bark_temp_k(&air->light, m, air_k, n, (double)hits->radius_m[i], (double)hits->open_up[i]);
+    const double open = (double)hits->open_up[i];
+    if (material_is_leaf(m)) return leaf_temp_k(&air->light, m, air_k, open, sun ? (double)sun[i] : open);
+    if (!air->heat || air->heat->now->branches == 0) return air_k;
+    return heat_branch_k(air->heat->now, material, (double)hits->radius_m[i], n, open) + air_k - air->light.weather.air_temp_k;
 }
 
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
@@ -85,7 +86,7 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
             if (!(hits->range_m[i] < INFINITY)) {
                 temp_k[i] = NAN;
             } else if (hits->kind[i] == hit_plant) {
-                temp_k[i] = (float)plant_k(air, m, here_k, hits, i, sun);
+                temp_k[i] = (float)plant_k(air, m, material[i], here_k, hits, i, sun);
             } else if (hits->entity[i]) {
                 const HeatRole role = catalog_model(catalog, hits->model[i])->part[hits->part[i] - 1].role;
                 const double   above_k = snapshot->entity[hits->entity[i] - 1].heat[role];

@@ -1,6 +1,6 @@
 /* render/materials/surface_balance.h: heat losses of a surface warmer than the air in a steady balance: the air's film
- * (McAdams, Heat Transmission, 1954: 5.7 + 3.8 v W/(m2 K), plates below 5 m/s; used above that too), longwave emission
- * (4 e sigma T^3, 5 W/(m2 K) at 288 K) and what the daily wave conducts (sqrt(k rho c omega), 2 .. 20). */
+ * (McAdams, Heat Transmission, 1954: 5.7 + 3.8 v W/(m2 K), plates below 5 m/s; used above that too) and longwave
+ * emission (4 e sigma T^3, 5 W/(m2 K) at 288 K). */
 #ifndef RENDER_MATERIALS_SURFACE_BALANCE_H
 #define RENDER_MATERIALS_SURFACE_BALANCE_H
 
@@ -12,13 +12,6 @@ static inline double film_w_m2_k(double wind_mps) { return 5.7 + 3.8 * wind_mps;
 static inline double emission_w_m2_k(double emissivity, double temp_k)
 {
     return 4 * emissivity * 5.670374419184429e-8 * temp_k * temp_k * temp_k;
-}
-
-/* Of a body without end, for a wave of one day: amplitude of the flux over that of the surface's temperature. */
-static inline double daily_wave_w_m2_k(double conductivity_w_mk, double density_kg_m3, double heat_capacity_j_kgk)
-{
-    static const double per_day_rad_s = 7.292e-5;
-    return sqrt(conductivity_w_mk * density_kg_m3 * heat_capacity_j_kgk * per_day_rad_s);
 }
 
 #endif

@@ -45,7 +45,7 @@ static inline Heat *paper_heat(const GroundKinds *kinds, const PaperDay *day, do
     Heat      *h;
     c.unix_s = paper_unix_s + 3600 * from_h;
     c.weather = paper_weather, c.user = day, c.pool = pool;
-    CHECK(heat_create(&h, kinds, &c, false) == STATUS_OK);
+    CHECK(heat_create(&h, kinds, &c, NULL, 0) == STATUS_OK);
     return h;
 }
 

@@ -222,11 +222,11 @@ static void settings_out_of_range(void **state)
     c.weather = paper_weather, c.user = &paper_summer;
     const HeatConfig good = c;
     c.facets = 8;
-    CHECK(heat_create(&h, &kinds, &c, false) == STATUS_BAD_VALUE);
+    CHECK(heat_create(&h, &kinds, &c, NULL, 0) == STATUS_BAD_VALUE);
     c = good, c.step_s = 0;
-    CHECK(heat_create(&h, &kinds, &c, false) == STATUS_BAD_VALUE);
+    CHECK(heat_create(&h, &kinds, &c, NULL, 0) == STATUS_BAD_VALUE);
     c = good, c.unix_s = NAN;
-    CHECK(heat_create(&h, &kinds, &c, false) == STATUS_BAD_VALUE && h == NULL);
+    CHECK(heat_create(&h, &kinds, &c, NULL, 0) == STATUS_BAD_VALUE && h == NULL);
 }
 
 int main(void)

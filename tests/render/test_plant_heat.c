@@ -1,5 +1,4 @@
-/* Temperatures of leaves against the full, non-linear balance solved by bisection; of branches against conduction in a
- * cylinder over a day, step by step. */
+/* Temperatures of leaves against the full, non-linear balance solved by bisection. */
 #include "tests/check.h"
 
 #include "render/light/plant_heat.h"
@@ -8,12 +7,6 @@ static Material leaf_row(void)
 {
     return (Material){.name = "leaf", .rho_lwir = 0.03f, .solar_absorptance = 0.51f, .conductivity_w_mk = 0.3f,
                       .density_kg_m3 = 700, .heat_capacity_j_kgk = 3500};
-}
-
-static Material bark_row(void)
-{
-    return (Material){.name = "bark", .rho_lwir = 0.05f, .solar_absorptance = 0.8f, .conductivity_w_mk = 0.2f,
-                      .density_kg_m3 = 550, .heat_capacity_j_kgk = 2000};
 }
 
 static Daylight day(double direct_w_m2, double diffuse_w_m2, double loss_w_m2, double wind_mps)
@@ -78,77 +71,10 @@ static void leaf_is_in_balance(void **state)
     CHECK(leaf_temp_k(&night, &m, 285, 1, 1) < 285);
 }
 
-enum { shells_most = 40 };
-
-/* Amplitude of the surface's temperature of a long cylinder whose gain has an amplitude of 1 W/m2 over a day, loss_w_m2_k
- * of it given off: conduction in shells by explicit steps until the days are alike. *lag_s: of its peak. */
-static double cylinder_amplitude(double *lag_s, const Material *m, double radius_m, double loss_w_m2_k)
-{
-    const int    shells = radius_m > 0.1 ? shells_most : 12, days = radius_m > 0.1 ? 12 : radius_m > 0.03 ? 4 : 2;
-    const double per_s = 7.292e-5, day_s = 2 * pi_rad / per_s, dr = radius_m / shells;
-    const double k = (double)m->conductivity_w_mk, c = (double)m->density_kg_m3 * (double)m->heat_capacity_j_kgk;
-    const int    steps = (int)ceil(day_s / (0.2 * c / (k / (dr * dr) + loss_w_m2_k / dr)));
-    const double dt = day_s / steps;
-    double       t[shells_most] = {0}, most = -INFINITY;
-    for (int n = 0; n < days * steps; n++) {
-        double flow = 0; /* inwards through the inner face of a shell, W per m of length and radian */
-        for (int s = 0; s < shells; s++) {
-            const double surface = t[s], area = (s + 0.5) * dr * dr;
-            const double out = s + 1 < shells ? k * (s + 1) * (t[s + 1] - t[s])
-                                              : radius_m * (sin(per_s * dt * n) - loss_w_m2_k * surface);
-            t[s] += dt * (out - flow) / (c * area);
-            flow = out;
-        }
-        if (n >= (days - 1) * steps && t[shells - 1] > most) {
-            most = t[shells - 1];
-            *lag_s = dt * (n - (days - 1) * steps) - day_s / 4;
-        }
-    }
-    return most;
-}
-
-/* The steady form with its term for the wood, against conduction. */
-static void branches_swing_as_conduction_says(void **state)
-{
-    (void)state;
-    const Material m = bark_row();
-    const double   radius_m[] = {0.005, 0.02, 0.06, 0.2}, wind[] = {0.5, 3};
-    for (int w = 0; w < 2; w++) {
-        /* the sun in the zenith on a surface that faces it, over no sun: the amplitude of a gain of 0.8 x 500 W/m2 */
-        const Daylight lit = day(500, 0, 0, wind[w]), dark = day(0, 0, 0, wind[w]);
-        const double   up[3] = {0, 0, 1}, loss = 5.7 + 3.8 * wind[w] + 4 * 0.95 * 5.670374419e-8 * pow(290, 3);
-        for (int k = 0; k < 4; k++) {
-            double       lag_s = 0;
-            const double swing = bark_temp_k(&lit, &m, 290, up, radius_m[k], 1) - bark_temp_k(&dark, &m, 290, up, radius_m[k], 1);
-            const double exact = 400 * cylinder_amplitude(&lag_s, &m, radius_m[k], loss);
-            print_message("r %5.3f m, %.1f m/s: %.2f K, conduction %.2f K, %.1f h late\n", radius_m[k], wind[w], swing,
-                          exact, lag_s / 3600);
-            CHECK_NEAR(swing, exact, 0.1 * exact);
-            CHECK(lag_s < 3600); /* what is left out */
-        }
-    }
-}
-
-static void bark_without_sun_and_sky_has_the_air_s_temperature(void **state)
-{
-    (void)state;
-    const Material m = bark_row();
-    const Daylight night = day(0, 0, 90, 2);
-    const double   up[3] = {0, 0, 1}, down[3] = {0, 0, -1}, side[3] = {1, 0, 0};
-    CHECK(bark_temp_k(&night, &m, 280, up, 0.1, 0) == 280);
-    CHECK(bark_temp_k(&night, &m, 280, down, 0.1, 1) == 280);
-    CHECK(bark_temp_k(&night, &m, 280, up, 0.1, 1) < bark_temp_k(&night, &m, 280, side, 0.1, 1));
-    CHECK(bark_temp_k(&night, &m, 280, side, 0.1, 1) < 280);
-    /* thick ones cool less */
-    CHECK(bark_temp_k(&night, &m, 280, up, 0.2, 1) > bark_temp_k(&night, &m, 280, up, 0.002, 1));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(leaf_is_in_balance),
-        cmocka_unit_test(branches_swing_as_conduction_says),
-        cmocka_unit_test(bark_without_sun_and_sky_has_the_air_s_temperature),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
