@@ -6,6 +6,7 @@
 #include "entities/effects/heat.h"
 #include "sensor/detector/preset.h"
 #include "sensor/node/host_run.h"
+#include "terrain/weather/weather_course.h"
 #include "terrain/earth/geoid.h"
 #include "terrain/landscape/ground_image.h"
 #include "terrain/elevation/raster.h"
@@ -140,6 +141,17 @@ static bool atmosphere_is_valid(const Check *c)
     return there || report(c, "weather.atmosphere", "us1976 is always available");
 }
 
+static bool weather_is_valid(const Check *c)
+{
+    WeatherCourse            *course;
+    const WeatherCourseConfig about = {weather_default(), c->config->weather.air_range_k, 0, 0};
+    if (!strpbrk(c->config->weather.day, "/.")) return true;
+    if (weather_course_open(&course, c->config->weather.day, &about) != STATUS_OK)
+        return report(c, "weather.day", "clear is always available; etc/reference/weather.md has the formats");
+    weather_course_close(course);
+    return true;
+}
+
 /* Catalog, its models and sidecars, and the materials of their parts. */
 static bool models_are_valid(Check *c)
 {
@@ -180,6 +192,7 @@ static bool tables_are_valid(Check *c)
     bool good = models_are_valid(c);
     good &= sensors_are_valid(c);
     good &= atmosphere_is_valid(c);
+    good &= weather_is_valid(c);
     good &= terrain_is_valid(c);
     if (!known.bundled)
         known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "heat.csv", read_heat) &&

@@ -105,6 +105,24 @@ static void find_place(Stage *stage, double about_m)
     }
 }
 
+static Weather stage_weather(const World *world)
+{
+    Weather weather    = weather_default();
+    weather.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
+    return weather;
+}
+
+/* Ground as warm as on a clear day. */
+static Status warm(Stage *stage, const Geodetic *place)
+{
+    const WeatherCourseConfig about = {stage_weather(&stage->world), 10, place->lon_rad, place->lat_rad};
+    WeatherCourse            *course;
+    HeatConfig                heat = heat_default_config();
+    heat.unix_s = stage->unix_s;
+    const Status status = weather_course_open(&course, "clear", &about);
+    return status == STATUS_OK ? world_warm(&stage->world, course, &heat, 0, stage->pool) : status;
+}
+
 static Status open_stage(Stage *stage, const char *name, double sag_m)
 {
     const Geodetic  origin = {.lat_rad = 48 * rad_per_deg, .lon_rad = 11 * rad_per_deg};
@@ -122,6 +140,7 @@ static Status open_stage(Stage *stage, const char *name, double sag_m)
         status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) find_place(stage, fmin(6 * catalog_model(stage->catalog, stage->model)->radius_m, 120));
     if (status == STATUS_OK && !text_to_unix_s(&stage->unix_s, "2026-06-21T09:00:00Z")) status = STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = warm(stage, &origin);
     return status;
 }
 
@@ -182,15 +201,19 @@ static View view_of(double *px_per_m, const Stage *stage)
 static Status light(Stage *stage, const RenderRequest *request)
 {
     const World *world = &stage->world;
-    Weather      weather = weather_default();
+    Weather      weather;
+    HeatScene   *heat = NULL;
     Sun          sun;
-    weather.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
-    const Status status = sun_at(&sun, stage->unix_s, &world->frame.origin, weather.pressure_mbar,
+    weather_at(&weather, world->course, stage->unix_s);
+    Status status = sun_at(&sun, stage->unix_s, &world->frame.origin, weather.pressure_mbar,
                                  weather.air_temp_k - 273.15, NAN);
+    if (status == STATUS_OK) status = world_heat_at(&heat, world, NULL, stage->unix_s, stage->air_arena);
     if (status != STATUS_OK) return status;
     const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, 0};
     const AirEye    eye = {request->view.p_enu[2], render_air_bands(request->bands, request->optical), &request->view};
-    return air_at(&stage->air, &source, &weather, &sun, &eye, stage->pool, stage->air_arena);
+    status = air_at(&stage->air, &source, &weather, &sun, &eye, stage->pool, stage->air_arena);
+    stage->air.heat = heat;
+    return status;
 }
 
 /* Renders one side into its tile of the three planes. */

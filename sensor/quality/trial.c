@@ -45,6 +45,25 @@ static TrialPlace vehicle_place(DisEntityType type, int index, int vehicles)
                         .turn_rad = vehicles == 1 ? 0.6 : 2 * pi_rad * random_uniform(1, 1, 0, (uint64_t)index)};
 }
 
+static Weather trial_weather(const World *world)
+{
+    Weather weather    = weather_default();
+    weather.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
+    return weather;
+}
+
+/* Ground as warm as on a clear day. */
+static Status warm(TrialScene *scene)
+{
+    const Geodetic           *place = &scene->world.frame.origin;
+    const WeatherCourseConfig about = {trial_weather(&scene->world), 10, place->lon_rad, place->lat_rad};
+    WeatherCourse            *course;
+    HeatConfig                heat = heat_default_config();
+    heat.unix_s = scene->unix_s;
+    const Status status = weather_course_open(&course, "clear", &about);
+    return status == STATUS_OK ? world_warm(&scene->world, course, &heat, 16, NULL) : status;
+}
+
 Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path,
                         const DisEntityType *types, int type_count, int vehicles)
 {
@@ -58,6 +77,7 @@ Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char 
     if (status == STATUS_OK) status = entity_table_create(&scene.table, &config, scene.catalog, heat);
     if (status == STATUS_OK) status = world_open(&scene.world, scene.catalog, landscape, &landscape->frame, "avx2");
     if (status == STATUS_OK) status = atmosphere_open(&scene.world.atmosphere, "us1976");
+    if (status == STATUS_OK) status = warm(&scene);
     for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
         const TrialPlace place = vehicle_place(types[k % type_count], k, vehicles);
         status = trial_scene_place(&scene, &place);
@@ -94,16 +114,20 @@ static Status light(TrialFrame *f)
 {
     const TrialScene *scene = f->scene;
     const World      *world = &scene->world;
-    Weather           weather = weather_default();
-    weather.air_temp_k        = atmosphere_temp_k(world->atmosphere, 0);
+    Weather           weather = trial_weather(world);
+    HeatScene        *heat = NULL;
+    weather_at(&weather, world->course, scene->unix_s);
     Status status =
         sun_at(&f->sun, scene->unix_s, &world->frame.origin, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
+    if (status == STATUS_OK) status = world_heat_at(&heat, world, NULL, scene->unix_s, f->arena);
     if (status != STATUS_OK) return status;
     const double    ground_m = elevation_height(&scene->landscape->elevation, 0, 0, NULL);
     const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, 0};
     const AirEye    eye = {f->request.view.p_enu[2] - ground_m, render_air_bands(f->request.bands, f->request.optical),
                            &f->request.view};
-    return air_at(&f->air, &source, &weather, &f->sun, &eye, f->pool, f->arena);
+    status = air_at(&f->air, &source, &weather, &f->sun, &eye, f->pool, f->arena);
+    f->air.heat = heat;
+    return status;
 }
 
 static Status targets(TrialFrame *f)

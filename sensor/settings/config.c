@@ -193,20 +193,6 @@ static const Setting keys[] = {
      "pcapng file to which `run` records all received datagrams; empty: none"},
     {"weather.atmosphere", SETTING_NAME_OR_PATH, AT(weather.atmosphere), 0, 0, NULL, "",
      "us1976, midlat_summer, or another folder of etc/atmosphere; or the path of such a folder, ./NAME"},
-    {"weather.day", SETTING_NAME_OR_PATH, AT(weather.day), 0, 0, NULL, "",
-     "clear: a day of clear sky with a daily course of the air's temperature; constant: the values below at all times; or a "
-     "weather file (EPW, TMY3, CSV)"},
-    {"weather.air_range_k", SETTING_DOUBLE, AT(weather.air_range_k), 0, 60, NULL, "K",
-     "warmest less coldest air of a clear day, whose mean is weather.air_temp_k"},
-    {"weather.humidity_pct", SETTING_DOUBLE, AT(weather.humidity_pct), 0, 100, NULL, "%",
-     "relative humidity at weather.air_temp_k: what ground and leaves evaporate; that of the air's own bands is the atmosphere's"},
-    {"weather.cloud", SETTING_DOUBLE, AT(weather.cloud), 0, 1, NULL, "",
-     "mean share of the sky that clouds cover: they dim the sun and warm the sky"},
-    {"heat.step_s", SETTING_DOUBLE, AT(heat.step_s), 60, 3600, NULL, "s", "time grid of the ground's heat"},
-    {"heat.facets", SETTING_INT, AT(heat.facets), 3, 17, NULL, "",
-     "slopes and azimuths of the ground's heat: a grid of so many a side, odd"},
-    {"heat.shadow_m", SETTING_DOUBLE, AT(heat.shadow_m), 0, 1000, NULL, "m",
-     "cells of the shadows that relief and plants cast over the day; 0: no shadow cools the ground"},
     {"weather.visibility_m", SETTING_DOUBLE, AT(weather.visibility_m), 100, 300000, NULL, "m", "meteorological range"},
     {"weather.air_temp_k", SETTING_DOUBLE, AT(weather.air_temp_k), 220, 330, NULL, "K",
      "at ground level at the terrain origin, with the atmosphere's lapse above; unset: the atmosphere's own"},
@@ -216,6 +202,21 @@ static const Setting keys[] = {
      "wind speed; cools ground and vehicles, moves smoke"},
     {"weather.wind_from_deg", SETTING_DOUBLE, AT(weather.wind_from_deg), 0, 360, NULL, "deg",
      "direction the wind comes from, clockwise from north"},
+    {"weather.day", SETTING_NAME_OR_PATH, AT(weather.day), 0, 0, NULL, "",
+     "the weather's course: clear sky and air that warms and cools over the day (clear), the values here at all times "
+     "(constant), or a weather file (EPW, TMY3, CSV)"},
+    {"weather.air_range_k", SETTING_DOUBLE, AT(weather.air_range_k), 0, 60, NULL, "K",
+     "warmest less coldest air of a clear day, whose mean is weather.air_temp_k"},
+    {"weather.humidity_pct", SETTING_DOUBLE, AT(weather.humidity_pct), 0, 100, NULL, "%",
+     "relative humidity at weather.air_temp_k, for what ground and leaves evaporate; the air's own bands are the "
+     "atmosphere's"},
+    {"weather.cloud", SETTING_DOUBLE, AT(weather.cloud), 0, 1, NULL, "",
+     "mean share of the sky that clouds cover, which dim the sun and warm the sky"},
+    {"heat.step_s", SETTING_DOUBLE, AT(heat.step_s), 60, 3600, NULL, "s", "time grid of the ground's heat"},
+    {"heat.facets", SETTING_INT, AT(heat.facets), 3, 17, NULL, "",
+     "slopes and azimuths of the ground's heat: a grid of so many a side, odd"},
+    {"heat.shadow_m", SETTING_DOUBLE, AT(heat.shadow_m), 0, 1000, NULL, "m",
+     "cells of the shadows that relief and plants cast over the day; 0: no shadow cools the ground"},
     {"terrain.relief_m", SETTING_DOUBLE, AT(terrain.relief_m), 0, 200, NULL, "m",
      "rms height of the hills of synthetic terrain"},
     {"terrain.spacing_m", SETTING_DOUBLE, AT(terrain.spacing_m), 0, 1000, NULL, "m",
@@ -554,6 +555,16 @@ Status config_check(const Config *config)
     const unsigned of_woods = 1u << PLANE_INSTANCE | 1u << PLANE_COVER;
     if (planes != planes_all && planes & of_woods && strcmp(config->terrain.woods, "on") != 0) {
         log_error("config: publish.planes: instance and cover are of a world with plants: terrain.woods: on");
+        return STATUS_BAD_VALUE;
+    }
+    if (config->heat.facets % 2 == 0) {
+        log_error("config: heat.facets: %d is even; odd, 3 .. 17, so that one of them is level", config->heat.facets);
+        return STATUS_BAD_VALUE;
+    }
+    if (!strpbrk(config->weather.day, "/.") && strcmp(config->weather.day, "clear") != 0 &&
+        strcmp(config->weather.day, "constant") != 0) {
+        log_error("config: weather.day: '%s' is neither clear nor constant nor the path of a weather file: ./%s",
+                  config->weather.day, config->weather.day);
         return STATUS_BAD_VALUE;
     }
     if (!*config->sensor.mount) {

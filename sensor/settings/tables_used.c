@@ -137,5 +137,10 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
         snprintf(name, sizeof name, "%.150s", slash ? slash + 1 : config->sensor.table);
         status = add(out, name, config->sensor.table);
     }
+    if (strpbrk(config->weather.day, "/.") && status == STATUS_OK) {
+        const char *slash = strrchr(config->weather.day, '/');
+        snprintf(name, sizeof name, "weather/%.150s", slash ? slash + 1 : config->weather.day);
+        status = add(out, name, config->weather.day);
+    }
     return status == STATUS_OK ? add_models(out, catalog) : status;
 }

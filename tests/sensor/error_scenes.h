@@ -263,6 +263,7 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
         const float *value = picture_plane(p, plane < 3    ? picture_optical + plane
                                               : plane == 3 ? picture_mwir
                                                            : picture_lwir);
+        const double  warmer = thermal ? air->light.thermal_scale[b - AIR_MWIR] : 1; /* air of another temperature than the model's */
         double        square = 0, sum = 0;
         hits.count = rays.count = 1;
         for (int i = 0; i < width_px * height_px; i++) {
@@ -291,14 +292,14 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
                 atmosphere_path(&want, scene.world.atmosphere, air->light.weather.visibility_m, b, &path,
                                 thermal && p->temp_k[i] > 0 ? (double)p->temp_k[i] : 288);
                 const double tau = thermal ? want.transmittance : want.sun_transmittance;
-                const double added = want.thermal_w_m2_sr + (b == AIR_LWIR ? 0 : want.scattered_w_m2_sr * au2);
+                const double added = want.thermal_w_m2_sr * warmer + (b == AIR_LWIR ? 0 : want.scattered_w_m2_sr * au2);
                 seen =
                     (seen - (double)veils.added_w_m2_sr[0]) / fmax((double)veils.transmittance[0], 1e-6) * tau + added;
             } else {
                 SkyAir sky;
                 atmosphere_sky(&sky, scene.world.atmosphere, air->light.weather.visibility_m, b, air->eye_height_m,
                                acos(fmax(d[2], 0)), sun_zenith, azimuth);
-                seen = sky.thermal_w_m2_sr + (b == AIR_LWIR ? 0 : sky.scattered_w_m2_sr * au2);
+                seen = sky.thermal_w_m2_sr * warmer + (b == AIR_LWIR ? 0 : sky.scattered_w_m2_sr * au2);
             }
             square += (seen - (double)value[i]) * (seen - (double)value[i]);
         }
