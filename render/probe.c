@@ -1,10 +1,12 @@
-/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection and atmosphere for rows of CSV. */
+/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere and heat for rows of CSV. */
 #include "render/probe.h"
 
 #include "entities/import/model_import.h"
 #include "render/air/atmosphere.h"
 #include "render/parts/parts.h"
 #include "render/materials/planck.h"
+#include "render/probe_private.h"
+#include "terrain/probe.h"
 
 #include <stdlib.h>
 
@@ -183,5 +185,12 @@ const Probe render_probes[] = {
      .in = "model$,visibility_km,band$,observer_m,target_m,range_km,temp_k,sun_zenith_deg?,rel_azimuth_deg?",
      .out = "tau,path_radiance,sun_tau,scattered", .open = atmosphere_probe_open,
      .row = atmosphere_row, .close = atmosphere_probe_close},
+    {.name = "heat-ground", .arguments = PROBE_WEATHER_ARGUMENTS,
+     .help = "temperature of the ground, warmed up over the two days before each local day, and what it takes and gives; surface: "
+             "of etc/ground_heat.csv; aspect: where the slope faces, clockwise from north; shade: share of the direct sun "
+             "taken, all day; depth: of level ground in the open; weather as of `weather`",
+     .in = "unix_s,surface$,slope_deg?,aspect_deg?,shade?,depth_m?",
+     .out = "temp_k,air_temp_k,absorbed_w_m2,direct_w_m2,diffuse_w_m2,longwave_w_m2,film_w_m2k,latent_w_m2",
+     .open = heat_probe_open, .row = heat_probe_row, .close = heat_probe_close},
 };
 const int render_probe_count = sizeof render_probes / sizeof *render_probes;

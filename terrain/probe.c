@@ -4,7 +4,6 @@
 #include "terrain/earth/geoid.h"
 #include "terrain/earth/local_frame.h"
 #include "terrain/earth/sun.h"
-#include "terrain/weather/weather_course.h"
 
 #include <stdlib.h>
 
@@ -100,7 +99,7 @@ static const char *geodesy_row(void *state, const ProbeValue *in, ProbeValue *ou
 
 /* ---- weather -------------------------------------------------------------------------------- */
 
-static Status weather_probe_open(void **state, int argc, char **argv)
+Status probe_weather(WeatherCourse **out, Geodetic *place, int argc, char **argv)
 {
     static char         clear[] = "clear";
     WeatherCourseConfig config = {.base = weather_default(), .air_range_k = 10};
@@ -108,17 +107,25 @@ static Status weather_probe_open(void **state, int argc, char **argv)
     if ((argc != 1 && argc != 2 && argc != 4) ||
         (argc == 4 && !(text_to_double(&lat_deg, argv[2]) && fabs(lat_deg) <= 90 &&
                         text_to_double(&lon_deg, argv[3]) && fabs(lon_deg) <= 360))) {
-        log_error("probe: weather takes FILE, `clear` or `constant`, then LAT_DEG within 90 and LON_DEG within 360");
+        log_error("probe: %s takes FILE, `clear` or `constant`, then LAT_DEG within 90 and LON_DEG within 360", argv[0]);
         return STATUS_BAD_VALUE;
     }
     config.latitude_rad = lat_deg * rad_per_deg;
     config.longitude_rad = lon_deg * rad_per_deg;
-    WeatherCourse *course;
-    const Status   status = weather_course_open(&course, argc > 1 ? argv[1] : clear, &config);
+    const Status status = weather_course_open(out, argc > 1 ? argv[1] : clear, &config);
     if (status != STATUS_OK) return status;
-    log_info("weather: %s", weather_course_about(course));
-    *state = course;
+    log_info("weather: %s", weather_course_about(*out));
+    *place = (Geodetic){.lat_rad = config.latitude_rad, .lon_rad = config.longitude_rad};
     return STATUS_OK;
+}
+
+static Status weather_probe_open(void **state, int argc, char **argv)
+{
+    WeatherCourse *course;
+    Geodetic       place;
+    const Status   status = probe_weather(&course, &place, argc, argv);
+    if (status == STATUS_OK) *state = course;
+    return status;
 }
 
 static const char *weather_row(void *state, const ProbeValue *in, ProbeValue *out)
@@ -153,7 +160,7 @@ const Probe terrain_probes[] = {
      .out = "geodetic_lat_deg,geodetic_lon_deg,geodetic_h_m,ecef_x_m,ecef_y_m,ecef_z_m,east_m,north_m,up_m",
      .row = geodesy_row},
     {.name = "weather",
-     .arguments = "[FILE|clear|constant [LAT_DEG LON_DEG]]",
+     .arguments = PROBE_WEATHER_ARGUMENTS,
      .help = "weather at a time: EPW, TMY3 or CSV file, or a clear day of 288.15 K on average with a range of 10 K",
      .in = "unix_s",
      .out = "air_temp_k,humidity,pressure_mbar,wind_mps,wind_from_deg,direct_w_m2,diffuse_w_m2,longwave_w_m2,cloud,"

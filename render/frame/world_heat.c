@@ -1,46 +1,15 @@
 /* render/frame/world_heat.c: the ground's heat, driven by the weather's course and the sun and sky of the atmosphere. */
 #include "render/frame/world.h"
+
+#include "render/frame/heat_drive.h"
 #include "render/light/canopy.h"
 
 #include <stdlib.h>
 
-/* What heat keeps a pointer to: copies, since a World may be moved. */
-typedef struct HeatDrive {
-    const WeatherCourse *course;
-    AirSource            source;
-    Geodetic             place;
-    double               exercise_s;
-} HeatDrive;
-
-static Status daylight_there(Daylight *out, const AirSource *source, const Geodetic *place, const Weather *weather, double unix_s)
-{
-    Sun sun;
-    const double air_k = isfinite(weather->air_temp_k) ? weather->air_temp_k : 288.15;
-    const Status status = sun_at(&sun, unix_s, place, weather->pressure_mbar, air_k - 273.15, NAN);
-    if (status == STATUS_OK) daylight_at(out, source, weather, &sun);
-    return status;
-}
-
 Status world_daylight(Daylight *out, const World *world, const Weather *weather, double unix_s)
 {
     const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, 0};
-    return daylight_there(out, &source, &world->frame.origin, weather, unix_s);
-}
-
-static void weather_then(GroundWeather *out, double unix_s, const void *user)
-{
-    static const double thermometer_m = 2, anemometer_m = 10;
-    const HeatDrive *drive = user;
-    Weather          w;
-    Daylight         light = {0};
-    weather_at(&w, drive->course, unix_s);
-    if (daylight_there(&light, &drive->source, &drive->place, &w, unix_s) != STATUS_OK) light.weather = w; /* beyond 1900 .. 2100: night */
-    const double air_k = light.weather.air_temp_k;
-    *out = (GroundWeather){.air = {air_k, w.humidity * saturation_pa(air_k), 100 * w.pressure_mbar, w.wind_mps, thermometer_m, anemometer_m},
-                           .direct_w_m2 = light.solar_direct_w_m2, .diffuse_w_m2 = light.solar_diffuse_w_m2,
-                           .longwave_w_m2 = stefan_w_m2k4 * pow(air_k, 4) - light.longwave_loss_w_m2,
-                           .rain_kg_m2s = w.rain_mm_h / 3600};
-    memcpy(out->sun_d_enu, light.sun_d_enu, sizeof out->sun_d_enu);
+    return heat_drive_daylight(out, &source, &world->frame.origin, weather, unix_s);
 }
 
 static void stand_there(ShadowStand *out, const void *canopy, double x_m, double y_m)
@@ -84,7 +53,7 @@ Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config,
     world->drive  = calloc(1, sizeof *world->drive);
     if (!world->drive) return STATUS_NO_MEMORY;
     *world->drive = (HeatDrive){course, {world->atmosphere, world->planck_mwir, world->planck_lwir, 0}, world->frame.origin, config->unix_s};
-    c.weather = weather_then, c.user = world->drive, c.pool = pool;
+    c.weather = heat_drive_weather, c.user = world->drive, c.pool = pool;
     if (!etc_path(path, sizeof path, "ground_heat.csv")) return STATUS_BAD_VALUE;
     Status status = ground_kinds_open(&kinds, path, &world->materials);
     BranchKind branch[branch_most_kinds];

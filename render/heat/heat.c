@@ -31,6 +31,7 @@ struct Heat {
     ColumnFactors factors[2][ground_kinds]; /* of step_s, and of half hours */
     int           columns;              /* a kind */
     KindState     state[ground_kinds];
+    GroundColumn  level[ground_kinds];  /* level ground, a step before */
     GroundColumn *begun;                /* all columns at the beginning of the exercise */
     float         begun_falls[ground_kinds][history];
     Sky           sky[history], begun_sky[history];
@@ -305,6 +306,7 @@ static void next_table(Heat *h)
     HeatPast     past = h->past[1];
     h->table[0] = table;
     h->past[0] = past;
+    for (int k = 0; k < ground_kinds; k++) h->level[k] = h->state[k].column[h->config.facets * h->config.facets / 2];
     advance(h, 1);
     fill_past(h, &h->past[1]);
     fill_table(h, &h->table[1], &h->past[1]);
@@ -454,6 +456,14 @@ double heat_spent_s(const Heat *h, int *steps)
 size_t heat_bytes(const Heat *h)
 {
     return sizeof *h + 2 * (sizeof *h->table + sizeof *h->past) + 2 * (size_t)ground_kinds * (size_t)h->columns * sizeof *h->begun;
+}
+
+void heat_level(GroundColumn *out, const Heat *h, int kind, double share)
+{
+    const GroundColumn *from = &h->level[kind], *to = &h->state[kind].column[h->config.facets * h->config.facets / 2];
+    *out = *from;
+    for (int i = 0; i < from->column->nodes; i++) out->state.temp_k[i] += share * (to->state.temp_k[i] - from->state.temp_k[i]);
+    out->saturation += share * (to->saturation - from->saturation);
 }
 
 int heat_slots(float d_enu[3][heat_day_slots], const Heat *h)

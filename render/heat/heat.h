@@ -75,6 +75,9 @@ Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *confi
 void   heat_destroy(Heat *heat); /* accepts NULL */
 /* In the arena. Advances the state; times before the exercise: as at its beginning. */
 Status heat_now(HeatNow **out, Heat *heat, double unix_s, Arena *arena);
+/* Level ground of a kind in the open, its temperatures with depth and its water, at the time of the last heat_now: share as
+ * that has it. It points into heat. */
+void   heat_level(GroundColumn *out, const Heat *heat, int kind, double share);
 /* Directions towards the sun of the slots, as HeatNow has them. Returns their number. */
 int    heat_slots(float d_enu[3][heat_day_slots], const Heat *heat);
 double heat_spent_s(const Heat *heat, int *steps); /* wall clock in steps since the spin-up, and how many */

@@ -75,4 +75,19 @@ probe mrtd < <(printf 'preset,f_cyc_px\nhubble,0.1\ntv,0.1\n')
 check "mrtd: an unknown sensor is named in its row" grep -q 'preset is not a sensor' "$tmp/stdout"
 check "mrtd: a camera of daylight sees no warmth" grep -q 'is not thermal' "$tmp/stdout"
 
+# a day of the ground: sand is warmed by the sun and grass less, shade takes it; and a picture of it
+probe heat-ground clear 45 0 < <(printf 'unix_s,surface,shade\n1782043200,sand,0\n1782043200,grass,0\n1782043200,sand,1\n1782043200,lava,0\n')
+check "sand is warmer than grass, grass than shaded sand, that than the air" \
+    awk -v a="$(cell 1 temp_k)" -v b="$(cell 2 temp_k)" -v c="$(cell 3 temp_k)" -v d="$(cell 3 air_temp_k)" 'BEGIN { exit !(a > b + 5 && b > c && c > d && d > 280) }'
+check "an unknown surface is named in its row" grep -q 'lava,0,,,,,,,,,surface is no row' "$tmp/stdout"
+PITVIPER=$pitviper etc/plot_heat --at 45 0 --slope 20 --aspect 180 2026-06-21 "$tmp/day.svg" sand burnt 2>"$tmp/stderr"
+check "plot_heat draws" test $? = 0 -a -s "$tmp/day.svg"
+for text in '>air<' '>sand<' '>burnt<' '2026-06-21 at 45 N 0 E' 'slope of 20 deg'; do
+    check "the picture says $text" grep -q -- "$text" "$tmp/day.svg"
+done
+check "with a line for each" test "$(grep -c '<polyline' "$tmp/day.svg")" = 3
+PITVIPER=$pitviper etc/plot_heat 2026-06-21 "$tmp/none.svg" lava 2>"$tmp/stderr"
+check "an unknown surface is no picture" test $? = 1 -a ! -e "$tmp/none.svg"
+check "and said" grep -q 'lava: surface is no row' "$tmp/stderr"
+
 finish

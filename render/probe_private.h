@@ -1,0 +1,11 @@
+/* render/probe_private.h: probes with a file of their own. */
+#ifndef RENDER_PROBE_PRIVATE_H
+#define RENDER_PROBE_PRIVATE_H
+
+#include "pitviper.h"
+
+Status      heat_probe_open(void **state, int argc, char **argv);
+const char *heat_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
+void        heat_probe_close(void *state);
+
+#endif
