@@ -57,7 +57,7 @@ double column_temp_k(const ColumnState *state, const Column *column, double dept
 /* Root of line + flux(T) - steep T, which falls. */
 static double surface_root(const ColumnBoundary *b, const void *law, double line, double steep, double guess_k)
 {
-    double falls, low_k = -INFINITY, high_k = INFINITY, temp_k = guess_k, last_k = NAN, last = NAN;
+    double falls, low_k = -INFINITY, high_k = INFINITY, temp_k = guess_k, last_k = NAN, last = NAN, before = NAN;
     for (int i = 0; i < 200; i++) {
         const double miss = line + b->flux(&falls, temp_k, law) - steep * temp_k;
         if (miss == 0) break;
@@ -68,11 +68,14 @@ static double surface_root(const ColumnBoundary *b, const void *law, double line
             if (secant > 0.2 * slope && secant < 5 * slope) slope = secant;
         }
         double next_k = temp_k + miss / slope;
-        if (!(next_k > low_k && next_k < high_k)) {
-            next_k = isinf(low_k) || isinf(high_k) ? temp_k + miss / slope : 0.5 * (low_k + high_k);
+        const bool open = isinf(low_k) || isinf(high_k), near = fabs(next_k - temp_k) < 1e-11 * fmax(fabs(temp_k), 1);
+        /* T^4 far from its root: Newton's steps up and the secant's down may go round in circles */
+        if (!(next_k > low_k && next_k < high_k) || (!open && !near && fabs(miss) > 0.5 * fabs(before))) {
+            next_k = open ? temp_k + miss / slope : 0.5 * (low_k + high_k);
             if (next_k == low_k || next_k == high_k) break;
         }
         if (next_k < 0) next_k = 0.5 * temp_k; /* no temperature below 0 K */
+        before = last; /* two steps ago */
         last_k = temp_k, last = miss;
         if (fabs(next_k - temp_k) < 1e-11 * fmax(fabs(temp_k), 1)) {
             temp_k = next_k;

@@ -564,7 +564,7 @@ double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uin
     f32x8_store(sum[1], taken);
     double total = 0, lost = 0;
     for (int i = 0; i < 8; i++) total += (double)sum[0][i], lost += (double)sum[1][i];
-    return total > 1e-3 ? lost / (255 * total) : 0;
+    return total > 1e-3 ? fmin(lost / (255 * total), 1) : 0; /* both are rounded */
 }
 
 void heat_scales(double *sun, double *sky, const HeatNow *now, int kind)

@@ -39,7 +39,11 @@ for what in "ground: " "ground: pyramid" "40 m up: frame" "100 m up: frame" "300
             "1 thread: sun rays" \
             "1 thread: shading" "small targets" "pass over edges" "truth of targets" "hash of the planes" "256 x 256" \
             "close target: one ray a pixel" "adaptive edges" "1 thread: frame" "optical alone, one ray" \
-            "radar alone" "files of a frame" "memory: posts" "memory: arena" "memory: resident"; do
+            "radar alone" "files of a frame" "heat of the ground: spin-up" "heat of the ground: a step" \
+            "heat of the ground: shadows of a day" "heat of the ground: a hit, with shadows" \
+            "heat of the ground: a hit, without" "heat of the ground: 100 m up.*as the air" \
+            "heat of the ground: 100 m up.*no shadows" "heat of the ground: 100 m up.*with shadows" \
+            "memory: posts" "memory: arena" "memory: resident"; do
     has speed "$what"
 done
 
@@ -68,7 +72,8 @@ for knob in "Earth to local frame" "latitude. longitude. height" "geoid between 
             "radiance of the sky" "light of the sky on a plane" "range to the ground" "range to a part" "rays a pixel" \
             "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
             "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "a small target's place" "electrons of a radiance" \
-            "display" "converter" \
+            "steps of the ground's heat" "elements of the ground's heat" "slopes of the ground's heat" \
+            "cells of past shade" "display" "converter" \
             "display's curve"; do
     check "precision has one default of: $knob" \
         [ "$(grep -cE "^precision,\"?$knob: .*,yes,.*,(\* )?default$" "$tmp/precision.csv")" = 1 ]
@@ -76,7 +81,13 @@ for knob in "Earth to local frame" "latitude. longitude. height" "geoid between 
         [ "$(grep -E "^precision,\"?$knob: .*,(\*|)$" "$tmp/precision.csv" | grep -vc "settings better")" -ge 1 ]
     has precision "$knob: settings better than the default"
 done
-for absent in "heat conduction" "shooting and bouncing"; do has precision "$absent.*none in this version"; done
+for when in morning noon afternoon; do
+    for kind in grass bare_soil road sand; do
+        for then in "in it" afterwards; do has precision "shade of the $when, $then, $kind: colder by.*,yes,"; done
+    done
+done
+has precision "shade of past hours: ground that was never shaded"
+for absent in "shooting and bouncing"; do has precision "$absent.*none in this version"; done
 
 # ---- the page, and two runs side by side
 if command -v python3 >/dev/null; then
@@ -130,7 +141,8 @@ for what in "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" 
             "sun: " "picture: a block" \
             "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "detector: " "display: " \
             "threads: " "plants: leaves edge-on" "plants: skimmed tops" "plants: trees at the origin and 200 km" \
-            "plants: a million trees"; do
+            "plants: a million trees" "heat: 1 K to 2000 K" "heat: the same: energy" "heat: polar day and night" \
+            "heat: 1950 and 2090" "heat: seven threads" "heat: back and forth in time"; do
     has stability "$what"
 done
 

@@ -8,6 +8,7 @@ const BenchSuite render_benches[] = {
     {.name = "precision", .help = "black bodies, light on surfaces, smoke", .run = bench_precision_light},
     {.name = "precision", .help = "a frame's tables of the air and the sky", .run = bench_precision_air},
     {.name = "precision", .help = "rays against ground and parts", .run = bench_precision_trace},
+    {.name = "precision", .help = "the ground's heat: steps, elements, slopes, shade", .run = bench_precision_heat},
     {.name = "crowd", .help = "frames in a world of 100,000 entities, and of tanks stacked in one place",
      .run = bench_speed_crowd},
     {.name = "stability", .help = "rays, light and pictures under stress: needles, far origins, 1 K, 200 km, 8192 px", .run = bench_stability},

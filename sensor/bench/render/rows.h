@@ -11,6 +11,7 @@ extern const int        render_bench_count;
 Status bench_precision_light(Bench *bench);
 Status bench_precision_air(Bench *bench);
 Status bench_precision_trace(Bench *bench);
+Status bench_precision_heat(Bench *bench);
 /* Of the suite `crowd`: speed_crowd.c. */
 Status bench_speed_crowd(Bench *bench);
 

@@ -301,8 +301,7 @@ static Status knob_sky(Precision *p)
 static void say_absent(Bench *bench)
 {
     static const char *const absent[] =
-        {"heat conduction, steps and cells: none in this version",
-                                         "radar by shooting and bouncing rays: none in this version"};
+        {"radar by shooting and bouncing rays: none in this version"};
     for (size_t k = 0; k < sizeof absent / sizeof *absent; k++) {
         const BenchRow row = bench_row(absent[k]);
         bench_add(bench, &row);

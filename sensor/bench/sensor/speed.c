@@ -486,6 +486,7 @@ static Status time_all(Speed *s)
     const RenderRequest radar = speed_request(&wide, 1u << BAND_RADAR, true);
     if (status == STATUS_OK) status = time_picture(s, "100 m up: radar alone, truth", &s->scene, &radar);
     if (status == STATUS_OK) status = speed_files(s);
+    if (status == STATUS_OK) status = speed_heat(s);
     if (status == STATUS_OK) speed_memory(s);
     return status;
 }
