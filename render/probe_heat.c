@@ -83,7 +83,7 @@ static Status warm(HeatProbe *p, double unix_s)
     p->drive.exercise_s = begin_s;
     HeatConfig config = heat_default_config();
     config.unix_s = begin_s, config.weather = heat_drive_weather, config.user = &p->drive, config.pool = p->pool;
-    return heat_create(&p->heat, &p->kinds, &config, false);
+    return heat_create(&p->heat, &p->kinds, &config, NULL, 0);
 }
 
 static double or_zero(const ProbeValue *value) { return isnan(value->number) ? 0 : value->number; }

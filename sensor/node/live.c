@@ -183,6 +183,8 @@ static Status listen_first(bool *heard, Live *l)
                 if (l->received_count > opening_before + 1) drop_received(l, l->received_count - opening_before - 1);
                 log_info("run: heard the first entity; listening for %g s (exercise.listen_s)",
                          config->exercise.listen_s);
+                log_info("run: what stood or drove before is not known%s; what stands at its first report is taken to have "
+                         "stood there for an hour", *config->heat.marks ? " beyond heat.marks" : " (heat.marks)");
             } else if (l->received_count >= 4 * opening_before) {
                 drop_received(l, l->received_count - opening_before);
             }

@@ -186,6 +186,14 @@ void session_note_host(Session *s)
 
 static void list_frame(void *user, const Frame *frame);
 
+/* What stood and drove before a restart. */
+static Status read_marks(Session *s)
+{
+    const char *path = s->shared->config->heat.marks;
+    if (!*path || access(path, F_OK) != 0) return STATUS_OK;
+    return entity_table_marks_load(s->table, s->shared->unix_s, path);
+}
+
 static Status open_session(Session *s)
 {
     const SessionShared *shared = s->shared;
@@ -232,6 +240,7 @@ static Status open_session(Session *s)
 
     if (!etc_path(path, sizeof path, "heat.csv")) return STATUS_BAD_VALUE;
     Status status = entity_table_create(&s->table, &table, shared->catalog, path);
+    if (status == STATUS_OK) status = read_marks(s);
     if (status == STATUS_OK) session_keep(s);
     if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, shared->config);
     return status == STATUS_OK ? session_consumers(s, list_frame) : status;
@@ -371,6 +380,8 @@ Status session_close(Session *s, SessionResult *result)
     detections_close(s->detections);
     geoid_close(&s->geoid);
     if (status == STATUS_OK) status = s->listed;
+    if (s->table && *s->shared->config->heat.marks && status == STATUS_OK)
+        status = entity_table_marks_save(s->table, s->shared->unix_s, s->shared->config->heat.marks);
     s->result.frames         = s->published;
     s->result.files_failed   = s->written.failed + s->lines_failed;
     s->result.files_left_out = s->written.left_out;

@@ -101,6 +101,7 @@ typedef struct Config {
         double step_s;             /* of the ground's state */
         int    facets;             /* normals of the ground, a side */
         double shadow_m;           /* cells of the shadow map; 0: none */
+        char   marks[1024];        /* file of ground marks over a restart; empty: none */
     } heat;
     struct {
         double relief_m, spacing_m;

@@ -185,7 +185,7 @@ static Status knob_facets(Bench *bench, const GroundKinds *kinds, Pool *pool)
     for (int f = 0; f < settings && status == STATUS_OK; f++) {
         set[f].arena = arena_create();
         c.facets = facets[f];
-        status = set[f].arena ? heat_create(&set[f].heat, kinds, &c, false) : STATUS_NO_MEMORY;
+        status = set[f].arena ? heat_create(&set[f].heat, kinds, &c, NULL, 0) : STATUS_NO_MEMORY;
         for (int t = 0; t < slope_times && status == STATUS_OK; t++) {
             HeatNow *now;
             set[f].unix_s = heat_day_unix_s + 3600 * slope_time_h(t);
@@ -282,7 +282,7 @@ static Status knob_shade(Bench *bench, const GroundKinds *kinds, Pool *pool)
     Status status = arena ? local_frame_at(&frame, &origin) : STATUS_NO_MEMORY;
     c.pool = pool;
     if (status == STATUS_OK) status = quick_landscape_create(&landscape, times_s, &frame, wide_m, wide_m, pool);
-    if (status == STATUS_OK) status = heat_create(&heat, kinds, &c, false);
+    if (status == STATUS_OK) status = heat_create(&heat, kinds, &c, NULL, 0);
     if (status == STATUS_OK) status = heat_now(&now, heat, c.unix_s, arena);
     if (status == STATUS_OK) {
         fine = (ShadeSet){.elevation = &landscape.elevation, .cell_m = 2, .pool = pool};
@@ -348,7 +348,7 @@ static Status shade_rows(Bench *bench, const GroundKinds *kinds, Pool *pool)
     Arena        *arena = arena_create();
     bench_progress(bench, "shade of past hours");
     c.pool = pool;
-    Status status = arena ? heat_create(&heat, kinds, &c, false) : STATUS_NO_MEMORY;
+    Status status = arena ? heat_create(&heat, kinds, &c, NULL, 0) : STATUS_NO_MEMORY;
     for (int k = 0; k < slope_kinds; k++)
         for (int w = 0; w < shade_windows && status == STATUS_OK; w++)
             status = heat_piece_begin(&piece[k][w], &kinds->kind[shown_kinds[k]], &c, level, windows[w].from_to_h);

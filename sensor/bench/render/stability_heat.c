@@ -151,7 +151,7 @@ static double wrong_of(const HeatStress *s, const HeatConfig *config, double hou
     Heat  *heat = NULL;
     Dice   dice = {.stream = 71};
     double wrong = 0;
-    if (heat_create(&heat, &s->kinds, config, true) != STATUS_OK) return INFINITY;
+    if (heat_create(&heat, &s->kinds, config, NULL, 0) != STATUS_OK) return INFINITY;
     for (int i = 0; i <= looks; i++) {
         HeatNow *now;
         arena_reset(s->arena);
@@ -220,7 +220,7 @@ static double threads_agree(void *user, bool quick)
     c.spin_up_s = 86400;
     arena_reset(s->arena);
     for (int k = 0; k < 2 && different == 0; k++, c.pool = pool)
-        if (heat_create(&heat[k], &s->kinds, &c, false) != STATUS_OK) different = INFINITY;
+        if (heat_create(&heat[k], &s->kinds, &c, NULL, 0) != STATUS_OK) different = INFINITY;
     for (int i = 0; i < 6 && isfinite(different); i++) {
         HeatNow *now[2];
         for (int k = 0; k < 2 && isfinite(different); k++)
@@ -243,12 +243,12 @@ static double back_in_time(void *user, bool quick)
     HeatConfig  c = config_of(&day, quick ? 3600 : 600, 3, heat_day_unix_s + 9 * 3600 + 17, NULL);
     double      different = 0;
     c.spin_up_s = 86400;
-    if (heat_create(&heat, &s->kinds, &c, false) != STATUS_OK) return INFINITY;
+    if (heat_create(&heat, &s->kinds, &c, NULL, 0) != STATUS_OK) return INFINITY;
     for (size_t i = 0; i < sizeof at_s / sizeof *at_s; i++) {
         Heat    *fresh = NULL;
         HeatNow *now[2];
         arena_reset(s->arena);
-        Status status = heat_create(&fresh, &s->kinds, &c, false);
+        Status status = heat_create(&fresh, &s->kinds, &c, NULL, 0);
         if (status == STATUS_OK) status = heat_now(&now[0], heat, c.unix_s + at_s[i], s->arena);
         if (status == STATUS_OK) status = heat_now(&now[1], fresh, c.unix_s + at_s[i], s->arena);
         different += status == STATUS_OK ? now_differs(now[0], now[1]) : INFINITY;
