@@ -1,8 +1,6 @@
 /* render/frame/world.c: opens the tables and the tracer once. */
 #include "render/frame/world.h"
 
-#include <stdlib.h>
-
 Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame,
                   const char *isa)
 {
@@ -50,10 +48,7 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
 
 void world_close(World *world)
 {
-    shadow_map_destroy(world->shadow);
-    heat_destroy(world->heat);
-    free(world->drive);
-    weather_course_close(world->course);
+    world_cool(world);
     forest_destroy(world->forest);
     canopy_destroy(world->canopy);
     plants_destroy(world->plants);

@@ -44,11 +44,21 @@ static int branch_kinds(BranchKind out[branch_most_kinds], const Materials *m)
     return count;
 }
 
+void world_cool(World *world)
+{
+    shadow_map_destroy(world->shadow);
+    heat_destroy(world->heat);
+    free(world->drive);
+    weather_course_close(world->course);
+    world->shadow = NULL, world->heat = NULL, world->drive = NULL, world->course = NULL;
+}
+
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool)
 {
     char        path[512];
     HeatConfig  c = *config;
     GroundKinds kinds;
+    world_cool(world);
     world->course = course;
     world->drive  = calloc(1, sizeof *world->drive);
     if (!world->drive) return STATUS_NO_MEMORY;
@@ -77,4 +87,12 @@ Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *mar
     if (!*out) return STATUS_NO_MEMORY;
     **out = (HeatScene){now, world->shadow, mark_heat};
     return STATUS_OK;
+}
+
+double world_air_k(const World *world, double unix_s)
+{
+    Weather w;
+    if (!world->course) return NAN;
+    weather_at(&w, world->course, unix_s);
+    return w.air_temp_k;
 }

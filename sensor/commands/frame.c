@@ -144,7 +144,8 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
     record.target = target_records(target, record.target_count, &s->snapshot, s->catalog, arena);
     if (!record.target) return STATUS_NO_MEMORY;
     if (frame_error(&error, &again->picture, &s->world, &s->snapshot, &file->request, target, record.target_count,
-                    s->config.models.sag_m, file->all_on_ground))
+                    s->config.models.sag_m, file->all_on_ground,
+                    world_air_k(&s->world, file->unix_s + file->time_s)))
         record.error = &error;
     if (snprintf(path, sizeof path, "%s/truth.jsonl", out) >= (int)sizeof path) return STATUS_BAD_VALUE;
     FILE  *to     = fopen(path, "w");

@@ -92,7 +92,7 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
     if (!r->target) return STATUS_NO_MEMORY;
     if (s->wants & WANT_ERROR && frame_error(&f->error, &seen->picture, shared->world, &seen->snapshot, &f->request,
                                              target, r->target_count, shared->config->models.sag_m,
-                                             shared->contact == GROUND_CONTACT_ALL))
+                                             shared->contact == GROUND_CONTACT_ALL, world_air_k(shared->world, f->unix_s)))
         r->error = &f->error;
     return STATUS_OK;
 }

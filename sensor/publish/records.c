@@ -159,7 +159,7 @@ static json_t *target_json(const TargetRecord *t)
 /* rms over the image as a share of the band's mean, by source; _k: the same in kelvin about that mean. */
 static json_t *error_json(const FrameRecord *r)
 {
-    static const char *const name[error_sources] = {"sampling", "level_of_detail", "table", "dead_reckoning", "total"};
+    static const char *const name[error_sources] = {"sampling", "level_of_detail", "table", "heat", "dead_reckoning", "total"};
     json_t *error = json_object();
     for (int b = 0; b < BAND_COUNT; b++) {
         char    kelvin[32];

@@ -52,13 +52,12 @@ static Weather trial_weather(const World *world)
     return weather;
 }
 
-/* Ground as warm as on a clear day. */
-static Status warm(TrialScene *scene)
+Status trial_scene_warm(TrialScene *scene, const HeatConfig *config)
 {
     const Geodetic           *place = &scene->world.frame.origin;
     const WeatherCourseConfig about = {trial_weather(&scene->world), 10, place->lon_rad, place->lat_rad};
     WeatherCourse            *course;
-    HeatConfig                heat = heat_default_config();
+    HeatConfig                heat = *config;
     heat.unix_s = scene->unix_s;
     const Status status = weather_course_open(&course, "clear", &about);
     return status == STATUS_OK ? world_warm(&scene->world, course, &heat, 16, NULL) : status;
@@ -77,7 +76,8 @@ Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char 
     if (status == STATUS_OK) status = entity_table_create(&scene.table, &config, scene.catalog, heat);
     if (status == STATUS_OK) status = world_open(&scene.world, scene.catalog, landscape, &landscape->frame, "avx2");
     if (status == STATUS_OK) status = atmosphere_open(&scene.world.atmosphere, "us1976");
-    if (status == STATUS_OK) status = warm(&scene);
+    const HeatConfig usual = heat_default_config();
+    if (status == STATUS_OK) status = trial_scene_warm(&scene, &usual);
     for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
         const TrialPlace place = vehicle_place(types[k % type_count], k, vehicles);
         status = trial_scene_place(&scene, &place);

@@ -18,6 +18,8 @@ typedef struct TrialScene {
 /* vehicles: this many in rows of five, 40 m apart, around the origin, turrets and guns rotated; types: used in turn. */
 Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path,
                         const DisEntityType *types, int type_count, int vehicles);
+/* Warms its ground again, as config says. */
+Status trial_scene_warm(TrialScene *scene, const HeatConfig *config);
 void   trial_scene_close(TrialScene *scene);
 
 /* One more report at the scene's time: at this distance east and north of the origin, this high above the ground. */

@@ -148,12 +148,15 @@ static const ReferenceField fields[] = {
      "models"},
     {"error.BAND.table", "number", "", "share of the band's mean", "", "interpolation in tables of the atmosphere and "
      "Planck's law"},
+    {"error.BAND.heat", "number", "", "share of the band's mean", "", "steps, elements and facets of the ground's heat; 0 "
+     "in optical and radar"},
     {"error.BAND.dead_reckoning", "number", "", "share of the band's mean", "", "position errors of dead-reckoned "
      "entities"},
     {"error.BAND.total", "number", "", "share of the band's mean", "", "total of these"},
     {"error.BAND.sampling_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"error.BAND.level_of_detail_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"error.BAND.table_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
+    {"error.BAND.heat_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"error.BAND.dead_reckoning_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"error.BAND.total_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"latency_ms", "object", "", "", "in a replay at full speed",

@@ -25,6 +25,7 @@ static const struct Field {
     {"snr", 0.05, 0.02},           {"veil_transmittance", 0.002, 0}, {"intensity_w_sr", 1e-4, 0.01},
     {"intensity_error_w_sr", 1e-4, 0.05}, /* an estimate: only its size */
     {"sampling", 1e-3, 0.05},      {"level_of_detail", 1e-3, 0.05}, {"table", 1e-3, 0.05},
+    {"heat", 1e-3, 0.05},          {"heat_k", 0.05, 0.05},
     {"dead_reckoning", 1e-3, 0.05},{"total", 1e-3, 0.05},
     {"sampling_k", 0.05, 0.05},    {"level_of_detail_k", 0.05, 0.05}, {"table_k", 0.05, 0.05},
     {"dead_reckoning_k", 0.05, 0.05}, {"total_k", 0.05, 0.05},

@@ -104,8 +104,20 @@ static double ground_way_m(const World *world, const SnapshotEntity *e, const Mo
     return hypot(mean_m, lean_m);
 }
 
+/* Squared error of temperature that ground and plants have by the steps, elements and facets of their heat: mean over all
+ * pixels, K2. */
+static double heat_k2(const Picture *p, double air_k)
+{
+    const size_t pixels = (size_t)p->width * (size_t)p->height;
+    double       sum = 0;
+    if (!p->temp_k || !isfinite(air_k)) return 0;
+    for (size_t i = 0; i < pixels; i++)
+        if (p->entity[i] == 0 && isfinite(p->temp_k[i])) sum += square(0.1 + 0.02 * fabs((double)p->temp_k[i] - air_k));
+    return sum / (double)pixels;
+}
+
 bool frame_error(FrameError *out, const Picture *picture, const World *world, const Snapshot *snapshot,
-                 const RenderRequest *request, const Target *target, int targets, double sag_m, bool clamped)
+                 const RenderRequest *request, const Target *target, int targets, double sag_m, bool clamped, double air_k)
 {
     const ErrorBudget *budget = picture->budget;
     const double       pixels = (double)picture->width * picture->height;
@@ -132,9 +144,12 @@ bool frame_error(FrameError *out, const Picture *picture, const World *world, co
             facets += shifted(&o, hypot(2.0 / 3 * sag_m, ground_m) * per_m);
         }
         const double square_of_mean = square(budget->mean[k]);
-        const double squares[ERROR_TOTAL] = {square(budget->sampling[k]),
-                                             square(budget->level_of_detail[k]) + facets / pixels,
-                                             square(budget->tables[k]), drift / pixels};
+        const PlanckTable *planck = b == BAND_MWIR ? world->planck_mwir : b == BAND_LWIR ? world->planck_lwir : NULL;
+        const double       kelvin = planck ? error_budget_kelvin(planck, budget->mean[k], 1) : NAN; /* for 1 W/(m2 sr) */
+        const double       heat = kelvin > 0 ? heat_k2(picture, air_k) / square(kelvin) : 0;
+        const double       squares[ERROR_TOTAL] = {square(budget->sampling[k]),
+                                                   square(budget->level_of_detail[k]) + facets / pixels,
+                                                   square(budget->tables[k]), heat, drift / pixels};
         for (int s = 0; s < ERROR_TOTAL; s++) {
             sums[b][s] += squares[s] / square_of_mean;
             sums[b][ERROR_TOTAL] += squares[s] / square_of_mean;

@@ -8,14 +8,18 @@
  * is right within a factor of 2 in three of four cases, limited by the unknown path of a single vehicle; over many
  * frames in nine of ten (tests/sensor/test_frame_error.c). Facets of models lie within models.sag_m of the surface,
  * two thirds of it in the mean, and shift outlines likewise; and a ground-clamped entity rises and tilts with the
- * error of the ground (render/frame/error_budget.h). */
+ * error of the ground (render/frame/error_budget.h).
+ *
+ * Heat. Temperatures of the ground are off by what its elements, its steps of time and its facets leave out: 0.1 K and
+ * 2 % of how far a place is from the air's temperature (rows `heat` of bench precision). What its materials and the weather
+ * leave out, 0.6 to 1.6 K on measured days, is not included. */
 #ifndef SENSOR_TRUTH_FRAME_ERROR_H
 #define SENSOR_TRUTH_FRAME_ERROR_H
 
 #include "sensor/truth/truth.h"
 
 typedef enum ErrorSource {
-    ERROR_SAMPLING, ERROR_LEVEL_OF_DETAIL, ERROR_TABLES, ERROR_DEAD_RECKONING, ERROR_TOTAL, error_sources
+    ERROR_SAMPLING, ERROR_LEVEL_OF_DETAIL, ERROR_TABLES, ERROR_HEAT, ERROR_DEAD_RECKONING, ERROR_TOTAL, error_sources
 } ErrorSource;
 
 /* rms over the image, as a share of the band's mean; of the optical band the root of its channels' mean square.
@@ -24,8 +28,8 @@ typedef struct FrameError {
     double share[BAND_COUNT][error_sources], kelvin[BAND_COUNT][error_sources];
 } FrameError;
 
-/* False without a budget in the picture or without truth planes. */
+/* air_k: of the weather; NaN: heat is left out. False without a budget in the picture or without truth planes. */
 bool frame_error(FrameError *out, const Picture *picture, const World *world, const Snapshot *snapshot,
-                 const RenderRequest *request, const Target *target, int targets, double sag_m, bool clamped);
+                 const RenderRequest *request, const Target *target, int targets, double sag_m, bool clamped, double air_k);
 
 #endif

@@ -153,7 +153,8 @@ static FrameError error_of(TrialFrame *f)
     ecef_from_enu(eye.p_ecef, &lab.frame, f->request.view.p_enu);
     m3_mul(eye.r_ecef_from_cam, lab.frame.r_ecef_from_enu, f->request.view.r_enu_from_cam);
     const int targets = truth_targets(target, &f->picture, &f->scene->world, &f->snapshot, &f->request, &eye, &noise);
-    CHECK(frame_error(&error, &f->picture, &f->scene->world, &f->snapshot, &f->request, target, targets, 0.002, true));
+    CHECK(frame_error(&error, &f->picture, &f->scene->world, &f->snapshot, &f->request, target, targets, 0.002, true,
+                      world_air_k(&f->scene->world, f->scene->unix_s)));
     return error;
 }
 
@@ -217,6 +218,26 @@ static inline void judge_ground(Tally *tally, const ErrorScene *of)
         judge(tally, of->name, "level_of_detail", (Band)band, error.share[band][ERROR_LEVEL_OF_DETAIL],
               apart(&a.picture, &b.picture, (Band)band));
     trial_scene_close(&coarse);
+    trial_scene_close(&fine);
+}
+
+/* Heat: of ground, against steps of 120 s, 33 more facets a side and elements of 1 mm. */
+static inline void judge_heat(Tally *tally, const ErrorScene *of)
+{
+    TrialScene scene, fine;
+    open_scene(&scene, &lab.ground, of);
+    open_scene(&fine, &lab.ground, of);
+    HeatConfig heat = heat_default_config();
+    heat.step_s = 150, heat.facets = heat_most_facets, heat.grid = (GroundGrid){0.0012, 1.17, 3, 0.002};
+    CHECK(trial_scene_warm(&fine, &heat) == STATUS_OK);
+    RenderRequest    request = request_of(&scene, of);
+    TrialFrame       frame = frame_of(&scene, &request, 0);
+    const FrameError error = error_of(&frame);
+    request.budget = false;
+    const TrialFrame better = frame_of(&fine, &request, 1);
+    for (int b = BAND_MWIR; b < radiance_bands; b++)
+        judge(tally, of->name, "heat", (Band)b, error.share[b][ERROR_HEAT], apart(&frame.picture, &better.picture, (Band)b));
+    trial_scene_close(&scene);
     trial_scene_close(&fine);
 }
 

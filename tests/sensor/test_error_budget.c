@@ -13,11 +13,12 @@ enum { scene_count = sizeof scenes / sizeof *scenes };
 static void estimates_are_near_the_truth(void **state)
 {
     (void)state;
-    Tally rays = {0}, ground = {0}, tables = {0};
+    Tally rays = {0}, ground = {0}, tables = {0}, heat = {0};
     for (int k = 0; k < scene_count; k++) {
         judge_sampling(&rays, &scenes[k]);
         judge_ground(&ground, &scenes[k]);
         judge_tables(&tables, &scenes[k]);
+        judge_heat(&heat, &scenes[k]);
     }
     const bool held[] = {nine_in_ten(&rays, "sampling"), nine_in_ten(&ground, "level of detail"),
                          nine_in_ten(&tables, "tables")};

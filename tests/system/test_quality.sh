@@ -16,7 +16,7 @@ check "the same configuration" [ "$(config_hash "$tmp/plain")" = "$(config_hash 
 replay "$tmp/demo.pcap" "$tmp/one" "${few[@]}" --threads 1
 errors() { grep -o '"error":{.*' "$1/truth.jsonl"; }
 check "the same errors on one thread" [ "$(errors "$tmp/on")" = "$(errors "$tmp/one")" ]
-for source in sampling level_of_detail table dead_reckoning total total_k; do
+for source in sampling level_of_detail table heat dead_reckoning total total_k; do
     check "$source" grep -q "\"$source\":" "$tmp/on/truth.jsonl"
 done
 
