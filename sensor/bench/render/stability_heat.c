@@ -145,7 +145,7 @@ static double wrong_values(const HeatNow *now, Dice *dice)
     return wrong;
 }
 
-/* Over hours_h from the beginning; -1: it could not be set up. */
+/* Over hours_h from the beginning. */
 static double wrong_of(const HeatStress *s, const HeatConfig *config, double hours_h, int looks)
 {
     Heat  *heat = NULL;
@@ -263,7 +263,7 @@ Status stability_heat(Bench *bench)
     static const StabilityCase cases[] = {
         {"heat: 1 K to 2000 K, layers of 1 um to 1 m, steps of 1 ms to 1e5 s", out_of_range, 2, "% of the range",
          "between the ground and its surroundings"},
-        {"heat: the same: energy", energy_lost, 1e-6, "of what was exchanged", "stored against let in"},
+        {"heat: the same: energy", energy_lost, 1e-6, "exchanged", "stored against let in"},
         {"heat: polar day and night, zenith, 0 and 60 m/s, 220 and 330 K", extremes, 0, "values", "150 .. 400 K"},
         {"heat: 1950 and 2090, steps of 60 and 3600 s, 3 and 17 facets", grids_and_dates, 0, "values", "150 .. 400 K"},
         {"heat: seven threads", threads_agree, 0, "octets differ", "no pool"},
