@@ -24,6 +24,18 @@ typedef struct Sky { /* of one step of the past */
     double sun_d_enu[3];
 } Sky;
 
+typedef struct Interval {
+    int64_t from, to; /* times of the grid, from < to */
+} Interval;
+
+/* The next step, as far as it has been worked at. */
+typedef struct Ahead {
+    int           part, intervals;
+    GroundWeather after;
+    Interval      interval[heat_past];
+    HeatPast      past;
+} Ahead;
+
 struct Heat {
     GroundKinds   kinds;
     HeatConfig    config;
@@ -31,14 +43,16 @@ struct Heat {
     ColumnFactors factors[2][ground_kinds]; /* of step_s, and of half hours */
     int           columns;              /* a kind */
     KindState     state[ground_kinds];
-    GroundColumn  level[ground_kinds];  /* level ground, a step before */
+    GroundColumn  level[2][ground_kinds]; /* level ground at the times of the tables */
+    Ahead        *ahead;
     GroundColumn *begun;                /* all columns at the beginning of the exercise */
     float         begun_falls[ground_kinds][history];
     Sky           sky[history], begun_sky[history];
     int64_t       index, begun_index;   /* time of the columns: unix = index * step_s */
+    int64_t       shown;                /* of table[1]; the columns may be a step ahead of it */
     int64_t       first;                /* of the spin-up */
     GroundWeather weather[2];           /* at the columns' time, and a step before */
-    GroundHeatTable    *table;                /* [2]: a step before, and now; past alike */
+    GroundHeatTable *table;             /* [2]: a step before, and at shown; past alike */
     HeatPast     *past;
     int           slots, slot_of[heat_day_slots]; /* place of each half hour of UTC; -1: night */
     float         slot_d_enu[3][heat_day_slots];
@@ -188,10 +202,6 @@ static void linear_law(void *law, double share, const void *user)
     *(Linear *)law = *(const Linear *)user;
 }
 
-typedef struct Interval {
-    int64_t from, to; /* times of the grid, from < to */
-} Interval;
-
 /* Intervals of the past, newest first: single steps for three hours, half hours to six, hours to a day and more. */
 static int past_intervals(Interval out[heat_past], const Heat *h)
 {
@@ -248,9 +258,9 @@ static void respond(void *user, int worker, int kind)
     }
 }
 
-static void fill_past(Heat *h, HeatPast *out)
+/* All but the responses. */
+static int begin_past(Heat *h, HeatPast *out, Interval interval[heat_past])
 {
-    Interval  interval[heat_past];
     const int count = past_intervals(interval, h);
     *out = (HeatPast){.count = count};
     for (int i = 0; i < count; i++) {
@@ -263,6 +273,13 @@ static void fill_past(Heat *h, HeatPast *out)
     }
     for (int k = 1; k < ground_kinds; k++) /* of the first element: its half and its conductance have the same size */
         out->effusivity[k] = (float)sqrt(2 * h->layers[k].capacity_j_m2k[0] * h->layers[k].conductance_w_m2k[0]);
+    return count;
+}
+
+static void fill_past(Heat *h, HeatPast *out)
+{
+    Interval  interval[heat_past];
+    const int count = begin_past(h, out, interval);
     run(h, respond, &(PastJob){h, interval, count, out});
 }
 
@@ -299,17 +316,44 @@ static void fill_table(Heat *h, GroundHeatTable *out, const HeatPast *past)
     }
 }
 
+/* The next step is worked at in parts, ahead of its time, some with each frame, so that no frame pays for all of it: first
+ * the columns of each kind, then what they share, then the responses of each kind. */
+enum { ahead_parts = 2 * ground_kinds + 1, ahead_a_frame = 8 };
+
+static void work_ahead(Heat *h, int parts)
+{
+    Ahead       *a = h->ahead;
+    const double begun_s = wall_clock_s();
+    for (int n = 0; n < parts && a->part < ahead_parts; n++, a->part++) {
+        if (a->part == 0) h->config.weather(&a->after, (double)(h->index + 1) * h->config.step_s, h->config.user);
+        if (a->part < ground_kinds) {
+            step_kind(&(StepJob){h, h->config.step_s, &h->weather[1], &a->after}, 0, a->part);
+        } else if (a->part == ground_kinds) {
+            step_branches(h, &a->after, h->config.step_s);
+            h->index++;
+            h->weather[0] = h->weather[1];
+            h->weather[1] = a->after;
+            remember(h, 1);
+            a->intervals = begin_past(h, &a->past, a->interval);
+        } else {
+            respond(&(PastJob){h, a->interval, a->intervals, &a->past}, 0, a->part - ground_kinds - 1);
+        }
+    }
+    h->spent_s += wall_clock_s() - begun_s;
+}
+
 static void next_table(Heat *h)
 {
+    const int level = h->config.facets * h->config.facets / 2;
+    work_ahead(h, ahead_parts);
     const double begun_s = wall_clock_s();
-    GroundHeatTable    table = h->table[1];
-    HeatPast     past = h->past[1];
-    h->table[0] = table;
-    h->past[0] = past;
-    for (int k = 0; k < ground_kinds; k++) h->level[k] = h->state[k].column[h->config.facets * h->config.facets / 2];
-    advance(h, 1);
-    fill_past(h, &h->past[1]);
+    h->table[0] = h->table[1];
+    h->past[0] = h->past[1];
+    h->past[1] = h->ahead->past;
     fill_table(h, &h->table[1], &h->past[1]);
+    for (int k = 0; k < ground_kinds; k++) h->level[0][k] = h->level[1][k], h->level[1][k] = h->state[k].column[level];
+    h->ahead->part = 0;
+    h->shown = h->index;
     h->spent_s += wall_clock_s() - begun_s;
     h->steps++;
 }
@@ -384,6 +428,8 @@ static void back_to_begun(Heat *h)
     memcpy(h->sky, h->begun_sky, sizeof h->sky);
     memcpy(h->branch, h->begun_branch, sizeof h->branch);
     h->index = h->begun_index;
+    h->ahead->part = 0;
+    for (int k = 0; k < ground_kinds; k++) h->level[1][k] = h->state[k].column[h->config.facets * h->config.facets / 2];
     h->config.weather(&h->weather[1], (double)h->index * h->config.step_s, h->config.user);
     fill_past(h, &h->past[1]);
     fill_table(h, &h->table[1], &h->past[1]);
@@ -403,8 +449,9 @@ Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *confi
     h->columns = config->facets * config->facets + 2 * heat_ups + 1;
     h->table = calloc(2, sizeof *h->table);
     h->past  = calloc(2, sizeof *h->past);
+    h->ahead = calloc(1, sizeof *h->ahead);
     h->begun = calloc((size_t)ground_kinds * (size_t)h->columns, sizeof *h->begun);
-    Status status = h->table && h->past && h->begun ? STATUS_OK : STATUS_NO_MEMORY;
+    Status status = h->table && h->past && h->begun && h->ahead ? STATUS_OK : STATUS_NO_MEMORY;
     for (int k = 0; k < ground_kinds && status == STATUS_OK; k++) {
         h->state[k].column = calloc((size_t)h->columns, sizeof *h->state[k].column);
         status = h->state[k].column ? ground_layers(&h->layers[k], &h->kinds.kind[k], &config->grid) : STATUS_NO_MEMORY;
@@ -443,6 +490,7 @@ void heat_destroy(Heat *h)
     for (int k = 0; k < ground_kinds; k++) free(h->state[k].column);
     free(h->begun);
     free(h->past);
+    free(h->ahead);
     free(h->table);
     free(h);
 }
@@ -455,12 +503,12 @@ double heat_spent_s(const Heat *h, int *steps)
 
 size_t heat_bytes(const Heat *h)
 {
-    return sizeof *h + 2 * (sizeof *h->table + sizeof *h->past) + 2 * (size_t)ground_kinds * (size_t)h->columns * sizeof *h->begun;
+    return sizeof *h + sizeof *h->ahead + 2 * (sizeof *h->table + sizeof *h->past) + 2 * (size_t)ground_kinds * (size_t)h->columns * sizeof *h->begun;
 }
 
 void heat_level(GroundColumn *out, const Heat *h, int kind, double share)
 {
-    const GroundColumn *from = &h->level[kind], *to = &h->state[kind].column[h->config.facets * h->config.facets / 2];
+    const GroundColumn *from = &h->level[0][kind], *to = &h->level[1][kind];
     *out = *from;
     for (int i = 0; i < from->column->nodes; i++) out->state.temp_k[i] += share * (to->state.temp_k[i] - from->state.temp_k[i]);
     out->saturation += share * (to->saturation - from->saturation);
@@ -483,12 +531,12 @@ Status heat_now(HeatNow **out, Heat *h, double unix_s, Arena *arena)
 {
     const double step_s = h->config.step_s, at = fmax(unix_s / step_s, (double)h->begun_index);
     if (!(at < 1e12)) return STATUS_BAD_VALUE;
-    if (at < (double)(h->index - 1)) back_to_begun(h);
-    while (at > (double)h->index) next_table(h);
+    if (at < (double)(h->shown - 1)) back_to_begun(h);
+    while (at > (double)h->shown) next_table(h);
     HeatNow *now = arena_alloc(arena, 1, sizeof *now);
     if (!now) return STATUS_NO_MEMORY;
     const GroundHeatTable *a = &h->table[0], *b = &h->table[1];
-    const float      share = (float)(at - (double)(h->index - 1));
+    const float      share = (float)(at - (double)(h->shown - 1));
     now->share = (double)share;
     now->table = (GroundHeatTable){.unix_s = unix_s, .facets = a->facets, .air_k = a->air_k + (double)share * (b->air_k - a->air_k)};
     const size_t floats = (sizeof(GroundHeatTable) - offsetof(GroundHeatTable, sun_k)) / sizeof(float);
@@ -499,6 +547,7 @@ Status heat_now(HeatNow **out, Heat *h, double unix_s, Arena *arena)
     now->slots = h->slots;
     now->branches = h->branches;
     for (int k = 0; k < h->branches; k++) now->branch_material[k] = h->branch_kind[k].material;
+    work_ahead(h, ahead_a_frame);
     *out = now;
     return STATUS_OK;
 }

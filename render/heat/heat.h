@@ -73,7 +73,8 @@ typedef struct Heat Heat;
  * that stand; with some, forests are seen as their floor. */
 Status heat_create(Heat **out, const GroundKinds *kinds, const HeatConfig *config, const BranchKind *branch, int branches);
 void   heat_destroy(Heat *heat); /* accepts NULL */
-/* In the arena. Advances the state; times before the exercise: as at its beginning. */
+/* In the arena. Advances the state, and works ahead at the next step, some of it each time; times before the exercise: as at
+ * its beginning. */
 Status heat_now(HeatNow **out, Heat *heat, double unix_s, Arena *arena);
 /* Level ground of a kind in the open, its temperatures with depth and its water, at the time of the last heat_now: share as
  * that has it. It points into heat. */

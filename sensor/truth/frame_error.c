@@ -112,7 +112,7 @@ static double heat_k2(const Picture *p, double air_k)
     double       sum = 0;
     if (!p->temp_k || !isfinite(air_k)) return 0;
     for (size_t i = 0; i < pixels; i++)
-        if (p->entity[i] == 0 && isfinite(p->temp_k[i])) sum += square(0.1 + 0.02 * fabs((double)p->temp_k[i] - air_k));
+        if (p->entity[i] == 0 && isfinite(p->temp_k[i])) sum += square(0.03 + 0.005 * fabs((double)p->temp_k[i] - air_k));
     return sum / (double)pixels;
 }
 

@@ -10,8 +10,8 @@
  * two thirds of it in the mean, and shift outlines likewise; and a ground-clamped entity rises and tilts with the
  * error of the ground (render/frame/error_budget.h).
  *
- * Heat. Temperatures of the ground are off by what its elements, its steps of time and its facets leave out: 0.1 K and
- * 2 % of how far a place is from the air's temperature (rows `heat` of bench precision). What its materials and the weather
+ * Heat. Temperatures of the ground are off by what its elements, its steps of time and its facets leave out: 0.03 K and
+ * 0.5 % of how far a place is from the air (tests/sensor/test_error_budget.c: within a factor of 2). What its materials and the weather
  * leave out, 0.6 to 1.6 K on measured days, is not included. */
 #ifndef SENSOR_TRUTH_FRAME_ERROR_H
 #define SENSOR_TRUTH_FRAME_ERROR_H

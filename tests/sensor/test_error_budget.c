@@ -23,6 +23,7 @@ static void estimates_are_near_the_truth(void **state)
     const bool held[] = {nine_in_ten(&rays, "sampling"), nine_in_ten(&ground, "level of detail"),
                          nine_in_ten(&tables, "tables")};
     CHECK(held[0] && held[1] && held[2]);
+    for (int b = BAND_MWIR; b <= BAND_LWIR; b++) CHECK(heat.cases[b] == scene_count && heat.held[b] == scene_count);
 }
 
 /* What the tests count by can fail, in one band alone, too; and an estimate that is two and a half times the truth
