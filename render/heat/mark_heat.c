@@ -241,7 +241,9 @@ static void add_track(MarkedGround *out, const MarkHeat *m, const Track *t, int 
     const double along_m = x * t->d[0] + y * t->d[1], across_m = fabs(x * t->d[1] - y * t->d[0]);
     if (along_m < 0 || along_m > t->length_m || fabs(across_m - 0.5 * t->apart_m) > 0.5 * t->width_m) return;
     if (fabs(p_enu[2] - t->a_enu[2]) > touches_m + 0.5 * t->length_m) return;
-    out->add_k += pulse_k(&m->now->past[1], kind, t->heat_j_m2, m->unix_s - t->a_s - along_m / t->length_m * (t->b_s - t->a_s));
+    /* what grows there is pressed into the soil that takes the heat */
+    const int warmed = ground_kind_loosens(kind) ? SURFACE_PLOUGHED : kind;
+    out->add_k += pulse_k(&m->now->past[1], warmed, t->heat_j_m2, m->unix_s - t->a_s - along_m / t->length_m * (t->b_s - t->a_s));
     out->loose = fmax(out->loose, t->loose);
 }
 
@@ -251,7 +253,7 @@ static void add_burn(MarkedGround *out, const MarkHeat *m, const Burn *b, const 
     if (r >= 1) return;
     const double share = 1 - r * r * r * r;
     out->burnt = fmax(out->burnt, share);
-    out->add_k += share * pulse_k(&m->now->past[1], ground_burnt, b->heat_j_m2, m->unix_s - b->t_s);
+    out->add_k += share * pulse_k(&m->now->past[1], SURFACE_PLOUGHED, b->heat_j_m2, m->unix_s - b->t_s);
 }
 
 bool mark_heat_at(MarkedGround *out, const MarkHeat *m, int kind, const double p_enu[3], const double n_enu[3], double lit)
