@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# The ground's heat in frames: a function of log, settings and time alone, whatever is rendered of it; shade, stands and
+# weather that show; marks over a restart.
+. "$(dirname "$0")/common.sh"
+
+exercise tests/regress/departed/scenario.yaml "$tmp/gone.pcap"
+look=(--bands lwir --rate 0.01 --config "$tmp/look.yaml")
+cat >"$tmp/look.yaml" <<'YAML'
+sensor: {hfov_deg: 24}
+exercise: {aim: 1:3001:1}
+observer: {range_m: 60, height_m: 45}
+terrain: {detail: off}
+YAML
+sha_of() { grep "\"frame\":$2," "$1/truth.jsonl" | grep -o '"frame_sha256":"[0-9a-f]*"'; }
+same_frame() { [ -n "$(sha_of "$1" "$3")" ] && [ "$(sha_of "$1" "$3")" = "$(sha_of "$2" "$3")" ]; }
+
+replay "$tmp/gone.pcap" "$tmp/whole" "${look[@]}"
+check "19 frames" [ "$(frames "$tmp/whole")" = 19 ]
+replay "$tmp/gone.pcap" "$tmp/late" "${look[@]}" --from +1150
+check "--from: the last frame is that of the whole" same_frame "$tmp/whole" "$tmp/late" 18
+replay "$tmp/gone.pcap" "$tmp/one" "${look[@]}" --only 1,18 --threads 1
+check "one thread, two frames: the same bits" same_frame "$tmp/whole" "$tmp/one" 1
+check "and of the other" same_frame "$tmp/whole" "$tmp/one" 18
+replay "$tmp/gone.pcap" "$tmp/all" "${look[@]}" --only 1 --no-skip
+check "--no-skip: the same bits" same_frame "$tmp/whole" "$tmp/all" 1
+replay "$tmp/gone.pcap" "$tmp/bands" "${look[@]}" --only 1,18 --bands lwir,mwir,optical
+check "other bands change nothing in this one" same_planes "$tmp/bands" "$tmp/one"
+
+# A tank stood there for an hour in the morning: without its marks the ground would be another. A world whose weather is
+# constant, or cloudy, or measured, is another too.
+other() { # WHAT SETTING...
+    local what=$1; shift
+    replay "$tmp/gone.pcap" "$tmp/other" "${look[@]}" --only 1 "$@"
+    check "$what: replayed" [ "$code" = 0 ]
+    check "$what: changes the frame" not same_frame "$tmp/one" "$tmp/other" 1
+}
+other "constant weather" --set weather.day=constant
+other "clouds" --set weather.cloud=0.8
+other "dry air" --set weather.humidity_pct=10
+other "another grid of time" --set heat.step_s=1800
+{
+    echo 'time_utc,air_temp_c,direct_w_m2,diffuse_w_m2,wind_mps'
+    for hour in {0..23}; do printf '2026-06-21T%02d:00:00Z,%d,0,%d,4\n' "$hour" $((8 + hour / 4)) $((hour > 4 && hour < 20 ? 150 : 0)); done
+} >"$tmp/rain.csv"
+other "a weather file" --set weather.day="$tmp/rain.csv"
+check "run.json names the file" grep -q '"weather/rain.csv"' "$tmp/other/run.json"
+replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set weather.day="$tmp/none.csv"
+check "no such weather file: an error" [ "$code" != 0 ]
+check "that names it" complained 'none.csv'
+replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set weather.day=sunny
+check "no such day: an error with what there is" complained 'clear'
+replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set heat.facets=8
+check "even facets: an error" complained 'odd'
+
+# Hills in low sun, from far.
+hills=(--only 0 --set exercise.utc=2026-06-21T18:45:00Z --set terrain.relief_m=80 --set observer.range_m=2500 --set observer.height_m=400)
+replay "$tmp/gone.pcap" "$tmp/shaded" "${look[@]}" "${hills[@]}"
+replay "$tmp/gone.pcap" "$tmp/unshaded" "${look[@]}" "${hills[@]}" --set heat.shadow_m=0
+check "shadows of hills change the frame" not same_frame "$tmp/shaded" "$tmp/unshaded" 0
+
+# Over a restart: what stood before is read, and shows.
+replay "$tmp/gone.pcap" "$tmp/first" "${look[@]}" --only 0,2 --set heat.marks="$tmp/marks.csv"
+check "marks are written" grep -q '^stand,' "$tmp/marks.csv"
+check "a trail is among them" grep -q '^track,' "$tmp/marks.csv"
+cp "$tmp/marks.csv" "$tmp/kept.csv"
+replay "$tmp/gone.pcap" "$tmp/again" "${look[@]}" --only 2 --set heat.marks="$tmp/kept.csv"
+check "and read: replayed" [ "$code" = 0 ]
+printf 'stand,what is this\n' >"$tmp/kept.csv"
+replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 2 --set heat.marks="$tmp/kept.csv"
+check "a broken file of marks: an error" [ "$code" != 0 ]
+check "that says where" complained 'kept.csv'
+finish
