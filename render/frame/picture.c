@@ -123,6 +123,7 @@ void render_counters_add(RenderCounters *sum, const RenderCounters *more)
     to->rays_sun_parts += from->rays_sun_parts;
     to->rays_plants += from->rays_plants;
     to->rays_sun_plants += from->rays_sun_plants;
+    to->rays_sun_for_heat += from->rays_sun_for_heat;
     to->skipped_parts += from->skipped_parts;
     to->skipped_sun_parts += from->skipped_sun_parts;
     for (int k = 0; k < SKIP_COUNT; k++) to->skipped[k] += from->skipped[k];

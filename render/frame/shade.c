@@ -72,13 +72,14 @@ void samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const in
 void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const double t0 = wall_clock_s();
-    uint8_t      dark[hits_capacity];
-    bool         leaves = false; /* whose temperature follows the same ray */
-    for (int i = 0; i < s->hits.count && !leaves; i++) leaves = s->hits.kind[i] == hit_plant;
-    if (leaves || s->channels & ~(1u << AIR_LWIR))
+    uint8_t      dark[hits_capacity] = {0};
+    int          leaves = 0; /* whose temperature follows the same ray */
+    const bool   light = s->channels & ~(1u << AIR_LWIR);
+    const bool   heat = s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature;
+    for (int i = 0; i < s->hits.count && heat; i++) leaves += s->hits.kind[i] == hit_plant;
+    if (light) shader->counters.rays_sun_for_heat += (uint64_t)leaves;
+    if (leaves > 0 || light)
         visibility_shadow(dark, scene->visibility, &s->hits, scene->air->light.sun_d_enu, &shader->counters);
-    else
-        memset(dark, 0, (size_t)s->hits.count);
     for (int i = 0; i < s->hits.count; i++) s->sun[i] = dark[i] ? 0 : 1;
     shader->shadow_s += wall_clock_s() - t0;
 }

@@ -333,6 +333,7 @@ static json_t *counters_json(const RunRecord *r)
     set_count(counters, "rays_parts", v->rays_parts);
     set_count(counters, "rays_sun_ground", v->rays_sun_ground);
     set_count(counters, "rays_sun_parts", v->rays_sun_parts);
+    set_count(counters, "rays_sun_for_heat", v->rays_sun_for_heat);
     set_count(skipped, "ray_entity_pairs", v->skipped_parts);
     set_count(skipped, "sun_ray_entity_pairs", v->skipped_sun_parts);
     set_count(skipped, "tiles_without_entities", r->render.tiles_without_entities);

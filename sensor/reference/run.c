@@ -108,6 +108,8 @@ static const ReferenceField fields[] = {
     {"counters.rays_parts", "integer", "", "", "", "rays tested against parts of entities"},
     {"counters.rays_sun_ground", "integer", "", "", "", "shadow rays against the ground"},
     {"counters.rays_sun_parts", "integer", "", "", "", "shadow rays against parts of entities"},
+    {"counters.rays_sun_for_heat", "integer", "", "", "", "rays to the sun from plants that served their light and their "
+     "temperature: so many were saved"},
     {"counters.skipped", "object", "", "", "", "computations skipped, with the same output (--no-skip)"},
     {"counters.skipped.ray_entity_pairs", "integer", "", "", "", "ray-entity pairs in all"},
     {"counters.skipped.sun_ray_entity_pairs", "integer", "", "", "", "shadow-ray-entity pairs in all"},

@@ -414,6 +414,40 @@ static void a_view_sees_what_all_round_sees(void **state)
     }
 }
 
+/* Half and all of the sky in clouds, by the papers' formulas; measured radiation as it is; the thermal sky of an overcast is
+ * as warm as the air. */
+static void clouds_dim_the_sun_and_warm_the_sky(void **state)
+{
+    (void)state;
+    Weather   weather = weather_default();
+    const unsigned bands = 1 << AIR_PAN | 1 << AIR_LWIR;
+    const Air clear_air = air_of(&weather, 45, 2, bands, NULL);
+    const Daylight clear = clear_air.light;
+    const double high = clear.sun_d_enu[2], global = clear.solar_direct_w_m2 * high + clear.solar_diffuse_w_m2;
+    static const double cloud[] = {0.5, 1};
+    for (int k = 0; k < 2; k++) {
+        weather.cloud = cloud[k];
+        const Air       air = air_of(&weather, 45, 2, bands, NULL);
+        const Daylight *l = &air.light;
+        CHECK_NEAR(l->solar_direct_w_m2, clear.solar_direct_w_m2 * (1 - cloud[k]), 1e-9);
+        CHECK_NEAR(l->solar_direct_w_m2 * high + l->solar_diffuse_w_m2, global * (1 - 0.75 * pow(cloud[k], 3.4)), 1e-6);
+        CHECK_NEAR(l->longwave_loss_w_m2, clear.longwave_loss_w_m2 * (1 - 0.84 * cloud[k]), 1e-9);
+        CHECK_NEAR(l->sun_w_m2[AIR_PAN], clear.sun_w_m2[AIR_PAN] * (1 - cloud[k]), 1e-9);
+        CHECK_NEAR(daylight_on_plane(l, AIR_PAN, (const double[3]){0, 0, 1}) / daylight_on_plane(&clear, AIR_PAN, (const double[3]){0, 0, 1}),
+                   l->solar_diffuse_w_m2 / clear.solar_diffuse_w_m2, 1e-4);
+        const double zenith[3] = {0, 0, 1}, black = planck_table_radiance(lwir, weather.air_temp_k);
+        const double was = daylight_sky(&clear, AIR_LWIR, zenith), is_now = daylight_sky(l, AIR_LWIR, zenith);
+        CHECK(was < 0.7 * black);
+        CHECK_NEAR(is_now, was + cloud[k] * (black - was), 2e-3 * black);
+    }
+    weather = weather_default();
+    weather.direct_w_m2 = 123, weather.diffuse_w_m2 = 234, weather.longwave_w_m2 = 345;
+    const Air measured = air_of(&weather, 45, 2, bands, NULL);
+    CHECK(measured.light.solar_direct_w_m2 == 123 && measured.light.solar_diffuse_w_m2 == 234);
+    CHECK_NEAR(measured.light.longwave_loss_w_m2, 5.670374419184429e-8 * pow(weather.air_temp_k, 4) - 345, 1e-9);
+    CHECK_NEAR(measured.light.sun_w_m2[AIR_PAN] / clear.sun_w_m2[AIR_PAN], 123 / clear.solar_direct_w_m2, 1e-9);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -428,6 +462,7 @@ int main(void)
         cmocka_unit_test(sky_is_cold_above_and_warm_at_the_horizon),
         cmocka_unit_test(warm_air_glows_by_planck),
         cmocka_unit_test(a_view_sees_what_all_round_sees),
+        cmocka_unit_test(clouds_dim_the_sun_and_warm_the_sky),
     };
     return cmocka_run_group_tests(tests, open_tables, close_tables);
 }
