@@ -38,13 +38,13 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
 /* Warms the ground up to unix_s, that of exercise time 0. course becomes the world's, on failure too. shadow_m: cells of
  * its shadow map; 0: none. After world_plant, with an atmosphere. */
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool);
+/* The same for a clear day of the atmosphere's own temperature: what benches and pictures of models stand on. */
+Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m, Pool *pool);
 void   world_cool(World *world); /* the opposite */
 /* The ground's heat at a time, in the arena; *out NULL where the world is not warm. marks: may be NULL. */
 Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena);
 /* Air temperature at ground level then, K; NaN: the world is not warm. */
 double world_air_k(const World *world, double unix_s);
-/* Sun and all of its radiation at the frame's origin under this weather: what the ground is warmed by. */
-Status world_daylight(Daylight *out, const World *world, const Weather *weather, double unix_s);
 void   world_close(World *world);
 
 #endif

@@ -6,12 +6,6 @@
 
 #include <stdlib.h>
 
-Status world_daylight(Daylight *out, const World *world, const Weather *weather, double unix_s)
-{
-    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, 0};
-    return heat_drive_daylight(out, &source, &world->frame.origin, weather, unix_s);
-}
-
 static void stand_there(ShadowStand *out, const void *canopy, double x_m, double y_m)
 {
     CanopyStand c;
@@ -71,6 +65,17 @@ Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config,
     if (status == STATUS_OK) status = heat_create(&world->heat, &kinds, &c, branch, branches);
     if (status == STATUS_OK && world->landscape && shadow_m > 0) status = cast_shadows(world, shadow_m, pool);
     return status;
+}
+
+Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m, Pool *pool)
+{
+    static const double range_k = 10;
+    const Geodetic     *place = &world->frame.origin;
+    WeatherCourseConfig about = {weather_default(), range_k, place->lon_rad, place->lat_rad};
+    WeatherCourse      *course;
+    about.base.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
+    const Status status = weather_course_open(&course, "clear", &about);
+    return status == STATUS_OK ? world_warm(world, course, config, shadow_m, pool) : status;
 }
 
 Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena)

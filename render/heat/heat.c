@@ -11,7 +11,7 @@ HeatConfig heat_default_config(void)
 }
 
 static const double day_s = 86400, slot_s = 1800;
-enum { history = 512 }; /* steps whose surface is remembered: 85 h of 600 s */
+enum { history = 2048 }; /* steps whose surface is remembered: 34 h of 60 s */
 
 /* One kind: its columns, facet by facet, then by n_up in the shade, without sun, and one that sees no sky. */
 typedef struct KindState {
@@ -202,7 +202,8 @@ static void linear_law(void *law, double share, const void *user)
     *(Linear *)law = *(const Linear *)user;
 }
 
-/* Intervals of the past, newest first: single steps for three hours, half hours to six, hours to a day and more. */
+/* Intervals of the past, newest first: ten minutes for three hours, half hours to six, hours to a day and more; no less
+ * than a step. */
 static int past_intervals(Interval out[heat_past], const Heat *h)
 {
     const double step_s = h->config.step_s;
@@ -210,7 +211,8 @@ static int past_intervals(Interval out[heat_past], const Heat *h)
     int          count = 0;
     while (count < heat_past) {
         const double  age_s = (double)(h->index - to) * step_s;
-        const int64_t wide = age_s < 3 * 3600 ? 1 : (int64_t)fmax(1, round((age_s < 6 * 3600 ? 1800 : 3600) / step_s));
+        const double  wide_s = age_s < 3 * 3600 ? 600 : age_s < 6 * 3600 ? 1800 : 3600;
+        const int64_t wide = (int64_t)fmax(1, round(wide_s / step_s));
         if (age_s >= 30 * 3600 || to - wide < h->first || h->index - to + wide >= history) break;
         out[count++] = (Interval){to - wide, to};
         to -= wide;

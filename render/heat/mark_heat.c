@@ -11,7 +11,7 @@ typedef struct Track {
     double a_enu[3], d[2], length_m, a_s, b_s, width_m, apart_m, heat_j_m2, loose;
 } Track;
 typedef struct Burn {
-    double p_enu[3], t_s, radius_m, heat_j_m2;
+    double p_enu[3], t_s, radius_m, crater_m, heat_j_m2;
 } Burn;
 
 /* A mark in a cell: chained by the hash of its cell, in the order of marks. */
@@ -116,7 +116,8 @@ static void take_burn(MarkHeat *m, const GroundBurn *b, const LocalFrame *frame,
 {
     Burn *out = &m->burn[m->burns];
     enu_from_ecef(out->p_enu, frame, b->p_ecef);
-    *out = (Burn){{out->p_enu[0], out->p_enu[1], out->p_enu[2]}, exercise_s + b->t_s, fmin((double)b->radius_m, 100), (double)b->heat_j_m2};
+    *out = (Burn){{out->p_enu[0], out->p_enu[1], out->p_enu[2]}, exercise_s + b->t_s, fmin((double)b->radius_m, 100),
+                   (double)b->crater_m, (double)b->heat_j_m2};
     if (near_enough(out->p_enu)) put_square(m, m->stands + m->tracks + m->burns++, out->p_enu, out->radius_m);
 }
 
@@ -252,7 +253,8 @@ static void add_burn(MarkedGround *out, const MarkHeat *m, const Burn *b, const 
     const double r = hypot(p_enu[0] - b->p_enu[0], p_enu[1] - b->p_enu[1]) / fmax(b->radius_m, 1e-3);
     if (r >= 1) return;
     const double share = 1 - r * r * r * r;
-    out->burnt = fmax(out->burnt, share);
+    if (r * b->radius_m < b->crater_m) out->loose = 1; /* bare soil, thrown up */
+    else out->burnt = fmax(out->burnt, share);
     out->add_k += share * pulse_k(&m->now->past[1], SURFACE_PLOUGHED, b->heat_j_m2, m->unix_s - b->t_s);
 }
 

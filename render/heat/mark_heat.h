@@ -3,7 +3,8 @@
  * A stand hid the sun along its box's shadow, and sky, while it stood: each past interval of HeatPast that it overlaps
  * gives kelvins by the kind's response, scaled as the shade of heat.h is: sun hidden all day, or all of the sky hidden, are the
  * columns that see none. A track was rubbed warm once, by a pulse of heat that the same response lets
- * fade, and lies loosened: some of the way to ploughed ground, for good. A burst burnt its ground, and left heat.
+ * fade, and lies loosened: some of the way to ploughed ground, for good. A burst burnt its ground but for the crater, which is loose soil,
+ * and left heat.
  * Estimates: the loosened share (0.6 of tracks, 0.3 of wheels), the burnt edge. */
 #ifndef RENDER_HEAT_MARK_HEAT_H
 #define RENDER_HEAT_MARK_HEAT_H

@@ -105,22 +105,12 @@ static void find_place(Stage *stage, double about_m)
     }
 }
 
-static Weather stage_weather(const World *world)
-{
-    Weather weather    = weather_default();
-    weather.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
-    return weather;
-}
-
 /* Ground as warm as on a clear day. */
-static Status warm(Stage *stage, const Geodetic *place)
+static Status warm(Stage *stage)
 {
-    const WeatherCourseConfig about = {stage_weather(&stage->world), 10, place->lon_rad, place->lat_rad};
-    WeatherCourse            *course;
-    HeatConfig                heat = heat_default_config();
+    HeatConfig heat = heat_default_config();
     heat.unix_s = stage->unix_s;
-    const Status status = weather_course_open(&course, "clear", &about);
-    return status == STATUS_OK ? world_warm(&stage->world, course, &heat, 0, stage->pool) : status;
+    return world_warm_clear(&stage->world, &heat, 0, stage->pool);
 }
 
 static Status open_stage(Stage *stage, const char *name, double sag_m)
@@ -140,7 +130,7 @@ static Status open_stage(Stage *stage, const char *name, double sag_m)
         status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) find_place(stage, fmin(6 * catalog_model(stage->catalog, stage->model)->radius_m, 120));
     if (status == STATUS_OK && !text_to_unix_s(&stage->unix_s, "2026-06-21T09:00:00Z")) status = STATUS_BAD_VALUE;
-    if (status == STATUS_OK) status = warm(stage, &origin);
+    if (status == STATUS_OK) status = warm(stage);
     return status;
 }
 

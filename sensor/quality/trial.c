@@ -45,22 +45,11 @@ static TrialPlace vehicle_place(DisEntityType type, int index, int vehicles)
                         .turn_rad = vehicles == 1 ? 0.6 : 2 * pi_rad * random_uniform(1, 1, 0, (uint64_t)index)};
 }
 
-static Weather trial_weather(const World *world)
-{
-    Weather weather    = weather_default();
-    weather.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
-    return weather;
-}
-
 Status trial_scene_warm(TrialScene *scene, const HeatConfig *config)
 {
-    const Geodetic           *place = &scene->world.frame.origin;
-    const WeatherCourseConfig about = {trial_weather(&scene->world), 10, place->lon_rad, place->lat_rad};
-    WeatherCourse            *course;
-    HeatConfig                heat = *config;
+    HeatConfig heat = *config;
     heat.unix_s = scene->unix_s;
-    const Status status = weather_course_open(&course, "clear", &about);
-    return status == STATUS_OK ? world_warm(&scene->world, course, &heat, 16, NULL) : status;
+    return world_warm_clear(&scene->world, &heat, 16, NULL);
 }
 
 Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path,
@@ -114,7 +103,7 @@ static Status light(TrialFrame *f)
 {
     const TrialScene *scene = f->scene;
     const World      *world = &scene->world;
-    Weather           weather = trial_weather(world);
+    Weather           weather;
     HeatScene        *heat = NULL;
     weather_at(&weather, world->course, scene->unix_s);
     Status status =

@@ -214,6 +214,28 @@ static void a_function_of_time_alone(void **state)
     arena_reset(arena);
 }
 
+/* Shade of a day and more is remembered, whatever the step. */
+static void a_day_is_remembered(void **state)
+{
+    (void)state;
+    static const double steps_s[] = {60, 600, 3600};
+    for (int k = 0; k < 3; k++) {
+        HeatConfig c = heat_default_config();
+        Heat      *h;
+        c.weather = paper_weather, c.user = &paper_summer, c.unix_s = paper_unix_s + 43200, c.step_s = steps_s[k], c.facets = 3;
+        CHECK(heat_create(&h, &kinds, &c, NULL, 0) == STATUS_OK);
+        const HeatPast *p = &at(h, 12)->past[1];
+        double          all_s = 0;
+        for (int i = 0; i < p->count; i++) {
+            if (i > 0) CHECK_NEAR(p->unix_s[i - 1] - p->unix_s[i], 0.5 * (p->span_s[i - 1] + p->span_s[i]), 1e-3);
+            all_s += p->span_s[i];
+        }
+        CHECK(all_s >= 24 * 3600);
+        heat_destroy(h);
+    }
+    arena_reset(arena);
+}
+
 static void settings_out_of_range(void **state)
 {
     (void)state;
@@ -234,7 +256,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables_are_columns), cmocka_unit_test(slopes_face_the_sun), cmocka_unit_test(facets_are_close),
         cmocka_unit_test(shade_of_the_hours_before), cmocka_unit_test(what_everyone_knows),
-        cmocka_unit_test(a_function_of_time_alone), cmocka_unit_test(settings_out_of_range),
+        cmocka_unit_test(a_function_of_time_alone), cmocka_unit_test(a_day_is_remembered),
+        cmocka_unit_test(settings_out_of_range),
     };
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }

@@ -204,6 +204,32 @@ static void a_trail_cools(void **state)
     arena_reset(arena);
 }
 
+/* A crater of loose soil in burnt ground, hot at first. */
+static void a_burst(void **state)
+{
+    (void)state;
+    Heat      *h = paper_heat(&kinds, &paper_summer, 9, NULL);
+    GroundBurn burn = {.t_s = 36000, .radius_m = 5, .crater_m = 1, .heat_j_m2 = 1e5f};
+    ecef_from_enu(burn.p_ecef, &frame, (const double[3]){0, 0, 0});
+    const GroundMarks marks = {.burns = 1, .burn = &burn};
+    double            last_k = INFINITY;
+    for (int t = 0; t < 3; t++) {
+        const double hour = 10 + 1.0 / 60 + t;
+        MarkHeat    *heat;
+        MarkedGround in, ring, out;
+        CHECK(mark_heat_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hour, at(h, hour), arena) == STATUS_OK);
+        mark_heat_at(&in, heat, SURFACE_GRASS, (const double[3]){0.5, 0, 0}, (const double[3]){0, 0, 1}, 1);
+        mark_heat_at(&ring, heat, SURFACE_GRASS, (const double[3]){2, 1, 0}, (const double[3]){0, 0, 1}, 1);
+        mark_heat_at(&out, heat, SURFACE_GRASS, (const double[3]){6, 0, 0}, (const double[3]){0, 0, 1}, 1);
+        CHECK(in.loose == 1 && in.burnt == 0 && ring.burnt > 0.9 && ring.loose == 0);
+        CHECK(out.burnt == 0 && out.add_k == 0 && ring.add_k > 0 && ring.add_k < last_k);
+        if (t == 0) CHECK(ring.add_k > 3);
+        last_k = ring.add_k;
+    }
+    heat_destroy(h);
+    arena_reset(arena);
+}
+
 /* Marks of hostile places and sizes, and more of them than there is room for: bounded, and no crash. */
 static void bounds(void **state)
 {
@@ -236,6 +262,6 @@ static void bounds(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_box_that_left), cmocka_unit_test(a_box_at_night),
-                                       cmocka_unit_test(a_trail_cools), cmocka_unit_test(bounds)};
+                                       cmocka_unit_test(a_trail_cools), cmocka_unit_test(a_burst), cmocka_unit_test(bounds)};
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }
