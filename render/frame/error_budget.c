@@ -6,7 +6,7 @@
 #include "render/frame/error_estimate.h"
 #include "render/frame/edges.h"
 
-enum { probes_a_block = 64, blocks_most = 12, candidates_a_probe = 4, tables_probes = 48,
+enum { probes_a_block = 64, blocks_most = 12, candidates_a_probe = 4, tables_probes = 48, hottest_probes = 2,
        tables_blocks = 4 /* of them, for as many threads */ };
 static const double pixels_a_probe = 1200; /* 16 rays each: 1.3 % of a frame of one ray a pixel */
 static const uint32_t stream = 0x6275;     /* "bu" */
@@ -41,7 +41,7 @@ typedef struct Budget {
     int         field_px, columns, rows, candidates, probes, blocks, n;
     bool        law;       /* too many rays to re-sample more finely: the sampling variance is used */
     Candidate  *candidate;
-    ProbeOf    *probe, tables_probe[tables_probes];
+    ProbeOf    *probe, tables_probe[tables_probes + hottest_probes];
     ProbeTask  *task;      /* [blocks + tables_blocks] */
     AirPaths     (*direct)[AIR_BAND_COUNT]; /* [workers] */
 } Budget;
@@ -141,6 +141,31 @@ static int draw_probes(Budget *b)
     return draw(b->probe, b->probes, b);
 }
 
+/* The brightest pixel of each infrared plane, for itself alone: one exhaust may hold most of its plane's error, and few
+ * candidates fall on it. Their candidates are the last ones. Returns how many. */
+static int add_hottest(ProbeOf *out, const Budget *b)
+{
+    static const int planes[hottest_probes] = {picture_mwir, picture_lwir};
+    const Picture   *p = b->job->picture;
+    const size_t     pixels = (size_t)p->width * (size_t)p->height;
+    int              count = 0;
+    for (int n = 0; n < hottest_probes; n++) {
+        const float *value = picture_plane(p, planes[n]);
+        size_t       most = 0;
+        for (size_t i = 1; value && i < pixels; i++)
+            if (value[i] > value[most]) most = i;
+        if (!value || !planes_to_ask(b->job, most)) continue;
+        Candidate *c = &b->candidate[b->candidates + count];
+        *c = (Candidate){.x = (uint16_t)(most % (size_t)p->width), .y = (uint16_t)(most / (size_t)p->width), .area = 1,
+                         .planes = planes_to_ask(b->job, most), .weight = 1};
+        for (int k = 0; k < picture_plane_count; k++)
+            if (picture_plane(p, k)) c->value[k] = picture_plane(p, k)[most];
+        out[count] = (ProbeOf){b->candidates + count, 1};
+        count++;
+    }
+    return count;
+}
+
 /* Weight: brightness over each plane's mean, and no less than a uniform share: the error of the tables is
  * proportional to it, and a few hot pixels can hold half of a thermal band. */
 static int draw_tables(Budget *b, const double mean[picture_plane_count])
@@ -151,7 +176,8 @@ static int draw_tables(Budget *b, const double mean[picture_plane_count])
         for (int k = 0; k < picture_radar; k++)
             if (c->planes >> k & 1 && mean[k] > 0) c->weight = fmax(c->weight, (double)c->value[k] / mean[k]);
     }
-    return draw(b->tables_probe, tables_probes, b);
+    const int drawn = draw(b->tables_probe, tables_probes, b);
+    return drawn > 0 ? drawn + add_hottest(b->tables_probe + drawn, b) : 0;
 }
 
 /* ---- the ground at every second post ----------------------------------------------------------- */
@@ -340,7 +366,7 @@ static Status plan(Budget *b, Pool *pool, Arena *arena)
     b->columns  = (p->width + b->field_px - 1) / b->field_px;
     b->rows     = (p->height + b->field_px - 1) / b->field_px;
     b->candidates = b->columns * b->rows;
-    b->candidate = arena_alloc(arena, (size_t)b->candidates, sizeof *b->candidate);
+    b->candidate = arena_alloc(arena, (size_t)b->candidates + hottest_probes, sizeof *b->candidate);
     b->probe     = arena_alloc(arena, (size_t)b->probes, sizeof *b->probe);
     b->task      = arena_alloc(arena, (size_t)b->blocks + tables_blocks, sizeof *b->task);
     b->direct    = arena_alloc(arena, (size_t)pool_threads(pool), sizeof *b->direct);
