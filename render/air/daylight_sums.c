@@ -38,12 +38,14 @@ double daylight_sun_disc(const Daylight *light, const double d_enu[3])
     return v3_dot(chord, chord) < disc2 ? 1 / (pi_rad * disc2) : 0; /* pi chord^2: exact on the sphere */
 }
 
+static const double sigma_w_m2_k4 = 5.670374419184429e-8; /* Stefan and Boltzmann's */
+
 /* For temperatures: all wavelengths, under a clear sky. sky_w_m2 is still the tables' own: the integral over our sky
  * exists only where pan is requested. 0.44 of the daylight that reaches the ground is in 0.4-0.7 um (the photosynthetic
  * share: 0.43 .. 0.46 under clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
 static void heat_of_clear_sky(Daylight *light, const Atmosphere *atmosphere, double model_temp_k)
 {
-    static const double visible_share = 0.44, sigma_w_m2_k4 = 5.670374419184429e-8;
+    static const double visible_share = 0.44;
     light->solar_direct_w_m2 = light->sun_w_m2[AIR_PAN] / visible_share;
     light->solar_diffuse_w_m2 = light->sky_w_m2[AIR_PAN] / visible_share;
     const double t_k = light->weather.air_temp_k, ratio = t_k / model_temp_k;
@@ -60,7 +62,6 @@ static double share_of(double measured_w_m2, double clear_w_m2, double otherwise
 /* What clouds, or the measured radiation, make of the clear sky. */
 static void cloud_over(Daylight *light, double diffuse_w_m2[AIR_BAND_COUNT])
 {
-    static const double sigma_w_m2_k4 = 5.670374419184429e-8;
     const Weather *w = &light->weather;
     const double cloud = clamp(w->cloud, 0, 1), high = fmax(light->sun_d_enu[2], 0);
     const double direct = light->solar_direct_w_m2, diffuse = light->solar_diffuse_w_m2, global = direct * high + diffuse;

@@ -21,7 +21,6 @@ typedef struct KindState {
 
 typedef struct Sky { /* of one step of the past */
     double direct_w_m2, diffuse_w_m2, loss_w_m2; /* loss: of a black level plane of air temperature to the sky */
-    double sun_d_enu[3];
 } Sky;
 
 typedef struct Interval {
@@ -157,7 +156,7 @@ static void remember(Heat *h, int steps)
     const int            at = place_of(h->index), level = h->config.facets * h->config.facets / 2;
     const GroundWeather *w = &h->weather[1];
     const double         air_w_m2 = stefan_w_m2k4 * pow(w->air.temp_k, 4);
-    h->sky[at] = (Sky){w->direct_w_m2, w->diffuse_w_m2, air_w_m2 - w->longwave_w_m2, {w->sun_d_enu[0], w->sun_d_enu[1], w->sun_d_enu[2]}};
+    h->sky[at] = (Sky){w->direct_w_m2, w->diffuse_w_m2, air_w_m2 - w->longwave_w_m2};
     for (int k = 1; k < ground_kinds; k++) {
         const GroundColumn  *c = &h->state[k].column[level];
         const GroundExposure e = exposure_of(h, level, 0);

@@ -1,13 +1,15 @@
 /* render/heat/surface_flux.c: see surface_flux.h. */
 #include "render/heat/surface_flux.h"
 
+#include "terrain/weather/vapour.h"
+
 static const double air_j_kgk = 1005, air_gas_j_kgk = 287.05, karman = 0.4, gravity = 9.81, least_wind_mps = 1;
 static const double air_viscosity_m2s = 1.5e-5;
 
 double saturation_pa(double temp_k)
 {
-    const double c = fmax(temp_k - 273.15, -150);
-    return 611 * exp(17.502 * c / (240.97 + c));
+    static const double least_k = 123.15; /* below, the formula has a pole; there is no vapour either */
+    return weather_saturation_pa(fmax(temp_k, least_k));
 }
 
 void surface_flux_prepare(SurfaceFlux *l)

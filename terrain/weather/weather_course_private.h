@@ -2,6 +2,7 @@
 #ifndef TERRAIN_WEATHER_WEATHER_COURSE_PRIVATE_H
 #define TERRAIN_WEATHER_WEATHER_COURSE_PRIVATE_H
 
+#include "terrain/weather/vapour.h"
 #include "terrain/weather/weather_course.h"
 
 typedef enum WeatherColumn {
@@ -29,12 +30,5 @@ typedef struct WeatherRows {
 /* Failures are logged. At least one row has an air temperature. */
 Status weather_file_read(WeatherRows *out, const char *path);
 void   weather_rows_close(WeatherRows *rows);
-
-/* Saturation vapour pressure over water, Pa: Tetens, as in Campbell & Norman (1998), eq. 3.8. */
-static inline double weather_saturation_pa(double temp_k)
-{
-    const double c = temp_k - 273.15;
-    return 611 * exp(17.502 * c / (240.97 + c));
-}
 
 #endif

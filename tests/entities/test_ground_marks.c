@@ -104,7 +104,7 @@ static void a_tank_leaves_tracks_and_a_stand(void **state)
     fixture_close(&f);
 }
 
-/* The same PDUs: the same bits, whoever looked in between, and in any order afterwards. */
+/* The same PDUs: the same bits, whatever snapshots were taken in between, and in any order afterwards. */
 static void marks_depend_on_pdus_alone(void **state)
 {
     (void)state;
