@@ -1,8 +1,8 @@
 /* entities/table/entity_effects.c: emissions by an entity's appearance and motion. Appearance bits are those of
- * dis/enumerations.h; a guided munition's motor burns for the time given by heat.c, independent of its bits. */
+ * dis/enumerations.h; a guided munition's motor burns for the time given by drives.c, independent of its bits. */
 #include "entities/table/entity_table_private.h"
 
-static const double moving_mps = 0.3; /* as heat.c: no dust from stationary entities */
+static const double moving_mps = 0.3; /* as drives.c: no dust from stationary entities */
 
 /* Scale of flames and smoke by the size of the burning entity: 1 for 40 m3 of vehicle. */
 static double size_of(const Model *model)
@@ -14,7 +14,7 @@ static bool motor_burns(const EntitySlot *slot, double t_s)
 {
     return slot->type.kind == dis_kind_munition &&
            (slot->appearance >> dis_appearance_power_plant_bit & 1 ||
-            (slot->roles >> HEAT_MOTOR & 1 && slot->heat.drive[HEAT_DRIVER_BURN].until_s > t_s));
+            (slot->roles >> HEAT_MOTOR & 1 && slot->drives.motor.until_s > t_s));
 }
 
 /* From the reported position to the centre of the model's base, body axes. */
@@ -102,7 +102,7 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
         motor.at_body[0] = model->box_low[0];
         motor.at_body[2] = below_m - 0.5 * model->height_m;
         if (!trail && !(bits >> dis_appearance_power_plant_bit & 1))
-            motor.to_s = fmin(motor.to_s, slot->heat.drive[HEAT_DRIVER_BURN].until_s);
+            motor.to_s = fmin(motor.to_s, slot->drives.motor.until_s);
         open_source(table, slot, 3, &motor, EFFECT_MOTOR_SMOKE, trail ? trail_rate[trail] : 1);
     }
 }

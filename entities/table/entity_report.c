@@ -57,7 +57,7 @@ static bool exceeds_rate(EntityTable *table, DisEntityId id, double t_s)
 double entity_slot_spin(const EntitySlot *slot, double t_s)
 {
     if (entity_slot_frozen(slot) || slot->stopped) return slot->spin_s;
-    return slot->spin_s + fmax(0, fmin(t_s, heat_runs_until(&slot->heat)) - slot->spin_from_s);
+    return slot->spin_s + fmax(0, fmin(t_s, drives_run_until(&slot->drives)) - slot->spin_from_s);
 }
 
 /* Chord times mean heading: within 4 % of the arc up to a radian of turn. */
@@ -118,10 +118,12 @@ static void take_state(EntityTable *table, EntitySlot *slot, uint8_t version, ui
     slot->timeout_s = timeout_of(table, slot, version);
     slot->hold_s = table->config.extrapolation_limit_s * (slot->timeout_s / table->config.timeout_s);
 
-    const HeatEvidence evidence = {.type = slot->type, .appearance = appearance,
+    const DriveEvidence evidence = {.type = slot->type, .appearance = appearance,
                                    .speed_mps = entity_slot_frozen(slot) ? 0 : v3_length(slot->reported.v_mps)};
-    if (is_first) heat_begin(&slot->heat, &table->heat, &evidence, t_s, table->config.ambient_s);
-    else heat_report(&slot->heat, &table->heat, &evidence, t_s);
+    const bool was_destroyed = slot->drives.destroyed;
+    if (is_first) drives_begin(&slot->drives, &evidence, t_s);
+    else drives_report(&slot->drives, &evidence, t_s);
+    table->changes += is_first || slot->drives.destroyed != was_destroyed;
 
     table->counters.unknown_articulation +=
         (uint64_t)articulation_report(&slot->articulation, record, record_count, t_s, slot->hold_s);

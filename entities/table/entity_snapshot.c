@@ -53,6 +53,11 @@ int snapshot_damage(const SnapshotEntity *entity)
     return entity->type.kind == dis_kind_platform ? (int)(entity->appearance >> dis_appearance_damage_shift & 3) : 0;
 }
 
+bool snapshot_is_short_lived(const SnapshotEntity *entity)
+{
+    return entity->type.kind == dis_kind_munition || entity->type.kind == dis_kind_expendable;
+}
+
 bool snapshot_is_wreck(const SnapshotEntity *entity) { return snapshot_damage(entity) == dis_damage_destroyed; }
 
 /* ---- order -------------------------------------------------------------------------------- */
@@ -303,7 +308,8 @@ static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport
     snapshot_drift(&e->drift_m, &e->drift_rad, e->age_s, slot->missed_m, slot->missed_rad, slot->missed_s,
                    e->position_error_m, slot->timeout_s / timeout_per_heartbeat);
     if (stands) e->drift_m = e->drift_rad = 0;
-    heat_at(e->heat, &slot->heat, &table->heat, slot->roles, t_s);
+    drives_at(&e->drives, &slot->drives, t_s);
+    e->first_patch = -1;
 
     keep_joints(joints, report, slot, e, t_s);
 

@@ -22,8 +22,14 @@ static bool config_is_usable(const EntityTableConfig *config)
            config->new_per_s >= 1 && config->new_per_s <= 1e9;
 }
 
-Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog,
-                           const char *heat_path)
+static uint32_t roles_of(const Model *model)
+{
+    uint32_t roles = 0;
+    for (int p = 0; p < model->part_count; p++) roles |= UINT32_C(1) << model->part[p].role;
+    return roles;
+}
+
+Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog)
 {
     if (!config_is_usable(config)) {
         log_error("entity_table: configuration out of range: capacity=%d of 1 .. %d, times and rates above 0 up to 1e6",
@@ -49,14 +55,12 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
     if (status != STATUS_OK) goto fail;
     status = ground_history_create(&table->ground);
     if (status != STATUS_OK) goto fail;
-    status = heat_table_open(&table->heat, heat_path);
-    if (status != STATUS_OK) goto fail;
     char path[4096];
     status = STATUS_BAD_VALUE;
     if (etc_path(path, sizeof path, "effects.csv")) status = effect_history_create(&table->effects, path);
     if (status != STATUS_OK) goto fail;
     for (int m = 0; m < catalog_model_count(catalog); m++)
-        table->model_roles[m] = heat_roles(catalog_model(catalog, m), &table->heat);
+        table->model_roles[m] = roles_of(catalog_model(catalog, m));
 
     *out = table;
     return STATUS_OK;
@@ -160,6 +164,8 @@ Status entity_table_marks_load(EntityTable *table, double unix_s, const char *pa
     return ground_marks_load(table->ground, unix_s, path);
 }
 
+uint64_t entity_table_changes(const EntityTable *table) { return table->changes; }
+
 const EffectCounters *entity_table_effect_counters(const EntityTable *table)
 {
     return effect_history_counters(table->effects);
@@ -169,12 +175,16 @@ const EffectCounters *entity_table_effect_counters(const EntityTable *table)
 
 static const uint16_t all_ids = 0xFFFF;
 
+enum { most_rounds = 1000 }; /* of one Fire PDU: a burst, not a number that a sender made up */
+
 void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
 {
     effect_history_fire(table->effects, pdu, t_s);
     EntitySlot *firing = entity_slot_find(table, pdu->firing), *munition = entity_slot_find(table, pdu->munition);
-    if (firing) heat_fire(&firing->heat, &table->heat, t_s);
-    if (munition && munition->type.kind == dis_kind_munition) heat_launch(&munition->heat, &table->heat, t_s);
+    const int rounds = pdu->descriptor.quantity > 0 ? pdu->descriptor.quantity : 1;
+    if (firing) drives_fire(&firing->drives, effect_charge_kg(&pdu->descriptor, true), rounds < most_rounds ? rounds : most_rounds);
+    if (munition && munition->type.kind == dis_kind_munition) drives_launch(&munition->drives, t_s);
+    if (firing || munition) table->changes++;
 }
 
 /* A munition ends with its Detonation; not every sender reports that with a last Entity State. Version 7 also

@@ -49,9 +49,8 @@ typedef struct EntityCounters {
 } EntityCounters;
 
 EntityTableConfig entity_table_default_config(void);
-/* The catalog must outlive the table. heat_path: etc/heat.csv. Reads etc/effects.csv too. */
-Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog,
-                           const char *heat_path);
+/* The catalog must outlive the table. Reads etc/effects.csv. */
+Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog);
 void   entity_table_destroy(EntityTable *table);
 
 /* What a full table keeps: the host, `also` (its aim), and entities with last reports near the host's last report.
@@ -86,6 +85,8 @@ bool         entity_table_alive(const EntityTable *table, EntityHandle handle);
 bool         entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle); /* false: absent */
 const EntityCounters *entity_table_counters(const EntityTable *table);
 const EffectCounters *entity_table_effect_counters(const EntityTable *table);
+/* Counts what changes the heat of an entity at once: it appeared, fired or was fired, was destroyed. */
+uint64_t entity_table_changes(const EntityTable *table);
 
 /* One entity's pose and motion at t_s, the same as in a snapshot; no parts, no heat. False when it is not there. */
 bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHandle handle, double t_s);

@@ -11,7 +11,7 @@
 #include "entities/table/entity_ranks.h"
 #include "entities/table/entity_rate.h"
 #include "entities/table/entity_table.h"
-#include "entities/effects/heat.h"
+#include "entities/effects/drives.h"
 #include "entities/table/tombstones.h"
 
 enum { entity_effect_positions = 4 }; /* flame, smoke, engine smoke, trail */
@@ -25,7 +25,7 @@ typedef struct EntitySlot {
     uint32_t      appearance;
     int           model;
     Origin        origin;
-    uint32_t      roles;      /* of the model's parts: heat_roles */
+    uint32_t      roles;      /* of the model's parts: 1 << HeatRole */
     double        created_s, report_s;
     double        timeout_s;  /* silence longer than this ends it */
     double        hold_s;     /* longest extrapolation */
@@ -40,7 +40,7 @@ typedef struct EntitySlot {
     double        missed_m, missed_rad, missed_s; /* by how much its last report set the extrapolation of the one before
                                * right, and after how long; missed_s 0: there was none */
     Kinematics    reported;   /* as sanitized: entity_report.c */
-    HeatState     heat;
+    DriveState    drives;
     Articulation  articulation;
     uint64_t      effect[entity_effect_positions]; /* what it gives off now: handles of effects_history.h */
 } EntitySlot;
@@ -68,8 +68,8 @@ typedef struct EntityFocus {
 struct EntityTable {
     EntityTableConfig config;
     const Catalog    *catalog;
-    HeatTable         heat;
     uint32_t         *model_roles; /* [catalog_model_count] */
+    uint64_t          changes;     /* entity_table_changes */
     EntityIndex       index;
     EntityRanks      *ranks;       /* of all but the focus' own */
     EntityFocus       focus;

@@ -4,6 +4,7 @@
 #define ENTITIES_TABLE_SNAPSHOT_H
 
 #include "dis/pdu.h"
+#include "entities/effects/drives.h"
 #include "entities/effects/effects.h"
 #include "entities/marks/ground_marks.h"
 #include "entities/models/articulation.h"
@@ -23,8 +24,8 @@ typedef struct SnapshotEntity {
     double        position_error_m;/* estimate: snapshot_position_error_m */
     double        drift_m, drift_rad; /* expected distance and angle from the truth: snapshot_drift */
     int           first_node;      /* into Snapshot.node */
-    float         heat[HEAT_ROLE_COUNT]; /* temperature above a passive part, K; 0 for roles its model lacks, unless
-                                    * it is a warm wreck */
+    EntityDrives  drives;          /* what heats it */
+    int           first_patch;     /* into Snapshot.patch_k; -1: none of its temperatures are known */
 } SnapshotEntity;
 
 /* Joint state of an entity, kept for its nodes: snapshot_pose. */
@@ -48,8 +49,13 @@ typedef struct Snapshot {
     int             left_out;       /* entities beyond the table's config.shown: the farthest */
     const EffectTable *effect_table; /* NULL where there are no puffs */
     GroundMarks     marks;  /* what was left on the ground until t_s */
+    int             patch_count;
+    float          *patch_k; /* temperatures of the patches (entities/models/patches.h) of entities, K; filled in by
+                              * render/heat/vehicle_heat.h. NULL: parts are as warm as the air */
 } Snapshot;
 
+/* A munition or an expendable: it did nothing before it appeared. */
+bool snapshot_is_short_lived(const SnapshotEntity *entity);
 /* Whether a puff came out of this entity: its own trail, flames or plume. */
 bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff);
 /* Reported damage of a platform: 0 none, 1 slight, 2 moderate, 3 destroyed; others: 0. */

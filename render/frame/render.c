@@ -68,7 +68,7 @@ static Status prepare_sky(Job *job, Pool *pool, Arena *arena)
     for (int k = 0; k < job->scene.snapshot->count; k++)
         for (int c = 0; c < 4; c++) box_px[k][c] = job->boxes[k].projected ? job->boxes[k].projected_box[c] : NAN;
     const SkyVisibilityScene scene = {
-        .gather = {job->scene.bare, job->scene.air, &world->materials, world->catalog, job->scene.snapshot},
+        .gather = {job->scene.bare, job->scene.air, &world->materials, world->patches, job->scene.snapshot},
         .landscape = world->landscape, .view = &request->view, .box_px = (const double (*)[4])box_px,
         .air_bands = bands, .skips_off = request->skips_off, .hidden_entity = request->hidden_entity};
     Status status = sky_visibility_create(&job->scene.sky, &scene, arena);

@@ -42,6 +42,8 @@ Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *s
     if (status != STATUS_OK) return status;
     visibility_materials(posed, &world->materials);
     out->visibility = posed;
+    status = world_need_patches(world, snapshot);
+    if (status != STATUS_OK) return status;
     status = open_plants(out, posed, request, pool, arena);
     if (status != STATUS_OK) return status;
     return surface_light_prepare(&out->surface_light, air, &world->materials, arena);
@@ -206,8 +208,8 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const World *world = scene->world;
     if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature)
-        thermal_temperature(s->temp_k, scene->air, &world->materials, world->catalog, scene->snapshot, &s->hits,
-                            s->hits.material, s->sun, shader->photo, shader->warmth_k);
+        thermal_temperature(s->temp_k, scene->air, &world->materials,
+                            &(PartTemps){scene->snapshot, world->patches, scene->visibility}, &s->hits, s->hits.material, s->sun, shader->photo, shader->warmth_k);
     if (!s->channels) return;
     air_paths_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
 
@@ -244,7 +246,7 @@ static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
 void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const double      t0 = wall_clock_s();
-    const HemisphereScene around = {scene->visibility, scene->air, &scene->world->materials, scene->world->catalog,
+    const HemisphereScene around = {scene->visibility, scene->air, &scene->world->materials, scene->world->patches,
                                 scene->snapshot};
     resolve_detail(shader, scene, s);
     samples_smoke(scene, s);

@@ -1,20 +1,26 @@
 /* render/frame/world.c: opens the tables and the tracer once. */
 #include "render/frame/world.h"
 
+#include <stdlib.h>
+
 Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame,
                   const char *isa)
 {
     World  world = {.catalog = catalog, .landscape = landscape, .frame = *frame, .radar = {.lobe_rad = 0.05}};
-    char   materials[512], surfaces[512], detail[512];
+    char   materials[512], surfaces[512], detail[512], parts[512], machines[512];
     Status status = STATUS_BAD_VALUE;
 
     if (!etc_path(materials, sizeof materials, "materials.csv") || !etc_path(surfaces, sizeof surfaces, "surfaces.csv") ||
-        !etc_path(detail, sizeof detail, "ground_detail.csv")) {
+        !etc_path(detail, sizeof detail, "ground_detail.csv") || !etc_path(parts, sizeof parts, "heat.csv") ||
+        !etc_path(machines, sizeof machines, "heat_machines.csv")) {
         log_error("render: path of the tables is too long; set PITVIPER_ETC to a shorter one");
         return STATUS_BAD_VALUE;
     }
     status = tracer_create(&world.tracer, catalog, isa);
     if (status == STATUS_OK) status = materials_open(&world.materials, materials, surfaces, catalog);
+    if (status == STATUS_OK) status = part_table_open(&world.parts, parts, machines);
+    if (status == STATUS_OK && !(world.patches = calloc(1, sizeof *world.patches))) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) status = patch_set_create(world.patches, catalog_model_count(catalog));
     if (status == STATUS_OK) status = detail_table_open(&world.detail, detail, detail_cut_off);
     PlanckTable **const planck[2] = {&world.planck_mwir, &world.planck_lwir};
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
@@ -28,6 +34,18 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
     }
     *out = world;
     return STATUS_OK;
+}
+
+Status world_need_patches(const World *world, const Snapshot *snapshot)
+{
+    Status status = STATUS_OK;
+    for (int i = 0; i < snapshot->count && status == STATUS_OK; i++) {
+        const SnapshotEntity *e = &snapshot->entity[i];
+        if (e->first_patch < 0 || e->model < 0 || e->model >= tracer_model_count(world->tracer)) continue;
+        status = tracer_need(world->tracer, e->model);
+        if (status == STATUS_OK) status = patch_set_need(world->patches, e->model, tracer_model(world->tracer, e->model));
+    }
+    return status;
 }
 
 Status world_plant(World *world, const Woods *woods, const ForestConfig *config, const char *isa, Pool *pool)
@@ -57,6 +75,8 @@ void world_close(World *world)
     planck_table_destroy(world->planck_mwir);
     detail_table_close(world->detail);
     materials_close(&world->materials);
+    if (world->patches) patch_set_destroy(world->patches);
+    free(world->patches);
     tracer_destroy(world->tracer);
     memset(world, 0, sizeof *world);
 }

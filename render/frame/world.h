@@ -5,6 +5,8 @@
 #include "render/air/air.h"
 #include "render/forest/forest.h"
 #include "render/heat/heat_scene.h"
+#include "render/heat/part_table.h"
+#include "render/heat/patch_set.h"
 #include "render/light/canopy.h"
 #include "render/radar/radar_image.h"
 #include "render/visibility/visibility.h"
@@ -28,6 +30,8 @@ typedef struct World {
     Heat            *heat;
     ShadowMap       *shadow;         /* NULL with heat: nothing shaded the ground */
     struct HeatDrive *drive;         /* of heat */
+    PartTable        parts;          /* what is behind the skin of parts */
+    PatchSet        *patches;        /* of the models that have been seen with temperatures */
 } World;
 
 /* frame: the landscape's, or any where there is none. */
@@ -43,6 +47,8 @@ Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m,
 void   world_cool(World *world); /* the opposite */
 /* The ground's heat at a time, in the arena; *out NULL where the world is not warm. marks: may be NULL. */
 Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena);
+/* The patches of a snapshot's models. One thread at a time. */
+Status world_need_patches(const World *world, const Snapshot *snapshot);
 /* Air temperature at ground level then, K; NaN: the world is not warm. */
 double world_air_k(const World *world, double unix_s);
 void   world_close(World *world);

@@ -128,6 +128,7 @@ static float side_share(const Material *m, AirBand band, bool far)
 static void resolve(Paths *p, const HemisphereScene *scene, unsigned bands, const int *list, int listed, bool parts_alone,
                     VisibilityCounters *counters)
 {
+    const PartTemps parts = {scene->snapshot, scene->patches, scene->visibility};
     if (parts_alone) visibility_first_part(&p->hits, scene->visibility, &p->rays, list, listed, counters);
     else visibility_first_hit(&p->hits, scene->visibility, &p->rays, list, listed, -1, counters);
     for (int i = 0; i < p->hits.count; i++) {
@@ -138,7 +139,7 @@ static void resolve(Paths *p, const HemisphereScene *scene, unsigned bands, cons
         visibility_shadow(dark, scene->visibility, &p->hits, scene->air->light.sun_d_enu, counters);
     for (int i = 0; i < p->hits.count; i++) p->sun[i] = dark[i] ? 0 : 1;
     if (bands & (1 << AIR_MWIR | 1 << AIR_LWIR))
-        thermal_temperature(p->temp_k, scene->air, scene->materials, scene->catalog, scene->snapshot, &p->hits,
+        thermal_temperature(p->temp_k, scene->air, scene->materials, scene->patches ? &parts : NULL, &p->hits,
                             p->hits.material, p->sun, p->texture, p->warmth_k);
 }
 

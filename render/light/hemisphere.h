@@ -10,6 +10,7 @@
 #define RENDER_LIGHT_HEMISPHERE_H
 
 #include "render/air/air.h"
+#include "render/heat/patch_set.h"
 #include "render/visibility/visibility.h"
 
 enum { hemisphere_samples_max = 4096 };
@@ -18,7 +19,7 @@ typedef struct HemisphereScene {
     const Visibility *visibility;
     const Air        *air;
     const Materials  *materials;
-    const Catalog    *catalog;   /* NULL where no entity is visible: temperatures of parts come from their model */
+    const PatchSet   *patches;   /* NULL: parts are as warm as the air */
     const Snapshot   *snapshot;
 } HemisphereScene;
 

@@ -1,7 +1,6 @@
 /* render/light/thermal.c: surface temperatures, and their radiance at the aperture.
  *
- * Ground remembers (render/heat/heat.h). Parts are still in steady balance with the sun on their slope unobstructed and the
- * wind of the moment, over the heat of their role.
+ * Ground and parts remember (render/heat/heat.h, vehicle_heat.h); leaves are in balance with the sun of the moment.
  *
  * Radiance = emissivity Planck(T) + (1 - emissivity) surroundings + sunlight, each attenuated by the air path
  * according to its own spectrum. In a closed isothermal cavity every surface has the radiance Planck(T), whatever
@@ -10,23 +9,19 @@
 
 #include "render/heat/heat_scene.h"
 #include "render/light/plant_heat.h"
-#include "render/materials/surface_balance.h"
 #include "pitviper_simd.h"
 
 /* ---- temperature -------------------------------------------------------------------------- */
 
-/* A part without a heat source of its own. Steel conducts and holds heat for an hour, so every face shares in the
- * heat of the whole: 0.3 of the sun on level ground for a face that faces down, 0.7 for one that faces up (a guess,
- * that puts a green tank at 10 .. 20 K above the air at noon and keeps a turning vehicle from reversing its
- * temperatures). */
-static double passive_part_k(const Air *air, double air_temp_k, const Material *material, double n_up,
-                             double sun_level_w_m2, double film)
+/* Of the patches about the place; as warm as the air where none are known. */
+static double part_k(const PartTemps *parts, double air_k, const Hits *hits, int i)
 {
-    const double emissivity = 1 - material->rho_lwir;
-    const double up = 0.5 * (1 + n_up);
-    const double gain_w_m2 = material->solar_absorptance * sun_level_w_m2 * (0.3 + 0.4 * up) -
-                             emissivity * air->light.longwave_loss_w_m2 * up;
-    return air_temp_k + gain_w_m2 / (film + emission_w_m2_k(emissivity, air_temp_k));
+    const double n_enu[3] = {(double)hits->n_geo[0][i], (double)hits->n_geo[1][i], (double)hits->n_geo[2][i]};
+    double       p_node[3], n_node[3];
+    if (!parts || !parts->snapshot->patch_k) return air_k;
+    visibility_on_part(p_node, n_node, parts->visibility, hits, i, n_enu);
+    const double temp_k = patch_set_temp_k(parts->patches, parts->snapshot, (int)hits->entity[i] - 1, hits->part[i] - 1, p_node, n_node);
+    return isfinite(temp_k) ? temp_k : air_k;
 }
 
 /* Temperature of the air at eight hits: straight between the nodes, as air_temp_at. */
@@ -68,13 +63,10 @@ static double plant_k(const Air *air, const Material *m, int material, double ai
     return heat_branch_k(air->heat->now, material, (double)hits->radius_m[i], n, open) + air_k - air->light.weather.air_temp_k;
 }
 
-void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
-                         const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *sun,
+void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const PartTemps *parts,
+                         const Hits *hits, const uint16_t *material, const float *sun,
                          const float *photo, const float *warmth_k)
 {
-    const double sun_level_w_m2 = air->light.solar_direct_w_m2 * fmax(air->light.sun_d_enu[2], 0) + air->light.solar_diffuse_w_m2;
-    const double film = film_w_m2_k(air->light.weather.wind_mps);
-
     for (int first = 0; first < hits->count; first += 8) {
         const int some = hits->count - first < 8 ? hits->count - first : 8;
         float     air_k[8];
@@ -88,9 +80,7 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
             } else if (hits->kind[i] == hit_plant) {
                 temp_k[i] = (float)plant_k(air, m, material[i], here_k, hits, i, sun);
             } else if (hits->entity[i]) {
-                const HeatRole role = catalog_model(catalog, hits->model[i])->part[hits->part[i] - 1].role;
-                const double   above_k = snapshot->entity[hits->entity[i] - 1].heat[role];
-                temp_k[i] = (float)(passive_part_k(air, here_k, m, (double)hits->n_enu[2][i], sun_level_w_m2, film) + above_k);
+                temp_k[i] = (float)part_k(parts, here_k, hits, i);
             } else if (!air->heat || hits->surface[i] == SURFACE_NONE) {
                 temp_k[i] = (float)(here_k + (double)warmth_k[i]);
             } else {

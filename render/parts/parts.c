@@ -372,16 +372,18 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
     out->radius_m = out->radius_m * (1 + 1e-9) + 1e-6; /* the roundings above, at any distance from the origin */
 }
 
-void parts_place_on_part(double p_node[3], const Model *model, const PosedEntity *entity, uint32_t triangle,
-                         const double p_enu[3])
+void parts_on_part(double p_node[3], double n_node[3], const Model *model, const PosedEntity *entity, uint32_t triangle,
+                   const double p_enu[3], const double n_enu[3])
 {
     const int node = model->part[model->triangle_part[triangle]].node;
     memset(p_node, 0, 3 * sizeof *p_node);
+    memset(n_node, 0, 3 * sizeof *n_node);
     for (int k = 0; k < entity->node_count; k++) {
         const PosedNode *posed = &entity->node[k];
         double           from_node[3];
         if (posed->mesh->node != node) continue;
         v3_sub(from_node, p_enu, posed->p_enu);
         m3_tmul_v3(p_node, posed->r_enu_from_node, from_node);
+        m3_tmul_v3(n_node, posed->r_enu_from_node, n_enu);
     }
 }

@@ -75,9 +75,9 @@ uint64_t parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *enti
  * above. */
 uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
                     const double *far_m, const int *list, int count, bool ask_all);
-/* A point on a triangle of the model, in the axes of its node in the entity's present pose. */
-void parts_place_on_part(double p_node[3], const Model *model, const PosedEntity *entity, uint32_t triangle,
-                         const double p_enu[3]);
+/* A point on a triangle of the model, and a direction, in the axes of its node in the entity's present pose. */
+void parts_on_part(double p_node[3], double n_node[3], const Model *model, const PosedEntity *entity, uint32_t triangle,
+                   const double p_enu[3], const double n_enu[3]);
 
 /* A triangle that was hit, in its present pose: for all hits on it. */
 typedef struct PosedFacet {

@@ -54,8 +54,8 @@ const Visibility *visibility_without_plants(const Visibility *v, Arena *arena);
 /* The same frame with every plant at its full detail; v itself where no plant is simplified. NULL: no memory. */
 const Visibility *visibility_with_full_plants(const Visibility *v, Arena *arena);
 
-/* A hit's place on its part, in the axes of the part's node: moves with the part. Of hits of kind hit_part. */
-void visibility_place_on_part(double p_node[3], const Visibility *v, const Hits *hits, int i);
+/* A hit's place on its part, and a direction, in the axes of the part's node: moves with the part. Of hits of kind hit_part. */
+void visibility_on_part(double p_node[3], double n_node[3], const Visibility *v, const Hits *hits, int i, const double n_enu[3]);
 
 /* The damage state that an entity is rendered with: snapshot_damage. */
 int visibility_damage(const Visibility *v, int index);

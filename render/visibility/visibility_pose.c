@@ -56,11 +56,11 @@ int visibility_damage(const Visibility *v, int index) { return snapshot_damage(&
 
 void visibility_materials(Visibility *v, const Materials *materials) { v->materials = materials; }
 
-void visibility_place_on_part(double p_node[3], const Visibility *v, const Hits *hits, int i)
+void visibility_on_part(double p_node[3], double n_node[3], const Visibility *v, const Hits *hits, int i, const double n_enu[3])
 {
     const PosedEntity *posed = visibility_posed(v, (int)hits->entity[i] - 1);
     const double       p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
-    parts_place_on_part(p_node, tracer_model(v->tracer, posed->model), posed, hits->facet[i], p_enu);
+    parts_on_part(p_node, n_node, tracer_model(v->tracer, posed->model), posed, hits->facet[i], p_enu, n_enu);
 }
 
 Status visibility_status(const Visibility *v) { return atomic_load(&v->poser->lost) ? STATUS_NO_MEMORY : STATUS_OK; }

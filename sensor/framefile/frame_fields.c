@@ -79,7 +79,13 @@ static void entity_fields(Fields *f, SnapshotEntity *e)
     field_real(f, "drift of an entity", &e->drift_m, 0, INFINITY);
     field_real(f, "drift of an entity", &e->drift_rad, 0, INFINITY);
     field_int(f, "nodes of an entity", &e->first_node, 0, INT32_MAX - 1);
-    field_floats(f, "heat of an entity", e->heat, HEAT_ROLE_COUNT, -1000, 10000);
+    if (f->version >= 3) {
+        field_int(f, "patches of an entity", &e->first_patch, -1, INT32_MAX - 1);
+    } else { /* heat by role, of which nothing is made any more */
+        float heat[21];
+        e->first_patch = -1;
+        field_floats(f, "heat of an entity", heat, 21, -1000, 10000);
+    }
 }
 
 static void puff_fields(Fields *f, EffectPuff *p)
@@ -119,7 +125,7 @@ void frame_fields_snapshot(Fields *f, FrameFile *file)
     field_int(f, "entities left out", &s->left_out, 0, INT32_MAX - 1);
     field_bytes(f, &left, sizeof left);
     s->puffs_left_out = left;
-    if (!field_array(f, "entities", &s->count, (void **)&s->entity, sizeof *s->entity, 300, frame_file_entities_max))
+    if (!field_array(f, "entities", &s->count, (void **)&s->entity, sizeof *s->entity, 220, frame_file_entities_max))
         return;
     for (int e = 0; e < s->count && fields_good(f); e++) entity_fields(f, &s->entity[e]);
     if (!field_array(f, "nodes", &s->node_count, (void **)&s->node, sizeof *s->node, 96, INT32_MAX - 1)) return;
@@ -130,6 +136,10 @@ void frame_fields_snapshot(Fields *f, FrameFile *file)
     if (!field_array(f, "puffs", &s->puff_count, (void **)&s->puff, sizeof *s->puff, 150, effect_puff_capacity))
         return;
     for (int p = 0; p < s->puff_count && fields_good(f); p++) puff_fields(f, &s->puff[p]);
+    if (f->version >= 3) {
+        if (!field_array(f, "patches", &s->patch_count, (void **)&s->patch_k, sizeof *s->patch_k, 4, INT32_MAX - 1)) return;
+        field_floats(f, "temperature of a patch", s->patch_k, s->patch_count, 0.1f, 1e5f);
+    }
     if (f->from) check_order(f, s);
 }
 

@@ -239,7 +239,7 @@ static Status open_session(Session *s)
     if (!s->node || !s->joint) return STATUS_NO_MEMORY;
 
     if (!etc_path(path, sizeof path, "heat.csv")) return STATUS_BAD_VALUE;
-    Status status = entity_table_create(&s->table, &table, shared->catalog, path);
+    Status status = entity_table_create(&s->table, &table, shared->catalog);
     if (status == STATUS_OK) status = read_marks(s);
     if (status == STATUS_OK) session_keep(s);
     if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, shared->config);

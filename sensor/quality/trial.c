@@ -62,7 +62,7 @@ Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char 
     Status status = etc_path(heat, sizeof heat, "heat.csv") && text_to_unix_s(&scene.unix_s, "2026-06-21T11:15:00Z")
                         ? STATUS_OK : STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = catalog_open(&scene.catalog, catalog_path, 0.01);
-    if (status == STATUS_OK) status = entity_table_create(&scene.table, &config, scene.catalog, heat);
+    if (status == STATUS_OK) status = entity_table_create(&scene.table, &config, scene.catalog);
     if (status == STATUS_OK) status = world_open(&scene.world, scene.catalog, landscape, &landscape->frame, "avx2");
     if (status == STATUS_OK) status = atmosphere_open(&scene.world.atmosphere, "us1976");
     const HeatConfig usual = heat_default_config();

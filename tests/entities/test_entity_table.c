@@ -149,7 +149,7 @@ static void a_full_table_refuses_and_recovers(void **state)
     config.capacity = 0;
     EntityTable *none = NULL;
     log_set_level(LOG_ERROR + 1);
-    CHECK(entity_table_create(&none, &config, f.catalog, "x") == STATUS_BAD_VALUE && !none);
+    CHECK(entity_table_create(&none, &config, f.catalog) == STATUS_BAD_VALUE && !none);
     log_set_level(LOG_INFO);
     fixture_close(&f);
 }

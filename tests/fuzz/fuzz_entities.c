@@ -147,7 +147,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     EntityTable *table = NULL;
     Player      *player = NULL;
     config.capacity = 8;
-    if (entity_table_create(&table, &config, catalog, heat_path) == STATUS_OK &&
+    if (entity_table_create(&table, &config, catalog) == STATUS_OK &&
         player_create(&player, exercise, size % 3 == 0) == STATUS_OK && player_add_log(player, &log) == STATUS_OK) {
         static const double t_s[] = {-1, 0, 0.1, 1, 3, 60, 4000, 1e7, 1e13};
         for (size_t i = 0; i < sizeof t_s / sizeof *t_s; i++) {

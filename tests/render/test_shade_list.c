@@ -134,7 +134,8 @@ static void a_hit_says_what_it_is(void **state)
     for (int i = 0; i < block.hits.count; i++) {
         double p_node[3];
         if (block.hits.kind[i] != hit_part || (block.hits.entity[i] - 1) % 2 == 0) continue;
-        visibility_place_on_part(p_node, scene.visibility, &block.hits, i);
+        double n_node[3];
+            visibility_on_part(p_node, n_node, scene.visibility, &block.hits, i, (const double[3]){0, 0, 1});
         CHECK_NEAR(v3_length(p_node), hand_sphere_m, 0.01 * hand_sphere_m);
         /* and on the plane of its own facet, which no other shares */
         const Model    *model = catalog_model(hand.catalog, hand.entity[block.hits.entity[i] - 1].model);

@@ -33,7 +33,7 @@ static int count_at(const DisLog *log, int exercise, bool causal, double t_s)
     Player           *player = NULL;
     char              heat[512];
     CHECK(etc_path(heat, sizeof heat, "heat.csv"));
-    assert_int_equal(entity_table_create(&table, &config, catalog, heat), STATUS_OK);
+    assert_int_equal(entity_table_create(&table, &config, catalog), STATUS_OK);
     assert_int_equal(player_create(&player, exercise, causal), STATUS_OK);
     assert_int_equal(player_add_log(player, log), STATUS_OK);
     player_feed(player, table, t_s);
@@ -74,7 +74,7 @@ static EntityTable *make_table(void)
     EntityTable      *table  = NULL;
     char              heat[512];
     CHECK(etc_path(heat, sizeof heat, "heat.csv"));
-    assert_int_equal(entity_table_create(&table, &config, catalog, heat), STATUS_OK);
+    assert_int_equal(entity_table_create(&table, &config, catalog), STATUS_OK);
     return table;
 }
 

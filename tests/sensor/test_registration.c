@@ -178,7 +178,7 @@ static void hear(Snapshot *snapshot, EntityTable **table, const DisEntityState *
     EntityTableConfig config = entity_table_default_config();
     char              heat[512];
     CHECK(etc_path(heat, sizeof heat, "heat.csv"));
-    assert_int_equal(entity_table_create(table, &config, fixture.catalog, heat), STATUS_OK);
+    assert_int_equal(entity_table_create(table, &config, fixture.catalog), STATUS_OK);
     assert_int_equal(entity_table_entity_state(*table, pdu, 100), STATUS_OK);
     assert_int_equal(entity_table_snapshot(snapshot, *table, 100, fixture.arena), STATUS_OK);
     assert_int_equal(snapshot->count, 1);

@@ -68,7 +68,7 @@ static Status crowd_open(Crowd *c, int count)
         return STATUS_BAD_VALUE;
     config.capacity = count;
     Status status = catalog_open(&c->catalog, catalog, 0.01);
-    if (status == STATUS_OK) status = entity_table_create(&c->table, &config, c->catalog, heat);
+    if (status == STATUS_OK) status = entity_table_create(&c->table, &config, c->catalog);
     for (int k = 0; k < count && status == STATUS_OK; k++) {
         make_report(c->state, k);
         c->octets[k] = dis_encode_entity_state(c->pdu[k], most_octets, c->state);

@@ -80,7 +80,7 @@ static Status world_open(World *w)
     if (!etc_path(catalog, sizeof catalog, "catalog.csv") || !etc_path(heat, sizeof heat, "heat.csv"))
         return STATUS_BAD_VALUE;
     Status status = catalog_open(&w->catalog, catalog, 0.05);
-    if (status == STATUS_OK) status = entity_table_create(&w->table, &config, w->catalog, heat);
+    if (status == STATUS_OK) status = entity_table_create(&w->table, &config, w->catalog);
     return status == STATUS_OK ? local_frame_at(&w->frame, &origin) : status;
 }
 

@@ -69,7 +69,7 @@ static Status crowd_open(CrowdFrame *c, const Landscape *landscape, int vehicles
     config.capacity = vehicles + more + 1;
     entity_table_destroy(c->scene.table);
     c->scene.table = NULL;
-    status = entity_table_create(&c->scene.table, &config, c->scene.catalog, heat);
+    status = entity_table_create(&c->scene.table, &config, c->scene.catalog);
     for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
         const TrialPlace at = {.type = tank_type, .number = k + 1, .appearance = 1u << 22, .east_m = 40.0 * (k % 5) - 80,
                                .north_m = 40.0 * (k / 5) - 60, .turn_rad = 2 * pi_rad * crowd_dice(6, k)};

@@ -1,0 +1,135 @@
+/* render/heat/patch_view.c: see patch_view.h. */
+#include "render/heat/patch_view.h"
+
+static const double leave_m = 2e-3;
+
+static void to_enu(double out_enu[3], const PatchPose *pose, int node, const double v_node[3], bool place)
+{
+    double body[3];
+    m3_mul_v3(body, pose->node[node].r_body_from_node, v_node);
+    for (int k = 0; place && k < 3; k++) body[k] += pose->node[node].p_body[k];
+    m3_mul_v3(out_enu, pose->r_enu_from_body, body);
+}
+
+void patch_view_normal(double n_enu[3], const PatchPose *pose, int patch)
+{
+    to_enu(n_enu, pose, pose->patches->patch[patch].node, pose->patches->patch[patch].n_node, false);
+}
+
+/* A point of a patch, off its surface, with its normal. */
+static void stand(double o_enu[3], double n_enu[3], const PatchPose *pose, int patch, int point)
+{
+    const Patch *p = &pose->patches->patch[patch];
+    to_enu(o_enu, pose, p->node, p->point_node[point], true);
+    to_enu(n_enu, pose, p->node, p->point_n_node[point], false);
+    v3_add_scaled(o_enu, o_enu, leave_m, n_enu);
+}
+
+/* Direction k of patch_view_rays about a normal, by the cosine: rings of equal share, turned by the golden angle from
+ * one to the next, and from point to point. */
+static void direction(double d_enu[3], const double n_enu[3], int k, int point)
+{
+    static const double golden_rad = 2.399963229728653;
+    double              u[3], v[3];
+    const int           thin = fabs(n_enu[0]) < fabs(n_enu[1]) ? (fabs(n_enu[0]) < fabs(n_enu[2]) ? 0 : 2)
+                                                               : (fabs(n_enu[1]) < fabs(n_enu[2]) ? 1 : 2);
+    const double        axis[3] = {thin == 0, thin == 1, thin == 2};
+    v3_cross(u, n_enu, axis);
+    v3_normalize(u, u);
+    v3_cross(v, n_enu, u);
+    const double s2 = (k + 0.25 + 0.5 * (point % 2)) / patch_view_rays, turn = golden_rad * (k + 0.5 * point) + point;
+    const double sine = sqrt(s2), cosine = sqrt(1 - s2);
+    for (int i = 0; i < 3; i++) d_enu[i] = cosine * n_enu[i] + sine * (cos(turn) * u[i] + sin(turn) * v[i]);
+}
+
+/* The patch of a triangle that a ray met at a place: of its body the one that is nearest and faces the same way. */
+static int patch_met(const PatchPose *pose, const PartHit *hit, const double p_enu[3], const double d_enu[3])
+{
+    const Patches   *patches = pose->patches;
+    const int        part = pose->model->triangle_part[hit->triangle], body = patches->body_of_part[part];
+    const PosedNode *node = &pose->posed->node[hit->node];
+    double           local[3], p_node[3], back[3] = {-d_enu[0], -d_enu[1], -d_enu[2]}, b_node[3], best = INFINITY;
+    int              found = patches->first_of_body[body];
+    v3_sub(local, p_enu, node->p_enu);
+    m3_tmul_v3(p_node, node->r_enu_from_node, local);
+    m3_tmul_v3(b_node, node->r_enu_from_node, back);
+    for (int i = patches->first_of_body[body]; i < patches->first_of_body[body + 1]; i++) {
+        double away[3];
+        v3_sub(away, patches->patch[i].p_node, p_node);
+        const double facing = v3_dot(patches->patch[i].n_node, b_node), d2 = v3_dot(away, away) + (facing > 0 ? 0 : 1e3);
+        if (d2 < best) best = d2, found = i;
+    }
+    return found;
+}
+
+/* Whether a ray from o meets the ground within the outline of the entity. */
+static bool meets_under(const PatchPose *pose, const double o_enu[3], const double d_enu[3])
+{
+    static const double more_m = 0.2, low_m = 1.5;
+    const double       *low = pose->posed->box_low, *high = pose->posed->box_high;
+    double              at_enu[3], at[3];
+    if (!(pose->above_m < low_m) || !(d_enu[2] < 0)) return false;
+    v3_add_scaled(at_enu, o_enu, fmax(o_enu[2] + pose->above_m, 0) / -d_enu[2], d_enu);
+    m3_tmul_v3(at, pose->r_enu_from_body, at_enu);
+    return at[0] > low[0] - more_m && at[0] < high[0] + more_m && at[1] > low[1] - more_m && at[1] < high[1] + more_m;
+}
+
+static void look(PatchView *out, const PatchPose *pose, int patch)
+{
+    static const float each = 1.0f / (patch_points * patch_view_rays);
+    uint16_t           met[patches_most] = {0};
+    int                others = 0;
+    *out = (PatchView){0};
+    for (int point = 0; point < patch_points; point++) {
+        double o_enu[3], n_enu[3];
+        stand(o_enu, n_enu, pose, patch, point);
+        for (int k = 0; k < patch_view_rays; k++) {
+            double  d_enu[3], at_enu[3];
+            PartHit hit;
+            direction(d_enu, n_enu, k, point);
+            const double t_m = parts_first_hit(&hit, pose->posed, o_enu, d_enu, INFINITY, false);
+            if (t_m < INFINITY) {
+                v3_add_scaled(at_enu, o_enu, t_m, d_enu);
+                others += met[patch_met(pose, &hit, at_enu, d_enu)]++ == 0;
+            } else if (d_enu[2] >= 0) {
+                out->sky += each;
+            } else if (meets_under(pose, o_enu, d_enu)) {
+                out->under += each;
+            } else {
+                out->ground += each;
+            }
+        }
+    }
+    /* the largest shares are kept, and stand for all */
+    int kept = 0, all = 0;
+    for (int i = 0; i < pose->patches->count; i++) all += met[i];
+    while (out->partners < patch_partners && out->partners < others) {
+        int most = 0;
+        for (int i = 1; i < pose->patches->count; i++)
+            if (met[i] > met[most]) most = i;
+        out->partner[out->partners] = (uint8_t)most;
+        out->share[out->partners++] = (float)met[most];
+        kept += met[most];
+        met[most] = 0;
+    }
+    for (int k = 0; k < out->partners; k++) out->share[k] *= each * (float)all / (float)kept;
+}
+
+void patch_view_look(PatchView *out, const PatchPose *pose)
+{
+    for (int i = 0; i < pose->patches->count; i++) look(&out[i], pose, i);
+}
+
+void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3])
+{
+    for (int i = 0; i < pose->patches->count; i++) {
+        double sum = 0;
+        for (int point = 0; point < patch_points && sun_d_enu[2] > 0; point++) {
+            double o_enu[3], n_enu[3];
+            stand(o_enu, n_enu, pose, i, point);
+            const double cosine = v3_dot(n_enu, sun_d_enu);
+            if (cosine > 0 && !parts_occluded(pose->posed, o_enu, sun_d_enu, false)) sum += cosine;
+        }
+        out[i] = (float)(sum / patch_points);
+    }
+}

@@ -1,0 +1,38 @@
+/* render/heat/patch_view.h: what each patch of an entity sees, by rays against its own parts as they are posed: sky, ground,
+ * the ground beneath it, other patches, and the sun.
+ *
+ * Shares are of the hemisphere over the patch, weighted by the cosine: 12 rays from each of four points, the same for every
+ * entity. Error: some 0.05 of a share (tests/render/test_vehicle_heat.c). Other entities are not seen. */
+#ifndef RENDER_HEAT_PATCH_VIEW_H
+#define RENDER_HEAT_PATCH_VIEW_H
+
+#include "entities/models/patches.h"
+#include "render/parts/parts.h"
+
+enum { patch_view_rays = 12, patch_partners = 8 };
+
+typedef struct PatchView {
+    float   sky, ground, under;       /* under: ground within the outline of the entity, in its shade */
+    uint8_t partners;                 /* the rest: other patches, at most so many; shares add up to 1 */
+    uint8_t partner[patch_partners];
+    float   share[patch_partners];
+} PatchView;
+
+/* An entity as it is posed now, at the origin of ENU. */
+typedef struct PatchPose {
+    const Patches *patches;
+    const Model   *model;
+    const PosedEntity *posed;         /* at p_enu 0 */
+    const NodePose    *node;
+    double r_enu_from_body[9];
+    double above_m;                   /* of its base over the ground */
+} PatchPose;
+
+/* out[patches->count]. */
+void patch_view_look(PatchView *out, const PatchPose *pose);
+/* Share of the direct sun that each patch takes: mean cosine of its points, 0 where its own parts are between. */
+void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3]);
+/* Unit normal of a patch, ENU. */
+void patch_view_normal(double n_enu[3], const PatchPose *pose, int patch);
+
+#endif

@@ -1,0 +1,575 @@
+/* render/heat/vehicle_heat.c: see vehicle_heat.h. */
+#include "render/heat/vehicle_heat.h"
+
+#include "render/heat/patch_view.h"
+
+#include <stdlib.h>
+
+static const double stefan = 5.670374419184429e-8;
+static const double recovery = 0.85, cp_air_j_kgk = 1005;
+static const double leak_s = 25000;        /* engine that has stopped, and a cabin: to the air through its bay; estimate */
+static const double flame_w_m2 = 20e3;     /* into the skin of what burns: fires of fuel and rubber inside; estimate */
+static const double idle_engine = 0.6;     /* entities/effects/drives.h */
+
+typedef struct VehicleState {
+    DisEntityId  id;
+    double       since_s;
+    int          model;
+    double       t_s, next_s, span_s;
+    EntityDrives drives;
+    double       up_body[3], ahead_enu[3], joint_sum;
+    double       heat_in_j;
+    double      *temp_k;          /* [nodes] at t_s */
+    float       *now_k, *next_k;  /* [patches] at t_s, next_s */
+    double      *joint;           /* [model nodes]: as view saw them */
+    double       view_up_body[3];
+    PatchView   *view;            /* [patches] */
+    NetworkLoad *load;            /* [nodes] at t_s */
+} VehicleState;
+
+struct VehicleHeat {
+    VehicleHeatConfig   config;
+    VehicleHeatWorld    world;
+    VehicleShape       *shape;    /* [models] */
+    bool               *shaped;
+    int                 models, count, room;
+    VehicleState      **state, **was; /* [count], by id; of the tick before */
+    Arena              *arena;    /* of one entity's step */
+    VehicleHeatCounters counters;
+};
+
+Status vehicle_heat_create(VehicleHeat **out, const VehicleHeatConfig *config, const VehicleHeatWorld *world)
+{
+    VehicleHeat *h = calloc(1, sizeof *h);
+    if (!h) return STATUS_NO_MEMORY;
+    h->config = *config;
+    h->world  = *world;
+    h->models = catalog_model_count(world->catalog);
+    h->shape  = calloc((size_t)h->models + 1, sizeof *h->shape);
+    h->shaped = calloc((size_t)h->models + 1, sizeof *h->shaped);
+    h->arena  = arena_create();
+    if (!h->shape || !h->shaped || !h->arena) {
+        vehicle_heat_destroy(h);
+        return STATUS_NO_MEMORY;
+    }
+    *out = h;
+    return STATUS_OK;
+}
+
+void vehicle_heat_destroy(VehicleHeat *h)
+{
+    if (!h) return;
+    for (int i = 0; i < h->count; i++) free(h->state[i]);
+    for (int m = 0; h->shape && m < h->models; m++) vehicle_shape_destroy(&h->shape[m]);
+    arena_destroy(h->arena);
+    free(h->state);
+    free(h->was);
+    free(h->shape);
+    free(h->shaped);
+    free(h);
+}
+
+static Status need_shape(VehicleHeat *h, int m)
+{
+    if (h->shaped[m]) return STATUS_OK;
+    Status status = tracer_need(h->world.tracer, m);
+    if (status == STATUS_OK) status = patch_set_need(h->world.patches, m, tracer_model(h->world.tracer, m));
+    if (status == STATUS_OK)
+        status = vehicle_shape_create(&h->shape[m], &h->world.patches->of[m], tracer_model(h->world.tracer, m), m,
+                                      h->world.table, h->world.materials);
+    h->shaped[m] = status == STATUS_OK;
+    return status;
+}
+
+/* One block: the state and all its arrays. */
+static VehicleState *new_state(const VehicleShape *shape, const Model *model)
+{
+    const size_t n = (size_t)shape->nodes, p = (size_t)shape->patches->count, j = (size_t)model->node_count;
+    const size_t doubles = sizeof(VehicleState) + n * sizeof(double) + j * sizeof(double) + n * sizeof(NetworkLoad);
+    char        *at = calloc(1, doubles + p * sizeof(PatchView) + 2 * p * sizeof(float));
+    if (!at) return NULL;
+    VehicleState *s = (VehicleState *)(void *)at;
+    s->temp_k = (double *)(void *)(at + sizeof *s);
+    s->joint  = s->temp_k + n;
+    s->load   = (NetworkLoad *)(void *)(s->joint + j);
+    s->view   = (PatchView *)(void *)(at + doubles);
+    s->now_k  = (float *)(void *)(s->view + p);
+    s->next_k = s->now_k + p;
+    return s;
+}
+
+static size_t state_bytes(const VehicleShape *shape, const Model *model)
+{
+    const size_t n = (size_t)shape->nodes, p = (size_t)shape->patches->count;
+    return sizeof(VehicleState) + (n + (size_t)model->node_count) * sizeof(double) + n * sizeof(NetworkLoad) +
+           p * (sizeof(PatchView) + 2 * sizeof(float));
+}
+
+size_t vehicle_heat_bytes(const VehicleHeat *h)
+{
+    size_t bytes = sizeof *h + (size_t)h->room * sizeof *h->state;
+    for (int i = 0; i < h->count; i++)
+        bytes += state_bytes(&h->shape[h->state[i]->model], tracer_model(h->world.tracer, h->state[i]->model));
+    return bytes;
+}
+
+const VehicleHeatCounters *vehicle_heat_counters(const VehicleHeat *h) { return &h->counters; }
+
+/* ---- an entity now ------------------------------------------------------------------------ */
+
+/* What a step needs of an entity. */
+typedef struct Moment {
+    const SnapshotEntity *entity;
+    const Model          *model;
+    const VehicleShape   *shape;
+    PosedEntity           posed;
+    PatchPose             pose;
+    NodePose             *node;
+    double               *joint;
+    double                p_enu[3], v_enu_mps[3];
+    float                *lit;      /* [patches] */
+    PlaceHeat             place;
+} Moment;
+
+static Status catch_moment(Moment *m, VehicleHeat *h, const Snapshot *snapshot, int index)
+{
+    const SnapshotEntity *e = &snapshot->entity[index];
+    const LocalFrame     *frame = h->world.frame;
+    static const double   origin[3] = {0, 0, 0};
+    *m = (Moment){.entity = e, .model = tracer_model(h->world.tracer, e->model), .shape = &h->shape[e->model]};
+    m->node  = arena_alloc(h->arena, (size_t)m->model->node_count, sizeof *m->node);
+    m->joint = arena_alloc(h->arena, (size_t)m->model->node_count, sizeof *m->joint);
+    m->lit   = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->lit);
+    m->posed.node = arena_alloc(h->arena, (size_t)parts_node_count(h->world.tracer, e->model) + 1, sizeof *m->posed.node);
+    if (!m->node || !m->joint || !m->lit || !m->posed.node) return STATUS_NO_MEMORY;
+    enu_from_ecef(m->p_enu, frame, e->p_ecef);
+    m3_tmul_v3(m->v_enu_mps, frame->r_ecef_from_enu, e->v_ecef_mps);
+    m3_tmul(m->pose.r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
+    snapshot_pose(m->node, m->joint, snapshot, index, m->model);
+    parts_pose(&m->posed, h->world.tracer, e->model, m->node, origin, m->pose.r_enu_from_body, 0);
+    m->pose.patches = m->shape->patches, m->pose.model = m->model;
+    m->pose.node = m->node;
+    return m->posed.model >= 0 && v3_is_finite(m->p_enu) ? STATUS_OK : STATUS_BAD_VALUE;
+}
+
+static Status find_place(Moment *m, const VehicleHeat *h, double unix_s, bool present)
+{
+    const Status status = h->config.place(&m->place, h->config.user, unix_s, m->p_enu, present);
+    if (status != STATUS_OK) return status;
+    m->pose.posed   = &m->posed;
+    m->pose.above_m = m->place.above_m;
+    patch_view_sun(m->lit, &m->pose, m->place.sun_d_enu);
+    return STATUS_OK;
+}
+
+/* ---- loads -------------------------------------------------------------------------------- */
+
+static double film_at(double speed_mps, double air_density) { return (4 + 6.1 * pow(speed_mps, 0.8)) * pow(air_density, 0.8); }
+
+/* Speed of the air past a patch: of the entity, and of blades that turn. */
+static double air_speed(const Moment *m, const Patch *patch, const EntityDrives *drives)
+{
+    const ModelNode *node = &m->model->node[patch->node];
+    double           flow[3], speed_mps;
+    v3_sub(flow, m->place.wind_enu_mps, m->v_enu_mps);
+    speed_mps = v3_length(flow);
+    if (node->spin_rps_moving == 0 || !(drives->engine > 0)) return speed_mps;
+    const double along = v3_dot(patch->p_node, node->axis);
+    const double radius_m = sqrt(fmax(v3_dot(patch->p_node, patch->p_node) - along * along, 0)) + patch->reach_m;
+    return speed_mps + 0.7 * fabs(node->spin_rps_moving) * radius_m; /* most of a blade's area and heat is there */
+}
+
+/* A second film of a node: both to one fluid between. */
+static void add_film(NetworkLoad *load, double w_k, double fluid_k)
+{
+    if (!(w_k > 0)) return;
+    load->fluid_k = (load->film_w_k * load->fluid_k + w_k * fluid_k) / (load->film_w_k + w_k);
+    load->film_w_k += w_k;
+}
+
+/* What is behind a skin, where that is no node of the network. */
+static void add_inside(NetworkLoad *load, const PartRow *row, const MachineRow *machine, const EntityDrives *d, double area_m2,
+                       double air_k)
+{
+    const double engine = (double)d->engine, alive = (double)d->alive, film = row->inside_w_m2k, running = row->running_w_m2k;
+    const double idle = 0.5, gas_k = air_k + (machine->exhaust_k - air_k) *
+                                                 (idle + (1 - idle) * clamp((engine - idle_engine) / (1 - idle_engine), 0, 1));
+    switch (row->inside) {
+    case INSIDE_EXHAUST: case INSIDE_TURBINE:
+        add_film(load, area_m2 * (film + (running - film) * engine), engine > 0 ? gas_k : air_k);
+        break;
+    case INSIDE_MOTOR: add_film(load, area_m2 * running * (double)d->motor, 2500); break;
+    case INSIDE_BODY: add_film(load, area_m2 * film * alive, 310); break;
+    case INSIDE_ROOM: add_film(load, area_m2 * film * alive, 293); break;
+    case INSIDE_FLUE: add_film(load, area_m2 * film * alive, 400); break;
+    case INSIDE_GRAIN: add_film(load, area_m2 * film * (double)d->flare, 1900); break;
+    default: break;
+    }
+}
+
+static void load_patch(NetworkLoad *load, const Moment *m, const VehicleState *s, int i, const EntityDrives *d)
+{
+    const Patch     *patch = &m->shape->patches->patch[i];
+    const SkinNode  *skin = &m->shape->skin[i];
+    const PatchView *view = &s->view[i];
+    const PlaceHeat *p = &m->place;
+    const double     area = patch->area_m2, e = skin->emissivity, speed_mps = air_speed(m, patch, d);
+    NetworkLoad     *at = &load[skin->surface];
+
+    const double level_w_m2 = p->direct_w_m2 * fmax(p->sun_d_enu[2], 0) + p->diffuse_w_m2;
+    const double sun_w_m2 = p->direct_w_m2 * (double)m->lit[i] + p->diffuse_w_m2 * (double)view->sky +
+                            p->ground_rho * level_w_m2 * (double)view->ground;
+    double around_w_m2 = p->longwave_w_m2 * (double)view->sky + stefan * pow(p->ground_k, 4) * (double)view->ground +
+                         stefan * pow(p->under_k, 4) * (double)view->under;
+    for (int k = 0; k < view->partners; k++)
+        around_w_m2 += (double)view->share[k] * stefan * pow(s->temp_k[m->shape->skin[view->partner[k]].surface], 4);
+    at->heat_w += area * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame_w_m2 * (double)d->burning);
+    at->emits_m2 = e * area;
+    add_film(at, area * film_at(speed_mps, p->air_density), p->air_k + recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk));
+    if (skin->row.drive == PART_DRIVE_MOTION && !(d->flying > 0)) {
+        const double w = area * skin->friction * skin->row.drive_value * clamp((double)d->speed_mps / 10, 0, 2);
+        at->heat_w += 0.5 * w;
+        load[skin->inner].heat_w += 0.5 * w;
+    }
+    add_inside(&load[skin->inner], &skin->row, &m->shape->machine, d, area, p->air_k);
+}
+
+static void load_nodes(NetworkLoad *load, const Moment *m, const VehicleState *s, const EntityDrives *d)
+{
+    const VehicleShape *shape = m->shape;
+    const MachineRow   *machine = &shape->machine;
+    for (int n = 0; n < shape->nodes; n++) load[n] = (NetworkLoad){.fluid_k = m->place.air_k};
+    for (int i = 0; i < shape->patches->count; i++) load_patch(load, m, s, i, d);
+    if (shape->engine >= 0) { /* the thermostat's radiator takes what the engine gives at its temperature */
+        const double w = machine->engine_w * (double)d->engine, over_k = fmax(machine->engine_k - m->place.air_k, 5);
+        load[shape->engine].heat_w += w;
+        add_film(&load[shape->engine], w / over_k + machine->engine_j_k / leak_s, m->place.air_k);
+    }
+    if (shape->cabin >= 0) {
+        load[shape->cabin].heat_w += d->engine > 0 ? machine->cabin_w : 0;
+        add_film(&load[shape->cabin], machine->cabin_j_k / leak_s, m->place.air_k);
+    }
+}
+
+/* The moment's conductances to engine and cabin. */
+static void set_links(const VehicleShape *shape, const EntityDrives *d)
+{
+    for (int k = 0; k < shape->links; k++) shape->conductance_w_k[k] = shape->link[k].conductance_w_k;
+    for (int i = 0; i < shape->patches->count; i++) {
+        const SkinNode *skin = &shape->skin[i];
+        if (skin->inside_link < 0) continue;
+        const double w_m2k = skin->row.inside_w_m2k + (skin->row.running_w_m2k - skin->row.inside_w_m2k) * (double)d->engine;
+        shape->conductance_w_k[skin->inside_link] = w_m2k * shape->patches->patch[i].area_m2;
+    }
+    network_conductances(shape->network, shape->conductance_w_k);
+}
+
+static bool is_sound(const double *temp_k, int nodes)
+{
+    for (int n = 0; n < nodes; n++)
+        if (!(temp_k[n] > 0.5 && temp_k[n] < 1e4)) return false;
+    return true;
+}
+
+/* A step; where the solver gives up, temperatures stay. scratch: [nodes]. */
+static void step(VehicleHeat *h, VehicleState *s, double *temp_k, double *heat_in_j, const EntityDrives *d, const NetworkLoad *from,
+                 const NetworkLoad *to, double dt_s, double *scratch)
+{
+    const VehicleShape *shape = &h->shape[s->model];
+    const size_t        octets = (size_t)shape->nodes * sizeof *temp_k;
+    double              in_j = 0;
+    if (!(dt_s > 0)) return;
+    set_links(shape, d);
+    memcpy(scratch, temp_k, octets);
+    h->counters.steps++;
+    if (network_step(scratch, &in_j, shape->network, from, to, dt_s) != STATUS_OK || !is_sound(scratch, shape->nodes)) {
+        h->counters.failed++;
+        return;
+    }
+    memcpy(temp_k, scratch, octets);
+    if (heat_in_j) *heat_in_j += in_j;
+}
+
+static void read_surface(float *out_k, const VehicleShape *shape, const double *temp_k)
+{
+    for (int i = 0; i < shape->patches->count; i++) out_k[i] = (float)temp_k[shape->skin[i].surface];
+}
+
+/* Shots since, into the bores. */
+static void take_shots(VehicleHeat *h, VehicleState *s, const EntityDrives *d)
+{
+    const VehicleShape *shape = &h->shape[s->model];
+    for (int large = 0; large < 2; large++) {
+        const double kg = d->fired_kg[large] - s->drives.fired_kg[large];
+        const int    body = shape->gun_body[large];
+        if (!(kg > 0) || body < 0) continue;
+        for (int i = shape->patches->first_of_body[body]; i < shape->patches->first_of_body[body + 1]; i++) {
+            const double j = kg * shape->skin[i].row.drive_value * shape->patches->patch[i].area_m2 / shape->gun_m2[large];
+            const int    node = shape->skin[i].inner;
+            s->temp_k[node] = fmin(s->temp_k[node] + j / shape->capacity_j_k[node], 2000);
+            s->heat_in_j += j;
+        }
+    }
+}
+
+/* ---- states ------------------------------------------------------------------------------- */
+
+static const double turned_cos = 0.985; /* 10 degrees */
+
+static bool joints_moved(const Moment *m, const VehicleState *s)
+{
+    static const double moved = 0.17; /* rad, m */
+    for (int n = 0; n < m->model->node_count; n++) {
+        const ModelNode *node = &m->model->node[n];
+        if (node->spin_rps_moving != 0 || node->roll_radius_m > 0) continue;
+        if (fabs(m->joint[n] - s->joint[n]) > moved) return true;
+    }
+    return false;
+}
+
+static void up_in_body(double up_body[3], const double r_enu_from_body[9])
+{
+    for (int k = 0; k < 3; k++) up_body[k] = r_enu_from_body[6 + k];
+}
+
+static void ahead_in_enu(double ahead_enu[3], const double r_enu_from_body[9])
+{
+    for (int k = 0; k < 3; k++) ahead_enu[k] = r_enu_from_body[3 * k];
+}
+
+static void see(VehicleState *s, const Moment *m)
+{
+    patch_view_look(s->view, &m->pose);
+    up_in_body(s->view_up_body, m->pose.r_enu_from_body);
+    memcpy(s->joint, m->joint, (size_t)m->model->node_count * sizeof *s->joint);
+}
+
+static bool differs(double a, double b, double share, double least) { return fabs(a - b) > fmax(share * fmax(fabs(a), fabs(b)), least); }
+
+/* Whether what heats it has changed so that its step must end. */
+static bool drives_changed(const EntityDrives *a, const EntityDrives *b)
+{
+    return differs((double)a->engine, (double)b->engine, 0, 0.05) || differs((double)a->speed_mps, (double)b->speed_mps, 0.1, 1) ||
+           a->burning != b->burning || a->motor != b->motor || a->flare != b->flare || a->alive != b->alive ||
+           a->flying != b->flying || a->fired_kg[0] != b->fired_kg[0] || a->fired_kg[1] != b->fired_kg[1];
+}
+
+static void stay(VehicleState *s, const Moment *m, double t_s)
+{
+    s->t_s    = t_s;
+    s->drives = m->entity->drives;
+    ahead_in_enu(s->ahead_enu, m->pose.r_enu_from_body);
+    up_in_body(s->up_body, m->pose.r_enu_from_body);
+}
+
+/* Where its present loads lead it until its next own time. */
+static Status predict(VehicleHeat *h, VehicleState *s, const Moment *m)
+{
+    double *temp_k = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *temp_k);
+    double *scratch = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *scratch);
+    if (!temp_k || !scratch) return STATUS_NO_MEMORY;
+    memcpy(temp_k, s->temp_k, (size_t)m->shape->nodes * sizeof *temp_k);
+    step(h, s, temp_k, NULL, &s->drives, s->load, s->load, s->span_s, scratch);
+    s->next_s = s->t_s + s->span_s;
+    read_surface(s->now_k, m->shape, s->temp_k);
+    read_surface(s->next_k, m->shape, temp_k);
+    return STATUS_OK;
+}
+
+/* A day without its engine, an hour as it is now: steps that shorten towards the present. */
+static Status live_until(VehicleHeat *h, VehicleState *s, Moment *m, double t_s)
+{
+    static const struct { double span_s; int times; } past[] = {{10800, 4}, {7200, 3}, {3600, 5}, {1200, 2}, {600, 2}};
+    static const double now_s = 3600;
+    const int           nodes = m->shape->nodes;
+    double             *scratch = arena_alloc(h->arena, (size_t)nodes, sizeof *scratch), before_s = 0;
+    if (!scratch) return STATUS_NO_MEMORY;
+    for (size_t k = 0; k < sizeof past / sizeof *past; k++) before_s += past[k].span_s * past[k].times;
+    Status status = find_place(m, h, h->config.unix_s + t_s - before_s, false);
+    for (int n = 0; n < nodes && status == STATUS_OK; n++) s->temp_k[n] = m->place.air_k;
+    for (size_t k = 0; k < sizeof past / sizeof *past; k++)
+        for (int i = 0; i < past[k].times && status == STATUS_OK; i++) {
+            const double span_s = past[k].span_s;
+            EntityDrives d = {.alive = s->drives.alive, .flying = s->drives.flying};
+            if (before_s <= now_s) d = s->drives;
+            status = find_place(m, h, h->config.unix_s + t_s - before_s + 0.5 * span_s, false);
+            if (status != STATUS_OK) break;
+            load_nodes(s->load, m, s, &d);
+            step(h, s, s->temp_k, NULL, &d, s->load, s->load, span_s, scratch);
+            before_s -= span_s;
+        }
+    return status;
+}
+
+static Status begin(VehicleState **out, VehicleHeat *h, Moment *m, double t_s)
+{
+    const SnapshotEntity *e = m->entity;
+    VehicleState         *s = new_state(m->shape, m->model);
+    Status                status = STATUS_OK;
+    if (!s) return STATUS_NO_MEMORY;
+    s->id = e->id, s->since_s = e->drives.since_s, s->model = e->model;
+    stay(s, m, t_s);
+    m->place.above_m = 0;
+    m->pose.posed = &m->posed;
+    status = find_place(m, h, h->config.unix_s + t_s, true);
+    if (status == STATUS_OK) {
+        const PlaceHeat now = m->place;
+        see(s, m);
+        for (int n = 0; n < m->shape->nodes; n++) s->temp_k[n] = now.air_k;
+        if (!snapshot_is_short_lived(e)) {
+            status = live_until(h, s, m, t_s);
+        } else {
+            const double speed_mps = v3_length(m->v_enu_mps);
+            for (int n = 0; n < m->shape->nodes; n++) s->temp_k[n] += recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk);
+        }
+        if (status == STATUS_OK) status = find_place(m, h, h->config.unix_s + t_s, true);
+    }
+    if (status == STATUS_OK) {
+        load_nodes(s->load, m, s, &s->drives);
+        s->span_s = h->config.first_step_s;
+        status = predict(h, s, m);
+    }
+    if (status != STATUS_OK) {
+        free(s);
+        return status;
+    }
+    h->counters.begun++;
+    *out = s;
+    return STATUS_OK;
+}
+
+static Status advance(VehicleHeat *h, VehicleState *s, Moment *m, bool changed, double t_s)
+{
+    const EntityDrives *d = &m->entity->drives;
+    const int           nodes = m->shape->nodes;
+    NetworkLoad        *load = arena_alloc(h->arena, (size_t)nodes, sizeof *load);
+    double             *scratch = arena_alloc(h->arena, (size_t)nodes, sizeof *scratch), up_body[3];
+    Status              status = load && scratch ? find_place(m, h, h->config.unix_s + t_s, true) : STATUS_NO_MEMORY;
+    if (status != STATUS_OK) return status;
+    up_in_body(up_body, m->pose.r_enu_from_body);
+    if (v3_dot(up_body, s->view_up_body) < turned_cos || joints_moved(m, s)) see(s, m);
+    load_nodes(load, m, s, d);
+    step(h, s, s->temp_k, &s->heat_in_j, &s->drives, s->load, changed ? s->load : load, t_s - s->t_s, scratch);
+    take_shots(h, s, d);
+    stay(s, m, t_s);
+    load_nodes(s->load, m, s, d);
+    s->span_s = changed ? h->config.first_step_s : fmin(2 * s->span_s, h->config.step_s);
+    return predict(h, s, m);
+}
+
+/* One entity at a tick. state: NULL: a new one. */
+static Status tick_entity(VehicleState **state, VehicleHeat *h, const Snapshot *snapshot, int index)
+{
+    const SnapshotEntity *e = &snapshot->entity[index];
+    const double          t_s = snapshot->t_s;
+    VehicleState         *s = *state;
+    bool                  changed = false;
+    if (s) {
+        double r_enu_from_body[9], ahead_enu[3], up_body[3];
+        m3_tmul(r_enu_from_body, h->world.frame->r_ecef_from_enu, e->r_ecef_from_body);
+        ahead_in_enu(ahead_enu, r_enu_from_body);
+        up_in_body(up_body, r_enu_from_body);
+        changed = drives_changed(&s->drives, &e->drives) || v3_dot(ahead_enu, s->ahead_enu) < turned_cos ||
+                  v3_dot(up_body, s->up_body) < turned_cos;
+        if (!changed && t_s < s->next_s) return STATUS_OK;
+    }
+    Moment moment;
+    Status status = catch_moment(&moment, h, snapshot, index);
+    if (status == STATUS_BAD_VALUE) return STATUS_OK; /* not drawable: no temperatures */
+    if (status == STATUS_OK) status = s ? advance(h, s, &moment, changed, t_s) : begin(state, h, &moment, t_s);
+    return status;
+}
+
+static Status make_room(VehicleHeat *h, int count)
+{
+    if (count <= h->room) return STATUS_OK;
+    const int      room = count < h->config.capacity ? count + count / 2 + 16 : count;
+    VehicleState **larger = realloc(h->state, (size_t)room * sizeof *larger);
+    if (larger) h->state = larger;
+    VehicleState **also = larger ? realloc(h->was, (size_t)room * sizeof *also) : NULL;
+    if (!also) return STATUS_NO_MEMORY;
+    h->was = also, h->room = room;
+    return STATUS_OK;
+}
+
+static bool is_same(const VehicleState *s, const SnapshotEntity *e)
+{
+    return s->since_s == e->drives.since_s && s->model == e->model;
+}
+
+Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
+{
+    const double began_s = wall_clock_s();
+    Status       status = make_room(h, snapshot->count < h->config.capacity ? snapshot->count : h->config.capacity);
+    if (status != STATUS_OK) return status;
+    VehicleState **was = h->was;
+    const int      before = h->count;
+    if (before > 0) memcpy(was, h->state, (size_t)before * sizeof *was);
+    h->count = 0;
+    int at = 0;
+    for (int i = 0; i < snapshot->count; i++) {
+        const SnapshotEntity *e = &snapshot->entity[i];
+        VehicleState         *s = NULL;
+        while (at < before && dis_entity_id_compare(was[at]->id, e->id) < 0) free(was[at++]);
+        if (at < before && dis_entity_id_compare(was[at]->id, e->id) == 0) {
+            s = was[at++];
+            if (!is_same(s, e)) free(s), s = NULL;
+        }
+        if (e->model < 0 || e->model >= h->models || !catalog_has_shape(h->world.catalog, e->model) || h->count == h->config.capacity) {
+            h->counters.left_out += h->count == h->config.capacity;
+            free(s);
+            continue;
+        }
+        arena_reset(h->arena);
+        if (status == STATUS_OK) status = need_shape(h, e->model);
+        if (status == STATUS_OK && h->shape[e->model].patches->count > 0) status = tick_entity(&s, h, snapshot, i);
+        if (s) h->state[h->count++] = s;
+    }
+    while (at < before) free(was[at++]);
+    const double spent_s = wall_clock_s() - began_s;
+    h->counters.spent_s += spent_s;
+    h->counters.longest_s = fmax(h->counters.longest_s, spent_s);
+    return status;
+}
+
+static const VehicleState *find_state(const VehicleHeat *h, DisEntityId id)
+{
+    int low = 0, high = h->count;
+    while (low < high) {
+        const int middle = low + (high - low) / 2, order = dis_entity_id_compare(h->state[middle]->id, id);
+        if (order == 0) return h->state[middle];
+        if (order < 0) low = middle + 1;
+        else high = middle;
+    }
+    return NULL;
+}
+
+Status vehicle_heat_show(const VehicleHeat *h, Snapshot *snapshot, Arena *arena)
+{
+    int patches = 0;
+    for (int i = 0; i < h->count; i++) patches += h->shape[h->state[i]->model].patches->count;
+    float *patch_k = arena_alloc(arena, (size_t)patches + 1, sizeof *patch_k);
+    if (!patch_k) return STATUS_NO_MEMORY;
+    snapshot->patch_k = patch_k;
+    snapshot->patch_count = 0;
+    for (int i = 0; i < snapshot->count; i++) {
+        SnapshotEntity     *e = &snapshot->entity[i];
+        const VehicleState *s = find_state(h, e->id);
+        e->first_patch = -1;
+        if (!s || !is_same(s, e)) continue;
+        const int   count = h->shape[s->model].patches->count;
+        const float share = s->next_s > s->t_s ? (float)clamp((snapshot->t_s - s->t_s) / (s->next_s - s->t_s), 0, 1) : 0;
+        e->first_patch = snapshot->patch_count;
+        for (int k = 0; k < count; k++) patch_k[e->first_patch + k] = s->now_k[k] + share * (s->next_k[k] - s->now_k[k]);
+        snapshot->patch_count += count;
+    }
+    return STATUS_OK;
+}
+
+bool vehicle_heat_nodes(VehicleNodes *out, const VehicleHeat *h, DisEntityId id)
+{
+    const VehicleState *s = find_state(h, id);
+    if (!s) return false;
+    *out = (VehicleNodes){&h->shape[s->model], s->temp_k, s->heat_in_j, s->t_s};
+    return true;
+}

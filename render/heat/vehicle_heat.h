@@ -1,0 +1,83 @@
+/* render/heat/vehicle_heat.h: temperatures of entities over an exercise: what stays of their engine, motion, shots and of
+ * the sun of the hours before.
+ *
+ * Each entity is a thermal network of the patches of its model (vehicle_shape.h). Its state advances at ticks of exercise
+ * time, whatever frames are rendered: at once when its drives change, otherwise in steps that double from first_step_s to
+ * step_s. Between two times of its own its patches lie on straight lines to what its present drives lead to. So temperatures
+ * are a function of the log, the settings and the time.
+ *
+ * At a patch: sun by rays past its own parts, with the ground's shade; sky and ground light; longwave of sky, of ground (in
+ * the open, and in its own shade below it) and of its other patches, at their temperatures of the step's beginning;
+ * convection by wind and its own speed, to the air's recovery temperature; what is behind it (etc/heat.csv).
+ *
+ *     film 4 + 6.1 v^0.8 W/(m2 K): turbulent flow over a plate of 1 m (Incropera & DeWitt: Nu = 0.037 Re^0.8 Pr^(1/3), air
+ *     of 288 K) over free convection; 10 % of McAdams's 5.7 + 3.8 v up to 10 m/s; with air density^0.8 above
+ *     recovery 0.85 v^2 / (2 cp): between the laminar sqrt(Pr) = 0.84 and the turbulent Pr^(1/3) = 0.89
+ *
+ * Before its first report an entity is taken to have stood there for a day with its engine stopped, and for its last hour to have
+ * done what it then does. Munitions and expendables start as warm as the air that flows past them. */
+#ifndef RENDER_HEAT_VEHICLE_HEAT_H
+#define RENDER_HEAT_VEHICLE_HEAT_H
+
+#include "entities/table/snapshot.h"
+#include "render/heat/patch_set.h"
+#include "render/heat/vehicle_shape.h"
+#include "render/parts/tracer.h"
+
+/* Weather and ground about a place. */
+typedef struct PlaceHeat {
+    double air_k, air_density;         /* at its height; over that at sea level */
+    double wind_enu_mps[3];
+    double direct_w_m2, diffuse_w_m2, longwave_w_m2; /* facing the sun; on level ground; down on level ground */
+    double sun_d_enu[3];
+    double ground_k, under_k;          /* in the open; in the shade of the entity */
+    double ground_rho;                 /* reflectance for sunlight */
+    double above_m;                    /* of the place over the ground */
+} PlaceHeat;
+
+/* present: the time of the tick; else earlier, when a ground as warm as the air will do. */
+typedef Status VehiclePlace(PlaceHeat *out, const void *user, double unix_s, const double p_enu[3], bool present);
+
+typedef struct VehicleHeatConfig {
+    double        first_step_s, step_s; /* 1; 30 */
+    double        unix_s;               /* of exercise time 0 */
+    int           capacity;             /* entities at most; others stay as warm as the air, and are counted */
+    VehiclePlace *place;
+    const void   *user;
+} VehicleHeatConfig;
+
+typedef struct VehicleHeat VehicleHeat;
+
+/* The world's own; they outlive it. */
+typedef struct VehicleHeatWorld {
+    const Catalog    *catalog;
+    const Materials  *materials;
+    const PartTable  *table;
+    const LocalFrame *frame;
+    Tracer           *tracer;
+    PatchSet         *patches;
+} VehicleHeatWorld;
+
+typedef struct VehicleHeatCounters {
+    uint64_t steps, begun, left_out, failed; /* failed: steps that the solver gave up; the entity stays as it was */
+    double   spent_s, longest_s;             /* wall clock; of the longest tick */
+} VehicleHeatCounters;
+
+Status vehicle_heat_create(VehicleHeat **out, const VehicleHeatConfig *config, const VehicleHeatWorld *world);
+void   vehicle_heat_destroy(VehicleHeat *heat); /* accepts NULL */
+/* At a time not before the last. */
+Status vehicle_heat_tick(VehicleHeat *heat, const Snapshot *snapshot);
+/* Fills first_patch and patch_k of a snapshot at or after the last tick. */
+Status vehicle_heat_show(const VehicleHeat *heat, Snapshot *snapshot, Arena *arena);
+const VehicleHeatCounters *vehicle_heat_counters(const VehicleHeat *heat);
+size_t vehicle_heat_bytes(const VehicleHeat *heat);
+
+/* Network of an entity at its last own time: nodes, and heat that came from outside since it began, J. NULL: it has none. */
+typedef struct VehicleNodes {
+    const VehicleShape *shape;
+    const double       *temp_k;    /* [shape->nodes] */
+    double              heat_in_j, t_s;
+} VehicleNodes;
+bool vehicle_heat_nodes(VehicleNodes *out, const VehicleHeat *heat, DisEntityId id);
+
+#endif
