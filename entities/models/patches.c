@@ -9,6 +9,7 @@ static const double small_share      = 0.02;  /* cells below this share of their
 static const double small_m2         = 0.01;  /* and those below this beside larger ones */
 static const double prefer_axis      = 1.03;  /* an extent is longer when it is by this: x before y before z */
 static const double facing_least     = 1e-6;  /* mean normals shorter than this have no direction */
+static const double better           = 0.9;   /* what fits better by less fits as well: mirrored cells are not quite mirrored */
 enum { candidates = 16 };                     /* points of a patch among which some are chosen */
 
 /* Ways to group parts, from fine to coarse. */
@@ -16,16 +17,11 @@ typedef enum Grouping { BY_MATERIAL, BY_NODE_ROLE, BY_ROLE, GROUPINGS } Grouping
 
 /* Ways to cut bodies, from fine to coarse. */
 static const struct Fineness {
-    double one_below; /* bodies below this share of the model's surface are one patch */
+    double one_below; /* bodies with boxes below this share of the sum of all boxes' surfaces are one patch */
     int    lengths;   /* at most */
     bool   sides;     /* false: underside and all else */
-    int    most;      /* patches with which this is accepted */
-} fineness[] = {
-    {0, 4, true, patches_wanted},     {0.0025, 4, true, patches_wanted}, {0.005, 4, true, patches_wanted},
-    {0.01, 4, true, patches_wanted},  {0.01, 2, true, patches_wanted},   {0.01, 1, true, patches_wanted},
-    {0.02, 1, true, patches_wanted},  {0.04, 1, true, patches_wanted},   {0.04, 1, false, patches_wanted},
-    {2, 1, true, patches_most},
-};
+} fineness[] = {{0, 4, true},    {0.0025, 4, true}, {0.005, 4, true}, {0.01, 4, true},  {0.01, 2, true},
+                {0.01, 1, true}, {0.02, 1, true},   {0.04, 1, true},  {0.04, 1, false}, {2, 1, true}};
 enum { finenesses = sizeof fineness / sizeof fineness[0] };
 
 /* Sums over the surface of a cell or a patch, in the axes of its body. */
@@ -211,6 +207,9 @@ static void measure_bodies(Cutter *c)
         body->lengths = uncut ? 1 : (int)clamp(floor(extent / length_m + 0.5), 1, lengths_most);
         body->low_m   = low[b][body->along];
         body->step_m  = extent / body->lengths;
+        double size[3];
+        v3_sub(size, high[b], low[b]);
+        body->box_m2 = 2 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
     }
 }
 
@@ -252,12 +251,27 @@ static double mismatch(const Sums *small, const Sums *kept, double size_m)
     return v3_length(d) / size_m + 0.25 * (1 - (directed ? v3_dot(n, o) : 0));
 }
 
+static bool is_one(const Body *body, const struct Fineness *how, double boxes_m2)
+{
+    return !(body->box_m2 >= how->one_below * boxes_m2);
+}
+
+/* Patches to expect of a body: a box with ends at its ends. Unlike the count itself it hardly depends on the chord
+ * error, so a coarse and a fine build of a model are cut alike. */
+static int expected(const Body *body, const struct Fineness *how, double boxes_m2)
+{
+    const int lengths = body->lengths < how->lengths ? body->lengths : how->lengths;
+    if (is_one(body, how, boxes_m2)) return 1;
+    if (!how->sides) return body->faces == 3 ? 1 : 2 * lengths;
+    return body->faces == 3 ? 3 : 2 + 4 * lengths;
+}
+
 /* Maps the cells of a body to its patches. */
-static void map_cells(Body *body, const Sums cell[cells_most], const struct Fineness *how, double model_m2)
+static void map_cells(Body *body, const Sums cell[cells_most], const struct Fineness *how, double boxes_m2)
 {
     Sums group[cells_most] = {{0}};
     int  group_of[cells_most], patch_of[cells_most];
-    const bool one     = !(body->area_m2 >= how->one_below * model_m2);
+    const bool one     = is_one(body, how, boxes_m2);
     const int  lengths = body->lengths < how->lengths ? body->lengths : how->lengths;
     for (int k = 0; k < cells_most; k++) {
         int face = k / lengths_most, along = k % lengths_most;
@@ -286,7 +300,7 @@ static void map_cells(Body *body, const Sums cell[cells_most], const struct Fine
         for (int kept = 0; kept < cells_most; kept++) {
             if (patch_of[kept] < 0) continue;
             const double bad = mismatch(&group[g], &group[kept], size_m);
-            if (!(bad < best * (1 - 1e-6))) continue;
+            if (!(bad < best * better)) continue;
             best         = bad;
             body->map[k] = patch_of[kept];
         }
@@ -306,16 +320,18 @@ static Status cut_model(int *count, Cutter *c)
         if (status != STATUS_OK) break;
         measure_bodies(c);
         sum_cells(cell, c);
-        double model_m2 = 0;
-        for (int b = 0; b < c->bodies; b++) model_m2 += c->body[b].area_m2;
+        double boxes_m2 = 0;
+        for (int b = 0; b < c->bodies; b++) boxes_m2 += c->body[b].box_m2;
         for (int i = 0; i < finenesses && *count == 0; i++) {
-            int sum = 0;
+            int sum = 0, expect = 0;
             for (int b = 0; b < c->bodies; b++) {
-                map_cells(&c->body[b], cell[b], &fineness[i], model_m2);
+                map_cells(&c->body[b], cell[b], &fineness[i], boxes_m2);
                 c->body[b].first = sum;
                 sum += c->body[b].count;
+                expect += expected(&c->body[b], &fineness[i], boxes_m2);
             }
-            if (sum <= fineness[i].most) *count = sum;
+            const bool fits = expect <= patches_wanted || i == finenesses - 1;
+            if (fits && sum <= patches_most) *count = sum;
         }
     }
     free(cell);

@@ -6,7 +6,7 @@
  * turning tyre shares its heat. Cells of less than 2 % of their body, or of 0.01 m2 beside larger ones, join the
  * nearest. Cuts go through triangles, so areas are those of the triangles, to 1e-9.
  *
- * Large models are cut less finely until they have at most patches_wanted patches: small bodies become one patch, then
+ * Large models are cut less finely until some patches_wanted patches are to be expected: small bodies become one patch, then
  * lengths are joined, then all sides but the underside, then each body is one patch (up to patches_most of them), then
  * bodies are groups of one node and role, at last of one role.
  *

@@ -11,7 +11,7 @@ static const double distance_least_m = 0.02;
 static const double border_least     = 0.03; /* of the root of the smaller area: a corner, not a border */
 static const double joint_share      = 0.25; /* length of a joint, as a share of the root of the smaller area */
 static const double touch_m          = 0.03; /* bodies with boxes nearer than this touch */
-static const double nearer           = 1 - 1e-6; /* what is nearer by less, as mirrored patches are, is as near */
+static const double nearer           = 0.9;  /* what is nearer by less, as mirrored patches are, is as near */
 enum { users_most = 32 }; /* of an edge, that are compared; two where shells are closed */
 
 /* One side of a stretch of an edge, from its lower corner (0) to the higher (1). */

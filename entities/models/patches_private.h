@@ -18,6 +18,7 @@ typedef struct Body {
     int      along, lengths;      /* lengths cut along this axis of the node */
     double   low_m, step_m;       /* where the first length begins; its length */
     double   box_low[3], box_high[3]; /* at rest, body axes of the model */
+    double   box_m2;              /* surface of its box in the node's axes: hardly depends on the chord error */
     double   area_m2;
     int      map[cells_most];     /* patch of each cell, from 0; cell = face lengths_most + length */
     int      first, count;        /* its patches */
