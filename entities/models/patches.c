@@ -1,0 +1,564 @@
+/* entities/models/patches.c: bodies of a model, how finely they are cut, and the figures of each patch. */
+#include "entities/models/patches_private.h"
+
+#include <stdlib.h>
+
+static const double length_m         = 1.5;   /* of one length of a body, about */
+static const double length_least_m   = 1.0;   /* bodies shorter than this are not cut along */
+static const double small_share      = 0.02;  /* cells below this share of their body join another, */
+static const double small_m2         = 0.01;  /* and those below this beside larger ones */
+static const double prefer_axis      = 1.03;  /* an extent is longer when it is by this: x before y before z */
+static const double facing_least     = 1e-6;  /* mean normals shorter than this have no direction */
+static const double better           = 0.9;   /* what fits better by less fits as well: mirrored cells are not quite mirrored */
+enum { candidates = 16 };                     /* points of a patch among which some are chosen */
+
+/* Ways to group parts, from fine to coarse. */
+typedef enum Grouping { BY_MATERIAL, BY_NODE_ROLE, BY_ROLE, GROUPINGS } Grouping;
+
+/* Ways to cut bodies, from fine to coarse. */
+static const struct Fineness {
+    double one_below; /* bodies with boxes below this share of the sum of all boxes' surfaces are one patch */
+    int    lengths;   /* at most */
+    bool   sides;     /* false: underside and all else */
+} fineness[] = {{0, 4, true},    {0.0025, 4, true}, {0.005, 4, true}, {0.01, 4, true},  {0.01, 2, true},
+                {0.01, 1, true}, {0.02, 1, true},   {0.04, 1, true},  {0.04, 1, false}, {2, 1, true}};
+enum { finenesses = sizeof fineness / sizeof fineness[0] };
+
+/* Sums over the surface of a cell or a patch, in the axes of its body. */
+typedef struct Sums {
+    double area_m2;
+    double p[3];    /* area times position */
+    double n[3];    /* area times normal */
+    double square;  /* area times squared distance from the origin */
+} Sums;
+
+static void add_piece(Sums *sums, const Facet *f, const Piece *piece)
+{
+    double o[3];
+    facet_point(o, f, piece->at[0]);
+    const double area = f->area_m2 * piece->share;
+    sums->area_m2 += area;
+    v3_add_scaled(sums->n, sums->n, area, f->n);
+    for (int i = 1; i + 1 < piece->corners; i++) {
+        double a[3], b[3], one[3], other[3], cross[3], sum[3];
+        facet_point(a, f, piece->at[i]);
+        facet_point(b, f, piece->at[i + 1]);
+        v3_sub(one, a, o);
+        v3_sub(other, b, o);
+        v3_cross(cross, one, other);
+        const double part = 0.5 * v3_length(cross);
+        v3_add(sum, a, b);
+        v3_add(sum, sum, o);
+        v3_add_scaled(sums->p, sums->p, part / 3, sum);
+        /* second moment of a triangle: a twelfth of the area times this */
+        sums->square += part / 12 * (v3_dot(o, o) + v3_dot(a, a) + v3_dot(b, b) + v3_dot(sum, sum));
+    }
+}
+
+/* ---- bodies ----------------------------------------------------------------------------------- */
+
+static bool belongs(const Model *m, const ModelPart *part, const Body *body, Grouping grouping)
+{
+    if (part->role != body->role) return false;
+    if (grouping == BY_ROLE) return true;
+    return part->node == body->node &&
+           (grouping == BY_NODE_ROLE || strcmp(part->material, m->part[body->part].material) == 0);
+}
+
+/* False: more than patches_most. */
+static bool group_parts(Cutter *c, Grouping grouping)
+{
+    const Model *m = c->model;
+    c->bodies = 0;
+    for (int i = 0; i < m->part_count; i++) {
+        int b = 0;
+        while (b < c->bodies && !belongs(m, &m->part[i], &c->body[b], grouping)) b++;
+        if (b == patches_most) return false;
+        if (b == c->bodies)
+            c->body[c->bodies++] = (Body){.node = m->part[i].node, .part = i, .role = m->part[i].role};
+        c->body_of_part[i] = b;
+    }
+    return true;
+}
+
+/* How one node's axes are seen from another's, at rest. */
+static NodePose seen_from(const NodePose *to, const NodePose *from)
+{
+    NodePose out;
+    double   d[3];
+    m3_tmul(out.r_body_from_node, to->r_body_from_node, from->r_body_from_node);
+    v3_sub(d, from->p_body, to->p_body);
+    m3_tmul_v3(out.p_body, to->r_body_from_node, d);
+    return out;
+}
+
+/* Bodies of several nodes take that of their largest part. */
+static Status choose_nodes(Cutter *c)
+{
+    const Model *m = c->model;
+    double largest_m2[patches_most] = {0};
+    free(c->body_of_node);
+    c->body_of_node = calloc((size_t)m->part_count, sizeof *c->body_of_node);
+    if (!c->body_of_node) return STATUS_NO_MEMORY;
+    for (int i = 0; i < m->part_count; i++) {
+        const int b = c->body_of_part[i];
+        double    area_m2 = 0;
+        for (int t = m->part[i].first_triangle; t < m->part[i].first_triangle + m->part[i].triangle_count; t++) {
+            const uint32_t *v = m->triangle[t];
+            double          one[3], other[3], cross[3];
+            v3_sub(one, m->vertex[v[1]], m->vertex[v[0]]);
+            v3_sub(other, m->vertex[v[2]], m->vertex[v[0]]);
+            v3_cross(cross, one, other);
+            area_m2 += 0.5 * v3_length(cross);
+        }
+        if (!(area_m2 > largest_m2[b] * (1 + 1e-3))) continue;
+        largest_m2[b]   = area_m2;
+        c->body[b].node = m->part[i].node;
+    }
+    for (int i = 0; i < m->part_count; i++)
+        c->body_of_node[i] = seen_from(&c->pose[c->body[c->body_of_part[i]].node], &c->pose[m->part[i].node]);
+    return STATUS_OK;
+}
+
+/* Whether a node turns by itself or rolls, with its parents, and about which axis of its own. */
+static bool turns(double axis[3], const Cutter *c, int node)
+{
+    for (int n = node; n >= 0; n = c->model->node[n].parent) {
+        const ModelNode *at = &c->model->node[n];
+        if (at->joint != JOINT_ROTATION || !(at->spin_rps_moving != 0 || at->roll_radius_m > 0)) continue;
+        double axis_body[3];
+        m3_mul_v3(axis_body, c->pose[n].r_body_from_node, at->axis);
+        m3_tmul_v3(axis, c->pose[node].r_body_from_node, axis_body);
+        return true;
+    }
+    return false;
+}
+
+static void widen(double low[3], double high[3], const double p[3])
+{
+    for (int i = 0; i < 3; i++) {
+        low[i]  = fmin(low[i], p[i]);
+        high[i] = fmax(high[i], p[i]);
+    }
+}
+
+static void turned(double out[3], const NodePose *pose, const double p[3])
+{
+    double r[3];
+    m3_mul_v3(r, pose->r_body_from_node, p);
+    v3_add(out, r, pose->p_body);
+}
+
+/* The top of the arc over an edge with these shading normals: exact for a circle, the edge's middle for a plane. False:
+ * there is none. So the extents of a coarse build are those of a fine one. */
+static bool arc_top(double top[3], const double p[3], const double q[3], const float np[3], const float nq[3])
+{
+    const double n1[3] = {np[0], np[1], np[2]}, n2[3] = {nq[0], nq[1], nq[2]};
+    double       turn[3], chord[3], mean[3];
+    v3_sub(turn, n2, n1);
+    v3_sub(chord, q, p);
+    v3_add(mean, n1, n2);
+    const double change = v3_length(turn), bent = v3_dot(turn, chord), cos_half = 0.5 * v3_length(mean);
+    /* a quarter of a circle at most: what turns faster is an edge of some solid */
+    if (!(bent > 0 && change > 1e-3 && cos_half > 0.7)) return false;
+    const double height = 0.5 * bent / change * sqrt((1 - cos_half) / (1 + cos_half)); /* half chord tan(angle / 4) */
+    v3_add_scaled(top, p, 0.5, chord);
+    v3_add_scaled(top, top, 0.5 * height / cos_half, mean);
+    return true;
+}
+
+/* Extents at rest, lengths, and faces. */
+static void measure_bodies(Cutter *c)
+{
+    const Model *m = c->model;
+    double low[patches_most][3], high[patches_most][3];
+    for (int b = 0; b < c->bodies; b++)
+        for (int i = 0; i < 3; i++) {
+            low[b][i] = c->body[b].box_low[i] = INFINITY;
+            high[b][i] = c->body[b].box_high[i] = -INFINITY;
+        }
+    for (int t = 0; t < m->triangle_count; t++) {
+        const int       part = m->triangle_part[t], b = c->body_of_part[part];
+        const uint32_t *v    = m->triangle[t];
+        Body           *body = &c->body[b];
+        for (int k = 0; k < 6; k++) {
+            double p[3], q[3];
+            if (k < 3) memcpy(p, m->vertex[v[k]], sizeof p);
+            else if (!arc_top(p, m->vertex[v[k - 3]], m->vertex[v[(k - 2) % 3]], m->normal[v[k - 3]],
+                              m->normal[v[(k - 2) % 3]]))
+                continue;
+            turned(q, &c->pose[m->part[part].node], p);
+            widen(body->box_low, body->box_high, q);
+            if (c->body_of_node) {
+                turned(q, &c->body_of_node[part], p);
+                memcpy(p, q, sizeof p);
+            }
+            widen(low[b], high[b], p);
+        }
+    }
+    for (int b = 0; b < c->bodies; b++) {
+        Body *body  = &c->body[b];
+        body->faces = turns(body->axis, c, body->node) ? 3 : 6;
+        body->along = 0;
+        for (int i = 1; i < 3; i++)
+            if (high[b][i] - low[b][i] > prefer_axis * (high[b][body->along] - low[b][body->along])) body->along = i;
+        const double extent = high[b][body->along] - low[b][body->along];
+        const bool   uncut  = body->faces == 3 || !(extent >= length_least_m);
+        body->lengths = uncut ? 1 : (int)clamp(floor(extent / length_m + 0.5), 1, lengths_most);
+        body->low_m   = low[b][body->along];
+        body->step_m  = extent / body->lengths;
+        double size[3];
+        v3_sub(size, high[b], low[b]);
+        body->box_m2 = 2 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
+    }
+}
+
+/* ---- cells to patches ------------------------------------------------------------------------- */
+
+static void sum_cells(Sums (*cell)[cells_most], Cutter *c)
+{
+    memset(cell, 0, (size_t)c->bodies * sizeof *cell);
+    for (int t = 0; t < c->model->triangle_count; t++) {
+        const int b = c->body_of_part[c->model->triangle_part[t]];
+        Facet     f;
+        Piece     piece[cells_most];
+        if (!facet_read(&f, c, t)) continue;
+        const int pieces = facet_cut(piece, &f, &c->body[b]);
+        for (int i = 0; i < pieces; i++) add_piece(&cell[b][piece[i].cell], &f, &piece[i]);
+    }
+    for (int b = 0; b < c->bodies; b++) {
+        c->body[b].area_m2 = 0;
+        for (int k = 0; k < cells_most; k++) c->body[b].area_m2 += cell[b][k].area_m2;
+    }
+}
+
+static void join_sums(Sums *to, const Sums *from)
+{
+    to->area_m2 += from->area_m2;
+    to->square += from->square;
+    v3_add(to->p, to->p, from->p);
+    v3_add(to->n, to->n, from->n);
+}
+
+/* How ill a small cell and a kept one go together: by place, against the body's size, and by direction. */
+static double mismatch(const Sums *small, const Sums *kept, double size_m)
+{
+    double p[3], q[3], d[3], n[3], o[3];
+    v3_scale(p, 1 / small->area_m2, small->p);
+    v3_scale(q, 1 / kept->area_m2, kept->p);
+    v3_sub(d, p, q);
+    const bool directed = v3_normalize(n, small->n) && v3_normalize(o, kept->n);
+    return v3_length(d) / size_m + 0.25 * (1 - (directed ? v3_dot(n, o) : 0));
+}
+
+static bool is_one(const Body *body, const struct Fineness *how, double boxes_m2)
+{
+    return !(body->box_m2 >= how->one_below * boxes_m2);
+}
+
+/* Patches to expect of a body: a box with ends at its ends. Unlike the count itself it hardly depends on the chord
+ * error, so a coarse and a fine build of a model are cut alike. */
+static int expected(const Body *body, const struct Fineness *how, double boxes_m2)
+{
+    const int lengths = body->lengths < how->lengths ? body->lengths : how->lengths;
+    if (is_one(body, how, boxes_m2)) return 1;
+    if (!how->sides) return body->faces == 3 ? 1 : 2 * lengths;
+    return body->faces == 3 ? 3 : 2 + 4 * lengths;
+}
+
+/* Maps the cells of a body to its patches. */
+static void map_cells(Body *body, const Sums cell[cells_most], const struct Fineness *how, double boxes_m2)
+{
+    Sums group[cells_most] = {{0}};
+    int  group_of[cells_most], patch_of[cells_most];
+    const bool one     = is_one(body, how, boxes_m2);
+    const int  lengths = body->lengths < how->lengths ? body->lengths : how->lengths;
+    for (int k = 0; k < cells_most; k++) {
+        int face = k / lengths_most, along = k % lengths_most;
+        if (one) {
+            face = along = 0;
+        } else {
+            along = along < body->lengths ? along * lengths / body->lengths : 0;
+            if (!how->sides) face = body->faces == 6 && face == 4; /* +z is down */
+        }
+        group_of[k] = face * lengths_most + along;
+        join_sums(&group[group_of[k]], &cell[k]);
+    }
+    double largest = 0, size_m = 0;
+    for (int k = 0; k < cells_most; k++) largest = fmax(largest, group[k].area_m2);
+    for (int i = 0; i < 3; i++) size_m = fmax(size_m, body->box_high[i] - body->box_low[i]);
+    const double least = fmax(small_share * body->area_m2, fmin(small_m2, largest));
+    body->count = 0;
+    for (int k = 0; k < cells_most; k++)
+        patch_of[k] = group[k].area_m2 > 0 && group[k].area_m2 >= least ? body->count++ : -1;
+    if (body->count == 0) patch_of[0] = body->count++; /* no area at all */
+    for (int k = 0; k < cells_most; k++) {
+        const int g = group_of[k];
+        body->map[k] = patch_of[g] >= 0 ? patch_of[g] : 0;
+        if (patch_of[g] >= 0 || !(group[g].area_m2 > 0)) continue;
+        double best = INFINITY;
+        for (int kept = 0; kept < cells_most; kept++) {
+            if (patch_of[kept] < 0) continue;
+            const double bad = mismatch(&group[g], &group[kept], size_m);
+            if (!(bad < best * better)) continue;
+            best         = bad;
+            body->map[k] = patch_of[kept];
+        }
+    }
+}
+
+/* Chooses groups and cuts; fills the cutter. */
+static Status cut_model(int *count, Cutter *c)
+{
+    Sums (*cell)[cells_most] = malloc(patches_most * sizeof *cell);
+    if (!cell) return STATUS_NO_MEMORY;
+    Status status = STATUS_OK;
+    *count = 0;
+    for (int g = BY_MATERIAL; g < GROUPINGS && *count == 0 && status == STATUS_OK; g++) {
+        if (!group_parts(c, (Grouping)g)) continue;
+        if (g == BY_ROLE) status = choose_nodes(c);
+        if (status != STATUS_OK) break;
+        measure_bodies(c);
+        sum_cells(cell, c);
+        double boxes_m2 = 0;
+        for (int b = 0; b < c->bodies; b++) boxes_m2 += c->body[b].box_m2;
+        for (int i = 0; i < finenesses && *count == 0; i++) {
+            int sum = 0, expect = 0;
+            for (int b = 0; b < c->bodies; b++) {
+                map_cells(&c->body[b], cell[b], &fineness[i], boxes_m2);
+                c->body[b].first = sum;
+                sum += c->body[b].count;
+                expect += expected(&c->body[b], &fineness[i], boxes_m2);
+            }
+            const bool fits = expect <= patches_wanted || i == finenesses - 1;
+            if (fits && sum <= patches_most) *count = sum;
+        }
+    }
+    free(cell);
+    return status;
+}
+
+/* ---- figures of patches ----------------------------------------------------------------------- */
+
+/* Points that divide a patch into equal areas in the order of its triangles. */
+typedef struct Candidates {
+    int    count;
+    double seen_m2;
+    double p[candidates][3], n[candidates][3];
+} Candidates;
+
+static void add_candidates(Candidates *c, double patch_m2, const Facet *f, const Piece *piece)
+{
+    static const double golden = 0.6180339887498949;
+    double whole = 0;
+    for (int i = 1; i + 1 < piece->corners; i++) {
+        const double *o = piece->at[0], *a = piece->at[i], *b = piece->at[i + 1];
+        const double  share = (a[1] - o[1]) * (b[2] - o[2]) - (a[2] - o[2]) * (b[1] - o[1]);
+        const double  area  = f->area_m2 * fmax(0, share);
+        for (; c->count < candidates; c->count++) {
+            const double ahead = patch_m2 * (c->count + 0.5) / candidates - c->seen_m2 - whole;
+            if (!(ahead < area)) break;
+            /* uniform over the triangle, and inside it */
+            const double s = sqrt(clamp(ahead / area, 0.01, 0.99)), u = 0.05 + 0.9 * fmod(c->count * golden + 0.5, 1);
+            double       at[3];
+            for (int k = 0; k < 3; k++) at[k] = (1 - s) * o[k] + s * ((1 - u) * a[k] + u * b[k]);
+            facet_point(c->p[c->count], f, at);
+            memcpy(c->n[c->count], f->n, sizeof f->n);
+        }
+        whole += area;
+    }
+    c->seen_m2 += whole;
+}
+
+/* Coordinate 0 .. 5 of a candidate: where it is, and where it faces as far as that is away. */
+static double coordinate(const Candidates *c, int i, int axis, double reach_m)
+{
+    return axis < 3 ? c->p[i][axis] : reach_m * c->n[i][axis - 3];
+}
+
+/* Sorts by the coordinate that varies most. */
+static void sort_widest(const Candidates *c, int *index, int count, double reach_m)
+{
+    int    widest = 0;
+    double most   = -1;
+    for (int axis = 0; axis < 6; axis++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int i = 0; i < count; i++) {
+            low  = fmin(low, coordinate(c, index[i], axis, reach_m));
+            high = fmax(high, coordinate(c, index[i], axis, reach_m));
+        }
+        if (high - low > most * (1 + 1e-6)) {
+            most   = high - low;
+            widest = axis;
+        }
+    }
+    for (int i = 1; i < count; i++) {
+        const int    moved = index[i];
+        const double key   = coordinate(c, moved, widest, reach_m);
+        int          k     = i;
+        for (; k > 0 && coordinate(c, index[k - 1], widest, reach_m) > key; k--) index[k] = index[k - 1];
+        index[k] = moved;
+    }
+}
+
+/* Halves by the widest coordinate, those again, and of each quarter the candidate in the middle. */
+static void choose_points(Patch *patch, const Candidates *c)
+{
+    int index[candidates], quarter = candidates / patch_points;
+    for (int i = 0; i < candidates; i++) index[i] = i < c->count ? i : c->count > 0 ? i % c->count : 0;
+    sort_widest(c, index, candidates, patch->reach_m);
+    for (int half = 0; half < 2; half++)
+        sort_widest(c, index + half * candidates / 2, candidates / 2, patch->reach_m);
+    for (int q = 0; q < patch_points; q++) {
+        const int *own = index + q * quarter;
+        double     best = INFINITY;
+        int        chosen = own[0];
+        for (int i = 0; i < quarter; i++) {
+            double sum = 0; /* of squared distances to the others: least in the middle */
+            for (int k = 0; k < quarter; k++)
+                for (int axis = 0; axis < 6; axis++) {
+                    const double d = coordinate(c, own[i], axis, patch->reach_m) -
+                                     coordinate(c, own[k], axis, patch->reach_m);
+                    sum += d * d;
+                }
+            if (!(sum < best * (1 - 1e-9))) continue;
+            best   = sum;
+            chosen = own[i];
+        }
+        memcpy(patch->point_node[q], c->p[chosen], sizeof c->p[chosen]);
+        memcpy(patch->point_n_node[q], c->n[chosen], sizeof c->n[chosen]);
+    }
+}
+
+static void finish_patch(Patch *patch, const Body *body, const Sums *sums, const Candidates *c, const NodePose *pose)
+{
+    static const double up_body[3] = {0, 0, -1};
+    patch->node    = body->node;
+    patch->part    = body->part;
+    patch->role    = body->role;
+    patch->area_m2 = sums->area_m2;
+    m3_tmul_v3(patch->n_node, pose->r_body_from_node, up_body);
+    if (sums->area_m2 > 0) {
+        double n[3];
+        v3_scale(patch->p_node, 1 / sums->area_m2, sums->p);
+        v3_scale(n, 1 / sums->area_m2, sums->n);
+        patch->facing = fmin(1, v3_length(n));
+        if (patch->facing > facing_least) v3_normalize(patch->n_node, n);
+        patch->reach_m = sqrt(fmax(0, sums->square / sums->area_m2 - v3_dot(patch->p_node, patch->p_node)));
+        choose_points(patch, c);
+    } else {
+        for (int i = 0; i < patch_points; i++) memcpy(patch->point_n_node[i], patch->n_node, sizeof patch->n_node);
+    }
+}
+
+static Status measure_patches(Patches *out, const Cutter *c)
+{
+    Sums       *sums = calloc((size_t)out->count, sizeof *sums);
+    Candidates *found = calloc((size_t)out->count, sizeof *found);
+    const bool  enough = sums && found;
+    for (int pass = 0; pass < 2 && enough; pass++)
+        for (int t = 0; t < c->model->triangle_count; t++) {
+            const Body *body = &c->body[c->body_of_part[c->model->triangle_part[t]]];
+            Facet       f;
+            Piece       piece[cells_most];
+            if (!facet_read(&f, c, t)) continue;
+            const int pieces = facet_cut(piece, &f, body);
+            for (int i = 0; i < pieces; i++) {
+                const int patch = body->first + body->map[piece[i].cell];
+                if (pass == 0) add_piece(&sums[patch], &f, &piece[i]);
+                else add_candidates(&found[patch], sums[patch].area_m2, &f, &piece[i]);
+            }
+        }
+    for (int b = 0; b < c->bodies && enough; b++)
+        for (int i = c->body[b].first; i < c->body[b].first + c->body[b].count; i++)
+            finish_patch(&out->patch[i], &c->body[b], &sums[i], &found[i], &c->pose[c->body[b].node]);
+    free(sums);
+    free(found);
+    return enough ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+/* ---- creation --------------------------------------------------------------------------------- */
+
+void patches_destroy(Patches *patches)
+{
+    free(patches->patch);
+    free(patches->link);
+    free(patches->body_of_part);
+    free(patches->first_of_body);
+    free(patches->body_of_node);
+    memset(patches, 0, sizeof *patches);
+}
+
+static Status fill(Patches *out, Cutter *c)
+{
+    Status status = cut_model(&out->count, c);
+    if (status != STATUS_OK) return status;
+    out->bodies        = c->bodies;
+    out->patch         = calloc((size_t)out->count, sizeof *out->patch);
+    out->first_of_body = calloc((size_t)out->bodies + 1, sizeof *out->first_of_body);
+    if (!out->patch || !out->first_of_body) return STATUS_NO_MEMORY;
+    for (int b = 0; b < c->bodies; b++) out->first_of_body[b] = c->body[b].first;
+    out->first_of_body[out->bodies] = out->count;
+    status = measure_patches(out, c);
+    return status == STATUS_OK ? patches_link(out, c) : status;
+}
+
+Status patches_create(Patches *out, const Model *model)
+{
+    memset(out, 0, sizeof *out);
+    Status  status = STATUS_NO_MEMORY;
+    Cutter *c      = calloc(1, sizeof *c);
+    if (!c) return status;
+    c->model        = model;
+    c->pose         = calloc((size_t)model->node_count, sizeof *c->pose);
+    c->body_of_part = calloc((size_t)model->part_count, sizeof *c->body_of_part);
+    if (c->pose && c->body_of_part) {
+        model_pose(c->pose, model, NULL);
+        status = fill(out, c);
+    }
+    out->parts        = model->part_count;
+    out->body_of_part = c->body_of_part;
+    out->body_of_node = c->body_of_node;
+    if (status != STATUS_OK) patches_destroy(out);
+    free(c->pose);
+    free(c);
+    return status;
+}
+
+/* ---- values ----------------------------------------------------------------------------------- */
+
+double patches_value(const Patches *patches, const float *value, int part, const double p_node[3],
+                     const double n_node[3])
+{
+    /* Inverse squared distance; a quarter of the squared reach rounds its peak. What faces more than one way has a
+     * weight in all directions too, up to `all_ways`: all around a tyre, as against its flat sides. */
+    static const double rounding = 0.25, tiny_m2 = 1e-6, all_ways = 0.1, one_way = 0.8;
+    if (part < 0 || part >= patches->parts) return value[0];
+    const int first = patches->first_of_body[patches->body_of_part[part]];
+    const int end   = patches->first_of_body[patches->body_of_part[part] + 1];
+    const double base = (double)value[first];
+    if (end - first == 1) return base;
+    double p[3] = {p_node[0], p_node[1], p_node[2]}, n[3] = {n_node[0], n_node[1], n_node[2]};
+    if (patches->body_of_node) {
+        turned(p, &patches->body_of_node[part], p_node);
+        m3_mul_v3(n, patches->body_of_node[part].r_body_from_node, n_node);
+    }
+    /* differences from the first: a constant comes out exactly */
+    double sum = 0, weights = 0, nearest_m2 = INFINITY, nearest = 0;
+    for (int i = first; i < end; i++) {
+        const Patch *k = &patches->patch[i];
+        double       d[3];
+        v3_sub(d, p, k->p_node);
+        const double m2 = v3_dot(d, d), cosine = v3_dot(n, k->n_node), ahead = cosine > 0 ? cosine * cosine : 0;
+        const double blunt = k->facing < one_way ? all_ways * (one_way - k->facing) / one_way : 0;
+        const double w = (k->facing * ahead * ahead + blunt) / (m2 + rounding * k->reach_m * k->reach_m + tiny_m2);
+        const double more = (double)value[i] - base;
+        sum += w * more;
+        weights += w;
+        if (m2 < nearest_m2) {
+            nearest_m2 = m2;
+            nearest    = more;
+        }
+    }
+    return base + (weights > 1e-30 ? sum / weights : nearest);
+}

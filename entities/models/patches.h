@@ -1,0 +1,65 @@
+/* entities/models/patches.h: a model's surface cut into patches, the nodes of its thermal network.
+ *
+ * A body is a group of parts of one node, role and material, usually one part. It is cut by the direction in which its
+ * surface faces (shading normals; the six half axes of its node) and along its longest extent into 1 .. 4 equal
+ * lengths of about 1.5 m. What spins or rolls is cut by its axis only: towards it, against it, and around it, for a
+ * turning tyre shares its heat. Cells of less than 2 % of their body, or of 0.01 m2 beside larger ones, join the
+ * nearest. Cuts go through triangles, so areas are those of the triangles, to 1e-9.
+ *
+ * Large models are cut less finely until some patches_wanted patches are to be expected: small bodies become one patch, then
+ * lengths are joined, then all sides but the underside, then each body is one patch (up to patches_most of them), then
+ * bodies are groups of one node and role, at last of one role.
+ *
+ * Geometry alone, from the model at rest, and immutable: any number of threads may read it. The model may go. Built-in
+ * models of 15 k triangles take about 10 ms. How much a coarse and a fine build of a model differ:
+ * tests/entities/test_patches.c. */
+#ifndef ENTITIES_MODELS_PATCHES_H
+#define ENTITIES_MODELS_PATCHES_H
+
+#include "entities/models/model.h"
+
+enum { patches_most = 160, patches_wanted = 110, patch_points = 4 };
+
+typedef struct Patch {
+    int      node, part;     /* of the model: the node whose axes it is in; the first part of its body */
+    HeatRole role;           /* of its parts */
+    double   area_m2;        /* of its outer surface */
+    double   p_node[3];      /* centroid by area */
+    double   n_node[3];      /* unit mean normal; up where the mean is nothing */
+    double   facing;         /* length of the mean normal: 1 for a plane, 0 for what faces all ways */
+    double   reach_m;        /* standard distance of its surface from the centroid */
+    /* Points on its triangles, spread over its area and directions, with those triangles' unit normals: where rays
+     * start. Each stands for about a quarter of the area. */
+    double   point_node[patch_points][3], point_n_node[patch_points][3];
+} Patch;
+
+/* Two patches that adjoin: conductance = conductivity thickness length / distance. */
+typedef struct PatchLink {
+    int    a, b;
+    double length_m;         /* of the border */
+    double distance_m;       /* between centroids, at least 0.02 m */
+    bool   joint;            /* no common border: of different bodies, or of shells of one body that only touch */
+} PatchLink;
+
+typedef struct Patches {
+    int        count, links, bodies, parts;
+    Patch     *patch;         /* those of a body are contiguous [count] */
+    PatchLink *link;          /* a < b, each pair once, ascending [links] */
+    int       *body_of_part;  /* [parts] */
+    int       *first_of_body; /* [bodies + 1] */
+    NodePose  *body_of_node;  /* from a part's node to its body's axes, at rest [parts]; NULL: bodies are of one node */
+} Patches;
+
+/* model: one that passes model_check. STATUS_NO_MEMORY is the only failure; then *out is zeroes. */
+Status patches_create(Patches *out, const Model *model);
+void   patches_destroy(Patches *patches); /* frees and zeroes; accepts zeroes */
+
+/* Temperature (or any value) at a point of a part's surface and its unit normal there, in the axes of the part's node,
+ * from value[count]: those of its body's patches, blended by distance and by how much they face the same way. Never
+ * outside their range, and a constant exactly; continuous over a surface without sharp edges. Where no patch faces
+ * that way, the nearest. A part out of range: value[0]; NaN in p or n: one of the body's values. About 5 ns a patch of
+ * the body. */
+double patches_value(const Patches *patches, const float *value, int part, const double p_node[3],
+                     const double n_node[3]);
+
+#endif

@@ -1,0 +1,61 @@
+/* entities/models/patches_private.h: bodies, and triangles cut into their cells. */
+#ifndef ENTITIES_MODELS_PATCHES_PRIVATE_H
+#define ENTITIES_MODELS_PATCHES_PRIVATE_H
+
+#include "entities/models/patches.h"
+
+enum {
+    faces_most = 6, lengths_most = 4, cells_most = faces_most * lengths_most,
+    piece_corners = 16, /* a triangle, two planes across and five lines between faces: 3 + 2 + 5 at most */
+};
+
+/* Parts that are cut together, in the axes of one node. */
+typedef struct Body {
+    int      node, part;          /* part: the first */
+    HeatRole role;
+    int      faces;               /* 6: half axes of the node; 3: along axis, against it, around it */
+    double   axis[3];
+    int      along, lengths;      /* lengths cut along this axis of the node */
+    double   low_m, step_m;       /* where the first length begins; its length */
+    double   box_low[3], box_high[3]; /* at rest, body axes of the model */
+    double   box_m2;              /* surface of its box in the node's axes: hardly depends on the chord error */
+    double   area_m2;
+    int      map[cells_most];     /* patch of each cell, from 0; cell = face lengths_most + length */
+    int      first, count;        /* its patches */
+} Body;
+
+typedef struct Cutter {
+    const Model *model;
+    int          bodies;
+    Body         body[patches_most];
+    int         *body_of_part;    /* [part_count] */
+    NodePose    *pose;            /* nodes at rest [node_count] */
+    NodePose    *body_of_node;    /* as in Patches */
+} Cutter;
+
+/* One triangle in its body's axes. */
+typedef struct Facet {
+    double p[3][3];
+    double n[3];                  /* unit normal of its plane */
+    double area_m2;
+    double score[faces_most][3];  /* at each corner: the face of the highest score has it */
+    double along_m[3];
+} Facet;
+
+/* The part of a triangle in one cell: a convex polygon in barycentric coordinates. border[i] is that from corner i to
+ * the next: 0 .. 2 an edge of the triangle (from its corner i), above a cut; equal cuts of a triangle are one line. */
+typedef struct Piece {
+    int    cell, corners;
+    double share;                 /* of the triangle's area */
+    double at[piece_corners][3];
+    int    border[piece_corners];
+} Piece;
+
+bool facet_read(Facet *out, const Cutter *cutter, int triangle); /* false: no area */
+int  facet_cut(Piece piece[cells_most], const Facet *facet, const Body *body); /* how many */
+void facet_point(double p[3], const Facet *facet, const double at[3]);
+
+/* patch: finished but for links. STATUS_NO_MEMORY. */
+Status patches_link(Patches *out, const Cutter *cutter);
+
+#endif

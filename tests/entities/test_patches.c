@@ -1,0 +1,257 @@
+/* Patches of every built-in model against the model itself, and of shapes with known areas, borders and values.
+ *
+ * A coarse build (sag 0.1 m) and a fine one (0.002 m) have the same bodies; the same count of patches but for a few
+ * models, where a cell is near the share below which it joins another. Links may differ where cells of curved parts
+ * hardly touch, or several patches are as near. */
+#include "tests/entities/model_fixture.h"
+
+#include "entities/models/patches.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static Patches cut(const Model *m)
+{
+    Patches p = {0};
+    CHECK(patches_create(&p, m) == STATUS_OK);
+    return p;
+}
+
+static double triangle_m2(double n[3], const double p[3][3])
+{
+    double one[3], other[3];
+    v3_sub(one, p[1], p[0]);
+    v3_sub(other, p[2], p[0]);
+    v3_cross(n, one, other);
+    const double twice = v3_length(n);
+    v3_normalize(n, n);
+    return 0.5 * twice;
+}
+
+static void corners_of(double p[3][3], const Model *m, int triangle)
+{
+    for (int k = 0; k < 3; k++) memcpy(p[k], m->vertex[m->triangle[triangle][k]], sizeof p[k]);
+}
+
+/* Whether a point is inside one triangle of the body, with that normal. */
+static bool is_on(const Model *m, const Patches *s, int body, const double at[3], const double n_at[3])
+{
+    for (int t = 0; t < m->triangle_count; t++) {
+        double p[3][3], n[3], d[3];
+        if (s->body_of_part[m->triangle_part[t]] != body) continue;
+        corners_of(p, m, t);
+        triangle_m2(n, (const double (*)[3])p);
+        v3_sub(d, at, p[0]);
+        if (!(v3_dot(n, n_at) > 1 - 1e-9) || fabs(v3_dot(d, n)) > 1e-7) continue;
+        bool inside = true;
+        for (int k = 0; k < 3; k++) {
+            double edge[3], to[3], side[3];
+            v3_sub(edge, p[(k + 1) % 3], p[k]);
+            v3_sub(to, at, p[k]);
+            v3_cross(side, edge, to);
+            inside &= v3_dot(side, n) > -1e-9;
+        }
+        if (inside) return true;
+    }
+    return false;
+}
+
+static void check_patches(const Model *m, const Patches *s)
+{
+    CHECK(s->count >= 1 && s->count <= patches_most && s->parts == m->part_count);
+    CHECK(s->first_of_body[0] == 0 && s->first_of_body[s->bodies] == s->count);
+    double area = 0, truth = 0;
+    for (int t = 0; t < m->triangle_count; t++) {
+        double p[3][3], n[3];
+        corners_of(p, m, t);
+        truth += triangle_m2(n, (const double (*)[3])p);
+    }
+    for (int i = 0; i < s->count; i++) {
+        const Patch *p = &s->patch[i];
+        area += p->area_m2;
+        CHECK(p->area_m2 > 0 && p->reach_m > 0 && p->facing >= 0 && p->facing <= 1);
+        CHECK_NEAR(v3_length(p->n_node), 1, 1e-9);
+        CHECK(p->role == m->part[p->part].role);
+        for (int k = 0; k < patch_points; k++) CHECK_NEAR(v3_length(p->point_n_node[k]), 1, 1e-9);
+    }
+    CHECK_NEAR(area / truth, 1, 1e-9);
+    for (int b = 0; b < s->bodies; b++) CHECK(s->first_of_body[b] < s->first_of_body[b + 1]);
+    for (int i = 0; i < m->part_count; i++) {
+        CHECK(s->body_of_part[i] >= 0 && s->body_of_part[i] < s->bodies);
+        CHECK(s->patch[s->first_of_body[s->body_of_part[i]]].role == m->part[i].role);
+    }
+    int group[patches_most], groups = s->count;
+    for (int i = 0; i < s->count; i++) group[i] = i;
+    for (int i = 0; i < s->links; i++) {
+        const PatchLink *l = &s->link[i];
+        CHECK(l->a >= 0 && l->a < l->b && l->b < s->count && l->length_m > 0 && l->distance_m >= 0.02);
+        CHECK(i == 0 || l[-1].a < l->a || (l[-1].a == l->a && l[-1].b < l->b));
+        const int from = group[l->b], to = group[l->a];
+        groups -= from != to;
+        for (int k = 0; k < s->count; k++)
+            if (group[k] == from) group[k] = to;
+    }
+    /* one piece, but for bodies that touch nothing */
+    int alone = 0;
+    for (int b = 0; b < s->bodies; b++) {
+        bool own = true;
+        for (int k = 0; k < s->count; k++)
+            own &= (group[k] == group[s->first_of_body[b]]) == (k >= s->first_of_body[b] && k < s->first_of_body[b + 1]);
+        alone += own;
+    }
+    CHECK(groups == 1 || groups <= alone + 1);
+}
+
+static void every_model_is_cut(void **state)
+{
+    (void)state;
+    int differ = 0;
+    for (int i = 0; i < parametric_count(); i++) {
+        Model   coarse = build(parametric_name(i), 0.1), fine = build(parametric_name(i), 0.002);
+        Patches a = cut(&coarse), b = cut(&fine);
+        check_patches(&coarse, &a);
+        check_patches(&fine, &b);
+        CHECK(a.bodies == b.bodies && b.count >= 4);
+        differ += a.count != b.count;
+        for (int k = 0; k < a.count; k++)
+            for (int j = 0; j < patch_points; j++)
+                CHECK(a.body_of_node || is_on(&coarse, &a, a.body_of_part[a.patch[k].part], a.patch[k].point_node[j],
+                                              a.patch[k].point_n_node[j]));
+        float value[patches_most];
+        for (int k = 0; k < a.count; k++) value[k] = 287.65f;
+        for (int k = 0; k < a.count; k++)
+            CHECK(patches_value(&a, value, a.patch[k].part, a.patch[k].p_node, a.patch[k].n_node) == (double)value[0]);
+        patches_destroy(&a);
+        patches_destroy(&b);
+        model_destroy(&coarse);
+        model_destroy(&fine);
+    }
+    CHECK(differ <= 3);
+}
+
+static MeshBuilder *begin(void)
+{
+    MeshBuilder *b = mesh_builder_create("shape", 0.005);
+    CHECK(b != NULL);
+    mesh_node(b, "hull", -1, 0, 0, 0);
+    return b;
+}
+
+static Model finish(MeshBuilder *b)
+{
+    Model m = {0};
+    CHECK(mesh_builder_finish(&m, b) == STATUS_OK);
+    return m;
+}
+
+/* 6 m by 2 m by 1 m: four lengths of each side, and two ends. Borders: 2 m and 1 m across, 1.5 m along. */
+static void a_long_box(void **state)
+{
+    (void)state;
+    MeshBuilder *b = begin();
+    mesh_part(b, 0, "box", "steel_worn", HEAT_HULL);
+    mesh_box(b, place_at(0, 0, 0), -3, -1, -1, 3, 1, 0);
+    Model   m = finish(b);
+    Patches s = cut(&m);
+    check_patches(&m, &s);
+    assert_int_equal(s.count, 18);
+    assert_int_equal(s.links, 4 * 3 + 4 * 4 + 2 * 4);
+    float value[18];
+    for (int i = 0; i < 18; i++) {
+        const bool end = fabs(s.patch[i].n_node[0]) > 0.5, flat = fabs(s.patch[i].n_node[2]) > 0.5;
+        CHECK_NEAR(s.patch[i].area_m2, end ? 2 : flat ? 3 : 1.5, 1e-9);
+        CHECK_NEAR(s.patch[i].reach_m, end ? sqrt(5 / 12.0) : sqrt((2.25 + (flat ? 4 : 1)) / 12), 1e-9);
+        value[i] = (float)s.patch[i].p_node[0];
+    }
+    for (int i = 0; i < s.links; i++) {
+        const Patch *p = &s.patch[s.link[i].a], *q = &s.patch[s.link[i].b];
+        const bool   side = fabs(p->n_node[1]) > 0.5 || fabs(q->n_node[1]) > 0.5;
+        const bool   across = v3_dot(p->n_node, q->n_node) > 0.5 || fabs(p->n_node[0]) > 0.5;
+        CHECK(!s.link[i].joint);
+        CHECK_NEAR(s.link[i].length_m, across ? side ? 1 : 2 : 1.5, 1e-6);
+    }
+    /* between the middles of the outer patches: within a third of a length */
+    double worst = 0, last = -INFINITY;
+    for (double x = -2.25; x <= 2.25; x += 0.01) {
+        const double got = patches_value(&s, value, 0, (double[3]){x, 0, -1}, (double[3]){0, 0, -1});
+        worst = fmax(worst, fabs(got - x));
+        CHECK(got > last && got - last < (isfinite(last) ? 0.05 : INFINITY));
+        last = got;
+    }
+    CHECK(worst < 0.5);
+    /* a patch's own middle: others that face elsewhere have no weight */
+    for (int i = 0; i < 18; i++) {
+        float one[18] = {0};
+        one[i] = 1;
+        CHECK(patches_value(&s, one, 0, s.patch[i].p_node, s.patch[i].n_node) > 0.75);
+    }
+    CHECK(patches_value(&s, value, -1, s.patch[0].p_node, s.patch[0].n_node) == (double)value[0]);
+    CHECK(patches_value(&s, value, 1, s.patch[0].p_node, s.patch[0].n_node) == (double)value[0]);
+    const double nowhere[3] = {NAN, 0, 0};
+    CHECK(fabs(patches_value(&s, value, 0, nowhere, nowhere)) <= 3);
+    patches_destroy(&s);
+    patches_destroy(&s);
+    model_destroy(&m);
+}
+
+static void a_wheel_has_three(void **state)
+{
+    (void)state;
+    MeshBuilder *b = begin();
+    mesh_part(b, 0, "axle", "steel_worn", HEAT_HULL);
+    mesh_box(b, place_at(0, 0, 0), -0.1, -0.5, -0.1, 0.1, 0.5, 0.1);
+    const int node = mesh_node(b, "wheel", 0, 0, 0.6, 0);
+    mesh_joint(b, node, 0, -1, 0, 0, 0, 1, -1);
+    mesh_node_get(b, node)->roll_radius_m = 0.5;
+    mesh_part(b, node, "tyre", "rubber_black", HEAT_WHEEL);
+    mesh_cylinder(b, place_axis(0, 0, 0, 0, 1, 0), -0.1, 0.1, 0.5);
+    Model   m = finish(b);
+    Patches s = cut(&m);
+    check_patches(&m, &s);
+    assert_int_equal(s.bodies, 2);
+    assert_int_equal(s.first_of_body[2] - s.first_of_body[1], 3);
+    const Patch *w = &s.patch[s.first_of_body[1]];
+    CHECK_NEAR(w[0].n_node[1], -1, 1e-9);
+    CHECK_NEAR(w[1].n_node[1], 1, 1e-9);
+    CHECK(w[2].facing < 1e-9);
+    CHECK_NEAR(w[0].area_m2, pi_rad * 0.25, 0.02);
+    CHECK_NEAR(w[2].area_m2, 2 * pi_rad * 0.5 * 0.2, 0.02);
+    patches_destroy(&s);
+    model_destroy(&m);
+}
+
+/* 2000 parts; on one node, or on 200, of 50 materials and several roles. */
+static void many_parts_stay_within_the_limit(void **state)
+{
+    (void)state;
+    for (int nodes = 1; nodes <= 200; nodes += 199) {
+        MeshBuilder *b = begin();
+        for (int i = 0; i < 2000; i++) {
+            const int node = nodes == 1 || i % 10 ? i / 10 % nodes : i == 0 ? 0 : mesh_node(b, "n", 0, i, 0, 0);
+            char      material[32];
+            snprintf(material, sizeof material, "material_%d", i % 50);
+            mesh_part(b, node, "part", material, (HeatRole)(i % 4));
+            mesh_box(b, place_at(i % 40, i / 40, 0), 0, 0, -1, 1, 1, 0);
+        }
+        Model   m = finish(b);
+        Patches s = cut(&m);
+        check_patches(&m, &s);
+        CHECK((s.body_of_node != NULL) == (nodes > 1));
+        float value[patches_most];
+        for (int i = 0; i < s.count; i++) value[i] = 1.25f;
+        CHECK(patches_value(&s, value, 1999, (double[3]){0, 0, 0}, (double[3]){0, 0, 1}) == 1.25);
+        patches_destroy(&s);
+        model_destroy(&m);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_model_is_cut),
+        cmocka_unit_test(a_long_box),
+        cmocka_unit_test(a_wheel_has_three),
+        cmocka_unit_test(many_parts_stay_within_the_limit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
