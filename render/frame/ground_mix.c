@@ -61,15 +61,15 @@ bool corners_differ(const uint16_t *corner, int columns, uint32_t material)
 /* ---- splitting -------------------------------------------------------------------------------- */
 
 /* A class within a sample's square. */
-typedef struct Patch {
+typedef struct GroundPatch {
     uint8_t surface;
     int     count;
     double  place[2]; /* sum of its places, px */
-} Patch;
+} GroundPatch;
 
 /* Classes of the points over a square of 1 / n px about a sample's position, the most frequent first; the rest is
  * counted to the first. Returns their number, 1 .. most; 0: no ground there. */
-static int find_patches(Patch patch[ground_mix_most], const Worker *w, const Job *job, int i, const double centre_px[2],
+static int find_patches(GroundPatch patch[ground_mix_most], const Worker *w, const Job *job, int i, const double centre_px[2],
                         int side, int most)
 {
     const View  *view = &job->request->view;
@@ -80,7 +80,7 @@ static int find_patches(Patch patch[ground_mix_most], const Worker *w, const Job
     const double d_hit[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
     double       at_px[ground_mix_places][2], x_m[ground_mix_places], y_m[ground_mix_places];
     uint8_t      surface[ground_mix_places];
-    Patch        found[SURFACE_COUNT] = {{0}};
+    GroundPatch        found[SURFACE_COUNT] = {{0}};
     for (int k = 0; k < places; k++) {
         double place[2], d[3];
         sample_place(place, side, k);
@@ -92,7 +92,7 @@ static int find_patches(Patch patch[ground_mix_most], const Worker *w, const Job
     }
     landscape_surfaces(surface, job->scene.world->landscape, places, x_m, y_m);
     for (int k = 0; k < places; k++) {
-        Patch *of = &found[surface[k] < SURFACE_COUNT ? surface[k] : SURFACE_NONE];
+        GroundPatch *of = &found[surface[k] < SURFACE_COUNT ? surface[k] : SURFACE_NONE];
         of->count++;
         of->place[0] += at_px[k][0], of->place[1] += at_px[k][1];
     }
@@ -140,7 +140,7 @@ void split_ground(Worker *w, const Job *job, int side, int most)
     int       count = 0;
     assert(before * most <= hits_capacity && most <= ground_mix_most && side * side <= ground_mix_places);
     for (int i = 0; i < before; i++) {
-        Patch        patch[ground_mix_most];
+        GroundPatch        patch[ground_mix_most];
         const int    pixel = i / samples;
         const bool   ground = s->hits.surface[i] && !s->hits.entity[i] && s->hits.range_m[i] < INFINITY;
         double       centre_px[2];

@@ -1,6 +1,8 @@
 /* render/frame/world.c: opens the tables and the tracer once. */
 #include "render/frame/world.h"
 
+#include "render/parts/parts.h"
+
 #include <stdlib.h>
 
 Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame,

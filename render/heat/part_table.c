@@ -64,7 +64,7 @@ static Status read_role(PartTable *out, bool seen[HEAT_ROLE_COUNT], const Table 
     return status;
 }
 
-static Status read_roles(PartTable *out, const char *path)
+Status part_table_roles(PartTable *out, const char *path)
 {
     static const char *const names[7] = {"role", "thickness_mm", "inside", "inside_w_m2k", "running_w_m2k", "drive", "drive_value"};
     bool   seen[HEAT_ROLE_COUNT] = {false};
@@ -105,17 +105,18 @@ static Status read_machine(MachineRow *to, const Table *table, int row, const in
     return STATUS_OK;
 }
 
-static Status read_machines(PartTable *out, const char *path)
+Status part_table_machines(PartTable *out, const char *path)
 {
     static const char *const names[7] = {"model", "engine_kw", "engine_kj_k", "engine_k", "exhaust_k", "cabin_kj_k", "cabin_w"};
     Table  table = {0};
     int    column[7];
     Status status = table_open(&table, path);
 
+    out->machines = 0;
     if (status != STATUS_OK) return status;
     if (!columns_of(column, &table, names, 7)) status = STATUS_BAD_VALUE;
-    if (status == STATUS_OK && (table.rows < 1 || table.rows > part_table_machines)) {
-        log_error("heat: too few or too many rows: file=%s rows=%d want=1 .. %d", path, table.rows, (int)part_table_machines);
+    if (status == STATUS_OK && (table.rows < 1 || table.rows > part_table_most)) {
+        log_error("heat: too few or too many rows: file=%s rows=%d want=1 .. %d", path, table.rows, (int)part_table_most);
         status = STATUS_BAD_VALUE;
     }
     for (int row = 0; row < table.rows && status == STATUS_OK; row++)
@@ -131,8 +132,8 @@ static Status read_machines(PartTable *out, const char *path)
 Status part_table_open(PartTable *out, const char *parts_path, const char *machines_path)
 {
     PartTable    table = {0};
-    Status       status = read_roles(&table, parts_path);
-    if (status == STATUS_OK) status = read_machines(&table, machines_path);
+    Status       status = part_table_roles(&table, parts_path);
+    if (status == STATUS_OK) status = part_table_machines(&table, machines_path);
     if (status == STATUS_OK) *out = table;
     return status;
 }

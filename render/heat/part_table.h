@@ -25,16 +25,19 @@ typedef struct MachineRow {
     double engine_w, engine_j_k, engine_k, exhaust_k, cabin_j_k, cabin_w;
 } MachineRow;
 
-enum { part_table_machines = 64 };
+enum { part_table_most = 64 };
 
 typedef struct PartTable {
     PartRow    role[HEAT_ROLE_COUNT];
     int        machines;            /* the last: of a cubic metre, of all others */
-    MachineRow machine[part_table_machines];
+    MachineRow machine[part_table_most];
 } PartTable;
 
 /* Every role must have its row, and there must be a last row `*`. Failures are logged with file and line. */
 Status part_table_open(PartTable *out, const char *parts_path, const char *machines_path);
+/* One of the two files. */
+Status part_table_roles(PartTable *out, const char *path);
+Status part_table_machines(PartTable *out, const char *path);
 /* Of a model, by its name, or scaled by the volume of its box. */
 MachineRow part_table_machine(const PartTable *table, const Model *model);
 

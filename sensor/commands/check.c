@@ -3,7 +3,7 @@
 #include "sensor/commands/check.h"
 
 #include "entities/effects/effects_history.h"
-#include "entities/effects/heat.h"
+#include "render/heat/part_table.h"
 #include "sensor/detector/preset.h"
 #include "sensor/node/host_run.h"
 #include "terrain/weather/weather_course.h"
@@ -62,8 +62,14 @@ static bool is_bundled(const Check *c, const char *name, Status (*read)(const ch
 
 static Status read_heat(const char *path)
 {
-    HeatTable table;
-    return heat_table_open(&table, path);
+    PartTable table;
+    return part_table_roles(&table, path);
+}
+
+static Status read_machines(const char *path)
+{
+    PartTable table;
+    return part_table_machines(&table, path);
 }
 
 static Status read_effects(const char *path)
@@ -196,6 +202,7 @@ static bool tables_are_valid(Check *c)
     good &= terrain_is_valid(c);
     if (!known.bundled)
         known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "heat.csv", read_heat) &&
+                        is_bundled(c, "heat_machines.csv", read_machines) &&
                         is_bundled(c, "effects.csv", read_effects);
     good &= known.bundled;
     catalog_close(c->catalog);

@@ -130,6 +130,8 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     *shown                = false;
     f->provenance.begun_s = wall_clock_s();
     Status status = entity_table_snapshot(&f->seen.snapshot, s->table, t_s, f->arena);
+    if (status == STATUS_OK) status = s->vehicle_status;
+    if (status == STATUS_OK && s->vehicles) status = world_vehicles_show(s->vehicles, &f->seen.snapshot, f->arena);
     if (status != STATUS_OK || !session_eye(&eye, s, &f->seen.snapshot, t_s)) return status;
     f->times.posed_s = wall_clock_s();
     *left_out  = f->seen.snapshot.left_out;
@@ -194,11 +196,21 @@ static Status read_marks(Session *s)
     return entity_table_marks_load(s->table, s->shared->unix_s, path);
 }
 
+/* Temperatures of entities. Of no use where no band shows temperatures. */
+static Status open_vehicles(Session *s)
+{
+    const SessionShared *shared = s->shared;
+    if (!shared->world->heat) return STATUS_OK;
+    s->vehicle_arena = arena_create();
+    if (!s->vehicle_arena) return STATUS_NO_MEMORY;
+    return world_vehicles_create(&s->vehicles, shared->world, shared->config->heat.vehicle_step_s);
+}
+
 static Status open_session(Session *s)
 {
     const SessionShared *shared = s->shared;
     EntityTableConfig    table  = entity_table_default_config();
-    char                 path[sizeof s->out + 16];
+
 
     table.pool                  = shared->pool;
     table.capacity              = shared->config->entities.capacity;
@@ -238,9 +250,9 @@ static Status open_session(Session *s)
     s->joint = calloc((size_t)most_nodes, sizeof *s->joint);
     if (!s->node || !s->joint) return STATUS_NO_MEMORY;
 
-    if (!etc_path(path, sizeof path, "heat.csv")) return STATUS_BAD_VALUE;
     Status status = entity_table_create(&s->table, &table, shared->catalog);
     if (status == STATUS_OK) status = read_marks(s);
+    if (status == STATUS_OK) status = open_vehicles(s);
     if (status == STATUS_OK) session_keep(s);
     if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, shared->config);
     return status == STATUS_OK ? session_consumers(s, list_frame) : status;
@@ -393,6 +405,8 @@ Status session_close(Session *s, SessionResult *result)
     if (result) *result = s->result;
     else session_result_free(&s->result);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);
+    world_vehicles_destroy(s->vehicles);
+    arena_destroy(s->vehicle_arena);
     entity_table_destroy(s->table);
     frame_pool_destroy(s->frames);
     pool_destroy(s->publish_pool);

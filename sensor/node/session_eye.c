@@ -216,6 +216,20 @@ static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
     turn_rate(eye->w_cam_rps, eye->view.r_enu_from_cam, r_next, step_s);
 }
 
+/* Every second, and when something appeared, fired or burst. */
+static void warm_vehicles(Session *s, double tick_s)
+{
+    const uint64_t changes = entity_table_changes(s->table);
+    if (!s->vehicles || (s->tick % seeker_ticks_per_s != 0 && changes == s->vehicle_changes)) return;
+    Snapshot snapshot;
+    arena_reset(s->vehicle_arena);
+    Status status = entity_table_snapshot(&snapshot, s->table, tick_s, s->vehicle_arena);
+    if (status == STATUS_OK) status = world_vehicles_tick(s->vehicles, &snapshot);
+    if (status != STATUS_OK && s->vehicle_status == STATUS_OK) log_error("heat of vehicles: %s", status_name(status));
+    if (status != STATUS_OK) s->vehicle_status = status;
+    s->vehicle_changes = changes;
+}
+
 /* State that outlasts a frame changes at ticks alone: it does not depend on which frames are rendered. */
 void session_advance(Session *s, double t_s)
 {
@@ -225,6 +239,7 @@ void session_advance(Session *s, double t_s)
         if (s->tick % expire_ticks == 0) entity_table_expire(s->table, tick_s);
         if (s->shared->config->causal || s->plan.any_munition) find_host(s);
         session_keep(s);
+        warm_vehicles(s, tick_s);
         step_gimbal(s, tick_s);
     }
     player_feed(s->player, s->table, t_s);

@@ -2,6 +2,7 @@
 #ifndef SENSOR_NODE_SESSION_PRIVATE_H
 #define SENSOR_NODE_SESSION_PRIVATE_H
 
+#include "render/frame/world_vehicles.h"
 #include "sensor/world/frame_light.h"
 #include "sensor/node/mount.h"
 #include "sensor/node/player.h"
@@ -19,6 +20,10 @@ struct Session {
     char                 host_text[dis_id_text_size];
     EntityTable         *table;
     Player              *player;        /* the caller's */
+    WorldVehicles       *vehicles;      /* NULL: parts are as warm as the air */
+    Arena               *vehicle_arena; /* of the snapshot of a tick */
+    Status               vehicle_status; /* the first failure: frames fail with it */
+    uint64_t             vehicle_changes; /* entity_table_changes at the last */
     Seeker               seeker;
     int64_t              tick;          /* next gimbal tick */
     double               p_aim_ecef[3]; /* last known */

@@ -57,9 +57,8 @@ Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char 
 {
     TrialScene        scene = {.landscape = landscape, .sun_now_s = 60};
     EntityTableConfig config = entity_table_default_config();
-    char              heat[512];
     config.ground = (ContactGround){.frame = &landscape->frame, .elevation = &landscape->elevation};
-    Status status = etc_path(heat, sizeof heat, "heat.csv") && text_to_unix_s(&scene.unix_s, "2026-06-21T11:15:00Z")
+    Status status = text_to_unix_s(&scene.unix_s, "2026-06-21T11:15:00Z")
                         ? STATUS_OK : STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = catalog_open(&scene.catalog, catalog_path, 0.01);
     if (status == STATUS_OK) status = entity_table_create(&scene.table, &config, scene.catalog);

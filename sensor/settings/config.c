@@ -212,6 +212,8 @@ static const Setting keys[] = {
      "atmosphere's"},
     {"weather.cloud", SETTING_DOUBLE, AT(weather.cloud), 0, 1, NULL, "",
      "mean share of the sky that clouds cover, which dim the sun and warm the sky"},
+    {"heat.vehicle_step_s", SETTING_DOUBLE, AT(heat.vehicle_step_s), 1, 600, NULL, "s",
+     "longest step of the heat of vehicles, people and buildings"},
     {"heat.step_s", SETTING_DOUBLE, AT(heat.step_s), 60, 3600, NULL, "s", "time grid of the ground's heat"},
     {"heat.facets", SETTING_INT, AT(heat.facets), 3, 17, NULL, "",
      "slopes and azimuths of the ground's heat: a grid of so many a side, odd"},
@@ -377,6 +379,7 @@ Config config_default(void)
     c.weather.air_range_k           = 10;
     c.weather.humidity_pct          = 60;
     c.heat.step_s                   = 600;
+    c.heat.vehicle_step_s           = 30;
     c.heat.facets                   = 7;
     c.heat.shadow_m                 = 16;
     strcpy(c.terrain.vertical, "auto");

@@ -99,6 +99,7 @@ typedef struct Config {
     } weather;
     struct {
         double step_s;             /* of the ground's state */
+        double vehicle_step_s;     /* longest step of that of vehicles */
         int    facets;             /* normals of the ground, a side */
         double shadow_m;           /* cells of the shadow map; 0: none */
         char   marks[1024];        /* file of ground marks over a restart; empty: none */

@@ -30,8 +30,7 @@ static inline Fixture fixture_open(const EntityTableConfig *config)
 
     CHECK(etc_path(path, sizeof path, "catalog.csv"));
     CHECK(catalog_open(&f.catalog, path, 0.01) == STATUS_OK);
-    CHECK(etc_path(path, sizeof path, "heat.csv"));
-    CHECK(entity_table_create(&f.table, config ? config : &defaults, f.catalog, path) == STATUS_OK);
+    CHECK(entity_table_create(&f.table, config ? config : &defaults, f.catalog) == STATUS_OK);
     f.arena = arena_create();
     CHECK(f.arena != NULL);
     return f;

@@ -107,8 +107,9 @@ static void check_snapshot(const EntityTable *table, double t_s, Arena *arena)
         if (!v3_is_finite(e->p_ecef) || !v3_is_finite(e->v_ecef_mps) || !v3_is_finite(e->w_body_rps)) abort();
         for (int k = 0; k < 9; k++)
             if (!(fabs(e->r_ecef_from_body[k]) <= 1.001)) abort();
-        for (int k = 0; k < HEAT_ROLE_COUNT; k++)
-            if (!(e->heat[k] >= 0 && e->heat[k] <= 3000)) abort();
+        if (!(e->drives.engine >= 0 && e->drives.engine <= 1 && e->drives.speed_mps >= 0 && isfinite(e->drives.speed_mps) &&
+              isfinite(e->drives.fired_kg[0]) && isfinite(e->drives.fired_kg[1])))
+            abort();
         if (i > 0 && dis_entity_id_compare(snapshot.entity[i - 1].id, e->id) >= 0) abort();
     }
     for (int i = 0; i < snapshot.puff_count; i++) {
@@ -130,11 +131,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static Catalog *catalog;
     static Arena   *arena;
-    static char     heat_path[1024];
     log_set_level((LogLevel)(LOG_ERROR + 1));
     if (!catalog) { /* once: with the models of another 0.5 s nothing below would be reached sooner */
         char path[1024];
-        if (!etc_path(path, sizeof path, "catalog.csv") || !etc_path(heat_path, sizeof heat_path, "heat.csv")) abort();
+        if (!etc_path(path, sizeof path, "catalog.csv")) abort();
         if (catalog_open(&catalog, path, 0.1) != STATUS_OK || !(arena = arena_create())) abort();
     }
     DisDatagram datagram[most_datagrams];

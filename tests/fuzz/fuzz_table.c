@@ -6,7 +6,7 @@
 #include "pitviper_channels.h"
 #include "entities/catalog/catalog.h"
 #include "entities/effects/effects.h"
-#include "entities/effects/heat.h"
+#include "render/heat/part_table.h"
 #include "render/materials/materials.h"
 #include "sensor/detector/sheet.h"
 
@@ -84,11 +84,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                 catalog_close(catalog);
             }
         }
-        HeatTable    heat;
+        PartTable    parts;
         EffectTable  effects;
         SensorPreset preset;
         Materials    materials;
-        if (table_column(&table, "driver") >= 0) (void)heat_table_open(&heat, path);
+        if (table_column(&table, "inside") >= 0) (void)part_table_roles(&parts, path);
+        if (table_column(&table, "engine_kw") >= 0) (void)part_table_machines(&parts, path);
         if (table_column(&table, "life_s") >= 0) (void)effect_table_open(&effects, path);
         if (table_column(&table, "hfov_deg") >= 0 && preset_read(&preset, path, "staring_lwir") == STATUS_OK)
             preset_refresh(&preset);

@@ -31,8 +31,6 @@ static int count_at(const DisLog *log, int exercise, bool causal, double t_s)
     EntityTableConfig config = entity_table_default_config();
     EntityTable      *table  = NULL;
     Player           *player = NULL;
-    char              heat[512];
-    CHECK(etc_path(heat, sizeof heat, "heat.csv"));
     assert_int_equal(entity_table_create(&table, &config, catalog), STATUS_OK);
     assert_int_equal(player_create(&player, exercise, causal), STATUS_OK);
     assert_int_equal(player_add_log(player, log), STATUS_OK);
@@ -72,8 +70,6 @@ static EntityTable *make_table(void)
 {
     EntityTableConfig config = entity_table_default_config();
     EntityTable      *table  = NULL;
-    char              heat[512];
-    CHECK(etc_path(heat, sizeof heat, "heat.csv"));
     assert_int_equal(entity_table_create(&table, &config, catalog), STATUS_OK);
     return table;
 }

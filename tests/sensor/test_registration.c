@@ -176,8 +176,6 @@ static int close_fixture(void **state)
 static void hear(Snapshot *snapshot, EntityTable **table, const DisEntityState *pdu)
 {
     EntityTableConfig config = entity_table_default_config();
-    char              heat[512];
-    CHECK(etc_path(heat, sizeof heat, "heat.csv"));
     assert_int_equal(entity_table_create(table, &config, fixture.catalog), STATUS_OK);
     assert_int_equal(entity_table_entity_state(*table, pdu, 100), STATUS_OK);
     assert_int_equal(entity_table_snapshot(snapshot, *table, 100, fixture.arena), STATUS_OK);

@@ -100,9 +100,7 @@ static double worst_m(Kind kind, double heartbeat_s, bool beside, bool causal)
     EntityTableConfig config = entity_table_default_config();
     EntityTable      *table  = NULL;
     Player           *player = NULL;
-    char              heat[512];
     double            worst = 0;
-    CHECK(etc_path(heat, sizeof heat, "heat.csv"));
     assert_int_equal(entity_table_create(&table, &config, catalog), STATUS_OK);
     assert_int_equal(player_create(&player, -1, causal), STATUS_OK);
     assert_int_equal(player_add_log(player, &log), STATUS_OK);

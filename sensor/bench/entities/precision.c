@@ -2,7 +2,6 @@
 #include "sensor/bench/entities/rows.h"
 
 #include "entities/motion/dead_reckoning.h"
-#include "entities/effects/heat.h"
 #include "sensor/bench/turn.h"
 
 /* ---- dead reckoning ------------------------------------------------------------------------------- */
@@ -125,104 +124,8 @@ static void knob_reckoning(Bench *bench)
                work, point, settings);
 }
 
-/* ---- heat ----------------------------------------------------------------------------------------- */
-
-enum { moments = 256 };
-
-typedef struct HeatSet {
-    const HeatTable *table;
-    HeatState        state;
-    double           step_s; /* Euler's; 0: heat_at */
-    float            rise_k[moments][HEAT_ROLE_COUNT];
-} HeatSet;
-
-static const uint32_t heat_asked = 1u << HEAT_ENGINE_DECK | 1u << HEAT_TRACK | 1u << HEAT_GUN | 1u << HEAT_EXHAUST;
-
-static double moment_s(int i) { return 1 + 3.7 * i; }
-
-/* From the report on; its drives are constant until they end. */
-static double level_by_steps(const HeatSet *s, int role, double drive, double until_s, double t_s)
-{
-    double level = s->state.level[role];
-    for (double t = s->state.t_s; t < t_s; t += s->step_s) {
-        const double h_s = fmin(s->step_s, t_s - t), now = t < until_s ? drive : 0;
-        level += h_s * (now - level) / (now > level ? s->table->warm_up_s[role] : s->table->cool_down_s[role]);
-    }
-    return level;
-}
-
-static void warm(void *user)
-{
-    HeatSet *s = user;
-    for (int i = 0; i < moments; i++) {
-        if (s->step_s == 0) {
-            heat_at(s->rise_k[i], &s->state, s->table, heat_asked, moment_s(i));
-            continue;
-        }
-        for (int role = 0; role < HEAT_ROLE_COUNT; role++) {
-            const HeatDrive drive = s->state.drive[s->table->driver[role]];
-            s->rise_k[i][role] = 0;
-            if (heat_asked >> role & 1)
-                s->rise_k[i][role] = (float)(s->table->rise_k[role]
-                                             * level_by_steps(s, role, drive.value, drive.until_s, moment_s(i)));
-        }
-    }
-    bench_keep(s->rise_k);
-}
-
-static long double approach(long double level, long double drive, long double dt_s, const HeatTable *table, int role)
-{
-    if (!(dt_s > 0)) return level;
-    const double tau_s = drive > level ? table->warm_up_s[role] : table->cool_down_s[role];
-    return drive + (level - drive) * expl(-dt_s / (long double)tau_s);
-}
-
-static Status knob_heat(Bench *bench)
-{
-    enum { settings = 4 };
-    static const char *const name[settings] =
-        {"Euler's steps of 10 s", "Euler's steps of 1 s", "Euler's steps of 0.1 s", "closed form"};
-    static const double  step_s[settings] = {10, 1, 0.1, 0};
-    static HeatSet       set[settings];
-    const HeatEvidence   moving = {.type = {1, 1, 222, 1, 1, 1, 0}, .appearance = 1u << 22, .speed_mps = 10};
-    BenchWork            work[settings];
-    BenchSetting           point[settings] = {0};
-    HeatTable            table;
-    char                 path[512];
-    if (!etc_path(path, sizeof path, "heat.csv")) return STATUS_BAD_VALUE;
-    const Status         status = heat_table_open(&table, path);
-    if (status != STATUS_OK) return status;
-    for (int k = 0; k < settings; k++) {
-        HeatSet *s = &set[k];
-        s->table = &table, s->step_s = step_s[k];
-        heat_begin(&s->state, &table, &moving, 0, 0);
-        heat_fire(&s->state, &table, 0.5);
-        warm(s);
-        for (int i = 0; i < moments; i++)
-            for (int role = 0; role < HEAT_ROLE_COUNT; role++) {
-                if (!(heat_asked >> role & 1)) continue;
-                const HeatDrive   drive = s->state.drive[table.driver[role]];
-                const double      end_s = fmin(drive.until_s, moment_s(i));
-                const long double at_end = approach((long double)s->state.level[role], (long double)drive.value,
-                                                    (long double)(end_s - s->state.t_s), &table, role);
-                const long double level = approach(at_end, 0, (long double)(moment_s(i) - end_s), &table, role);
-                bench_worst(&point[k].error, fabs((double)s->rise_k[i][role] - table.rise_k[role] * (double)level));
-            }
-        work[k] = (BenchWork){warm, s, moments};
-        point[k].setting    = name[k];
-        point[k].is_default = k == settings - 1;
-    }
-    bench_tunable(bench,
-               &(BenchTunable){"heat of parts between reports", "entities/effects/heat.c", "four parts at one time", "K",
-                            "largest, the exponential in long double", 1e-4},
-               work, point, settings);
-    return STATUS_OK;
-}
-
 Status bench_precision_motion(Bench *bench)
 {
     knob_reckoning(bench);
-    const Status status = knob_heat(bench);
-    if (status != STATUS_OK) log_error("bench: precision: heat: %s", status_name(status));
-    return status;
+    return STATUS_OK;
 }

@@ -58,13 +58,12 @@ static void make_report(DisEntityState *out, int k)
 static Status crowd_open(Crowd *c, int count)
 {
     EntityTableConfig config = entity_table_default_config();
-    char              catalog[512], heat[512];
+    char              catalog[512];
     *c = (Crowd){.count = count, .t_s = report_s, .pdu = calloc((size_t)count, sizeof *c->pdu),
                  .octets = calloc((size_t)count, sizeof *c->octets), .state = calloc(1, sizeof *c->state),
                  .arena = arena_create()};
     if (!c->pdu || !c->octets || !c->state || !c->arena) return STATUS_NO_MEMORY;
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv") ||
-        !etc_path(heat, sizeof heat, "heat.csv"))
+    if (!etc_path(catalog, sizeof catalog, "catalog.csv"))
         return STATUS_BAD_VALUE;
     config.capacity = count;
     Status status = catalog_open(&c->catalog, catalog, 0.01);
@@ -242,6 +241,6 @@ const BenchSuite entities_benches[] = {
     {.name = "stability",
      .help = "motion and attitude at their edges, every number from outside, degenerate models",
      .run = entities_bench_stability},
-    {.name = "precision", .help = "dead reckoning, heat", .run = bench_precision_motion},
+    {.name = "precision", .help = "dead reckoning", .run = bench_precision_motion},
 };
 const int entities_bench_count = sizeof entities_benches / sizeof *entities_benches;

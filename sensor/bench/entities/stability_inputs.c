@@ -6,7 +6,6 @@
 #include "dis/reader.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_table.h"
-#include "entities/effects/heat.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -74,10 +73,10 @@ static Status world_open(World *w)
 {
     const EntityTableConfig config = entity_table_default_config();
     const Geodetic          origin = {0, 0, 0};
-    char                    catalog[512], heat[512];
+    char                    catalog[512];
     *w = (World){.arena = arena_create(), .t_s = 100};
     if (!w->arena) return STATUS_NO_MEMORY;
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv") || !etc_path(heat, sizeof heat, "heat.csv"))
+    if (!etc_path(catalog, sizeof catalog, "catalog.csv"))
         return STATUS_BAD_VALUE;
     Status status = catalog_open(&w->catalog, catalog, 0.05);
     if (status == STATUS_OK) status = entity_table_create(&w->table, &config, w->catalog);
@@ -184,8 +183,10 @@ static bool entity_is_sound(const SnapshotEntity *e)
     bool sound = v3_is_finite(e->p_ecef) && v3_is_finite(e->v_ecef_mps) && v3_is_finite(e->w_body_rps) &&
                  is_rotation(e->r_ecef_from_body) && isfinite(e->age_s) && isfinite(e->position_error_m) &&
                  v3_length(e->p_ecef) >= 9e4 && v3_length(e->p_ecef) <= 1.1e8;
-    for (int h = 0; h < HEAT_ROLE_COUNT; h++)
-        sound = sound && isfinite(e->heat[h]) && e->heat[h] >= 0 && e->heat[h] < 5000;
+    const EntityDrives *d = &e->drives;
+    const float         share[6] = {d->engine, d->flying, d->alive, d->burning, d->motor, d->flare};
+    for (int h = 0; h < 6; h++) sound = sound && share[h] >= 0 && share[h] <= 1;
+    sound = sound && isfinite(d->since_s) && d->speed_mps >= 0 && d->fired_kg[0] >= 0 && d->fired_kg[1] >= 0 && isfinite(d->fired_kg[1]);
     return sound;
 }
 

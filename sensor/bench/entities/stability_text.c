@@ -7,7 +7,7 @@
 #include "dis/decode.h"
 #include "entities/effects/effects.h"
 #include "entities/scenario/exercise.h"
-#include "entities/effects/heat.h"
+#include "render/heat/part_table.h"
 #include "entities/probe.h"
 #include "terrain/probe.h"
 
@@ -209,21 +209,11 @@ static bool effects_are_sound(const char *path)
 
 static bool heat_is_sound(const char *path)
 {
-    HeatTable table;
-    HeatState state = {0};
-    float     rise_k[HEAT_ROLE_COUNT];
-    if (heat_table_open(&table, path) != STATUS_OK) return heard[0] != 0;
-    const HeatEvidence evidence[2] = {{{1, 1, 222, 1, 1, 1, 0}, 0x0040FFF8, 12},
-                                      {{1, 2, 225, 20, 1, 0, 0}, 0x00400000, 300}};
-    for (int e = 0; e < 2; e++) {
-        heat_begin(&state, &table, &evidence[e], 100, 3600);
-        heat_fire(&state, &table, 101);
-        heat_report(&state, &table, &evidence[1 - e], 105);
-        for (double t_s = 105; t_s < 1e6; t_s *= 1.7) {
-            heat_at(rise_k, &state, &table, ~UINT32_C(0), t_s);
-            for (int r = 0; r < HEAT_ROLE_COUNT; r++)
-                if (!isfinite(rise_k[r])) return false;
-        }
+    PartTable table;
+    if (part_table_roles(&table, path) != STATUS_OK) return heard[0] != 0;
+    for (int r = 0; r < HEAT_ROLE_COUNT; r++) {
+        const PartRow *row = &table.role[r];
+        if (!(row->thickness_m > 0 && row->inside_w_m2k >= 0 && row->running_w_m2k >= 0 && row->drive_value >= 0)) return false;
     }
     return true;
 }

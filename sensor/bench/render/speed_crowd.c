@@ -60,8 +60,8 @@ static Status add_tank(TrialScene *scene, int k, CrowdPlace *place)
 static Status crowd_open(CrowdFrame *c, const Landscape *landscape, int vehicles, int more, CrowdPlace *place)
 {
     EntityTableConfig config = entity_table_default_config();
-    char              catalog[512], heat[512];
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv") || !etc_path(heat, sizeof heat, "heat.csv"))
+    char              catalog[512];
+    if (!etc_path(catalog, sizeof catalog, "catalog.csv"))
         return STATUS_BAD_VALUE;
     Status status = trial_scene_open(&c->scene, landscape, catalog, &tank_type, 1, 0);
     if (status != STATUS_OK) return status;
