@@ -9,7 +9,7 @@ static const double small_share      = 0.02;  /* cells below this share of their
 static const double small_m2         = 0.01;  /* and those below this beside larger ones */
 static const double prefer_axis      = 1.03;  /* an extent is longer when it is by this: x before y before z */
 static const double facing_least     = 1e-6;  /* mean normals shorter than this have no direction */
-static const double better           = 0.9;   /* what fits better by less fits as well: mirrored cells are not quite mirrored */
+static const double better           = 0.9;   /* what fits better by less, as mirrored cells may, fits as well */
 enum { candidates = 16 };                     /* points of a patch among which some are chosen */
 
 /* Ways to group parts, from fine to coarse. */

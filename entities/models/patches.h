@@ -6,9 +6,11 @@
  * turning tyre shares its heat. Cells of less than 2 % of their body, or of 0.01 m2 beside larger ones, join the
  * nearest. Cuts go through triangles, so areas are those of the triangles, to 1e-9.
  *
- * Large models are cut less finely until some patches_wanted patches are to be expected: small bodies become one patch, then
- * lengths are joined, then all sides but the underside, then each body is one patch (up to patches_most of them), then
- * bodies are groups of one node and role, at last of one role.
+ * Large models are cut less finely until some patches_wanted patches are to be expected: small bodies become one patch,
+ * then lengths are joined, then all sides but the underside, then each body is one patch (up to patches_most of them),
+ * then bodies are groups of one node and role, at last of one role.
+ *
+ * All triangles count, also those that others hide: a hull made of slices has their inner faces in its areas.
  *
  * Geometry alone, from the model at rest, and immutable: any number of threads may read it. The model may go. Built-in
  * models of 15 k triangles take about 10 ms. How much a coarse and a fine build of a model differ:

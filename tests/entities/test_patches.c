@@ -96,7 +96,8 @@ static void check_patches(const Model *m, const Patches *s)
     for (int b = 0; b < s->bodies; b++) {
         bool own = true;
         for (int k = 0; k < s->count; k++)
-            own &= (group[k] == group[s->first_of_body[b]]) == (k >= s->first_of_body[b] && k < s->first_of_body[b + 1]);
+            own &= (group[k] == group[s->first_of_body[b]]) ==
+                   (k >= s->first_of_body[b] && k < s->first_of_body[b + 1]);
         alone += own;
     }
     CHECK(groups == 1 || groups <= alone + 1);
@@ -175,7 +176,7 @@ static void a_long_box(void **state)
     for (double x = -2.25; x <= 2.25; x += 0.01) {
         const double got = patches_value(&s, value, 0, (double[3]){x, 0, -1}, (double[3]){0, 0, -1});
         worst = fmax(worst, fabs(got - x));
-        CHECK(got > last && got - last < (isfinite(last) ? 0.05 : INFINITY));
+        CHECK(got > last && (x < -2.245 || got - last < 0.05));
         last = got;
     }
     CHECK(worst < 0.5);
