@@ -5,6 +5,7 @@
 
 static const double length_m         = 1.5;   /* of one length of a body, about */
 static const double length_least_m   = 1.0;   /* bodies shorter than this are not cut along */
+static const double inward_least_m   = 1;     /* bodies less wide than this have no inner sides */
 static const double small_share      = 0.02;  /* cells below this share of their body join another, */
 static const double small_m2         = 0.01;  /* and those below this beside larger ones */
 static const double prefer_axis      = 1.03;  /* an extent is longer when it is by this: x before y before z */
@@ -209,6 +210,10 @@ static void measure_bodies(Cutter *c)
         body->step_m  = extent / body->lengths;
         double size[3];
         v3_sub(size, high[b], low[b]);
+        for (int i = 0; i < 3; i++) {
+            body->middle[i]   = 0.5 * (low[b][i] + high[b][i]);
+            body->inward_m[i] = size[i] > inward_least_m ? 0.15 * size[i] : INFINITY;
+        }
         body->box_m2 = 2 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
     }
 }
@@ -279,7 +284,7 @@ static void map_cells(Body *body, const Sums cell[cells_most], const struct Fine
             face = along = 0;
         } else {
             along = along < body->lengths ? along * lengths / body->lengths : 0;
-            if (!how->sides) face = body->faces == 6 && face == 4; /* +z is down */
+            if (!how->sides) face = body->faces == 6 && face % faces_most == 4; /* +z is down */
         }
         group_of[k] = face * lengths_most + along;
         join_sums(&group[group_of[k]], &cell[k]);

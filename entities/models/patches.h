@@ -3,7 +3,8 @@
  * A body is a group of parts of one node, role and material, usually one part. It is cut by the direction in which its
  * surface faces (shading normals; the six half axes of its node) and along its longest extent into 1 .. 4 equal
  * lengths of about 1.5 m. What spins or rolls is cut by its axis only: towards it, against it, and around it, for a
- * turning tyre shares its heat. Cells of less than 2 % of their body, or of 0.01 m2 beside larger ones, join the
+ * turning tyre shares its heat. What looks at the middle of a body from behind it (the inner side of one of two skirts) is apart
+ * from what looks away. Cells of less than 2 % of their body, or of 0.01 m2 beside larger ones, join the
  * nearest. Cuts go through triangles, so areas are those of the triangles, to 1e-9.
  *
  * Large models are cut less finely until some patches_wanted patches are to be expected: small bodies become one patch,

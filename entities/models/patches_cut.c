@@ -107,6 +107,15 @@ static int best_face(const Facet *f, int faces, int corner)
     return best;
 }
 
+/* Of a face that looks at the middle of its body from behind it: the inner side of a skirt. */
+static bool looks_inwards(const Facet *f, const Body *body, int face)
+{
+    const int i = face / 2;
+    if (body->faces == 3 || i == body->along) return false;
+    const double at = (f->p[0][i] + f->p[1][i] + f->p[2][i]) / 3 - body->middle[i];
+    return (face % 2 ? -at : at) < -body->inward_m[i];
+}
+
 int facet_cut(Piece piece[cells_most], const Facet *f, const Body *body)
 {
     static const Piece whole = {.corners = 3, .share = 1, .at = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .border = {0, 1, 2}};
@@ -146,7 +155,7 @@ int facet_cut(Piece piece[cells_most], const Facet *f, const Body *body)
             if (p->corners < 3) continue;
             p->share = first == last && one_face ? 1 : share_of(p);
             if (!(p->share > share_least)) continue;
-            p->cell = o * lengths_most + l;
+            p->cell = (o + (looks_inwards(f, body, o) ? faces_most : 0)) * lengths_most + l;
             count++;
         }
     }

@@ -5,7 +5,7 @@
 #include "entities/models/patches.h"
 
 enum {
-    faces_most = 6, lengths_most = 4, cells_most = faces_most * lengths_most,
+    faces_most = 6, lengths_most = 4, cells_most = 2 * faces_most * lengths_most,
     piece_corners = 16, /* a triangle, two planes across and five lines between faces: 3 + 2 + 5 at most */
 };
 
@@ -15,12 +15,13 @@ typedef struct Body {
     HeatRole role;
     int      faces;               /* 6: half axes of the node; 3: along axis, against it, around it */
     double   axis[3];
+    double   middle[3], inward_m[3]; /* of its box in the node's axes; how far behind the middle a face looks inwards */
     int      along, lengths;      /* lengths cut along this axis of the node */
     double   low_m, step_m;       /* where the first length begins; its length */
     double   box_low[3], box_high[3]; /* at rest, body axes of the model */
     double   box_m2;              /* surface of its box in the node's axes: hardly depends on the chord error */
     double   area_m2;
-    int      map[cells_most];     /* patch of each cell, from 0; cell = face lengths_most + length */
+    int      map[cells_most];     /* patch of each cell, from 0; cell = (face, + faces_most: inwards) lengths_most + length */
     int      first, count;        /* its patches */
 } Body;
 

@@ -531,7 +531,7 @@ static void landing_gear_needs_no_report(void **state)
     fixture_close(&f);
 }
 
-static void articulation_and_heat_reach_the_snapshot(void **state)
+static void articulation_and_drives_reach_the_snapshot(void **state)
 {
     (void)state;
     Fixture f = fixture_open(NULL);
@@ -544,15 +544,16 @@ static void articulation_and_heat_reach_the_snapshot(void **state)
     hear(&f, &pdu, 0);
     const SnapshotEntity *e = seen_at(&f, 1, 2);
     CHECK(counted(&f)->unknown_articulation == 1);
-    CHECK(e->heat[HEAT_TRACK] > 20 && e->heat[HEAT_ENGINE_DECK] > 20 && e->heat[HEAT_GUN] == 0 &&
-          e->heat[HEAT_MOTOR] == 0);
+    CHECK(e->drives.engine == 1 && e->drives.speed_mps == 12 && e->drives.fired_kg[1] == 0 && e->drives.since_s == 0);
+    CHECK(e->first_patch == -1 && f.snapshot.patch_k == NULL); /* render/heat/vehicle_heat.h gives them */
+    const uint64_t changes = entity_table_changes(f.table);
     const Model *tank = catalog_model(f.catalog, e->model);
     for (int n = 0; n < tank->node_count; n++)
         if (tank->node[n].dis_class == 4096)
             CHECK_NEAR(atan2(node_of(&f, e, n).r_body_from_node[3],
                              node_of(&f, e, n).r_body_from_node[0]), 0.4, 1e-7);
     entity_table_fire(f.table, &(DisFire){.firing = entity_id(1), .munition = entity_id(50)}, 3);
-    CHECK(seen_at(&f, 1, 5)->heat[HEAT_GUN] > 2);
+    CHECK(seen_at(&f, 1, 5)->drives.fired_kg[1] == 1 && entity_table_changes(f.table) == changes + 1);
     /* another type under the same id: another model, its joints at rest */
     pdu.type = truck_type;
     pdu.variable_count = 0;
@@ -662,7 +663,7 @@ static void mutated_octets_do_no_harm(void **state)
             CHECK(v3_is_finite(s->v_ecef_mps) && v3_is_finite(s->w_body_rps) && isfinite(s->position_error_m));
             m3_tmul(product, s->r_ecef_from_body, s->r_ecef_from_body);
             for (int i = 0; i < 9; i++) CHECK_NEAR(product[i], i % 4 == 0, 1e-14);
-            for (int role = 0; role < HEAT_ROLE_COUNT; role++) CHECK(s->heat[role] >= 0 && s->heat[role] < 2000);
+            CHECK(s->drives.engine >= 0 && s->drives.engine <= 1 && s->drives.speed_mps >= 0 && isfinite(s->drives.fired_kg[1]));
             for (int p = 0; p < catalog_model(f.catalog, s->model)->node_count; p++) {
                 const NodePose pose = node_of(&f, s, p);
                 CHECK(v3_is_finite(pose.p_body) && isfinite(pose.r_body_from_node[0]));
@@ -707,8 +708,8 @@ static void a_recorded_exercise(void **state)
     CHECK(c->detonated == 13 && c->deactivated == 0); /* 15 missiles, two still in flight at the end */
     CHECK(entity_table_count(f.table) + (int)c->timed_out == 9);
     /* flown and driven without a power-plant bit: warm all the same */
-    CHECK(seen_at(&f, 66, t_s)->heat[HEAT_TURBINE] > 100);
-    CHECK(seen_at(&f, 70, t_s)->heat[HEAT_ENGINE_DECK] > 1);
+    CHECK(seen_at(&f, 66, t_s)->drives.engine == 1 && seen_at(&f, 66, t_s)->drives.flying == 1);
+    CHECK(seen_at(&f, 70, t_s)->drives.engine > 0);
     dis_log_close(&log);
     fixture_close(&f);
 }
@@ -732,7 +733,7 @@ int main(void)
         cmocka_unit_test(an_empty_table_gives_an_empty_snapshot),
         cmocka_unit_test(wheels_roll_with_the_way),
         cmocka_unit_test(rotors_spin_and_freeze),
-        cmocka_unit_test(articulation_and_heat_reach_the_snapshot),
+        cmocka_unit_test(articulation_and_drives_reach_the_snapshot),
         cmocka_unit_test(what_has_no_shape_is_not_in_the_scene),
         cmocka_unit_test(landing_gear_needs_no_report),
         cmocka_unit_test(pdus_are_checked_and_counted),

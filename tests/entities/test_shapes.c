@@ -5,7 +5,6 @@
 
 #include "entities/models/articulation.h"
 #include "entities/catalog/catalog.h"
-#include "entities/effects/heat.h"
 
 /* ---- the common types -------------------------------------------------------------------------- */
 
@@ -375,15 +374,11 @@ static void outlines_fill_their_boxes_as_they_should(void **state)
     }
 }
 
-/* Closed parts without crossing numbers, a heat role that the table drives or leaves passive, a bounded number of
+/* Closed parts without crossing numbers, a heat role, a bounded number of
  * triangles, and nothing under the ground but hulls in water. */
 static void shapes_are_sound(void **state)
 {
     (void)state;
-    char path[512];
-    HeatTable heat;
-    CHECK(etc_path(path, sizeof path, "heat.csv"));
-    CHECK(heat_table_open(&heat, path) == STATUS_OK);
     for (int i = 0; i < parametric_count(); i++) {
         const char *name = parametric_name(i);
         Model m = build(name, 0.005);
@@ -400,7 +395,6 @@ static void shapes_are_sound(void **state)
         if (afloat) CHECK(m.box_high[2] > 0.3);
         for (int p = 0; p < m.part_count; p++) {
             CHECK(m.part[p].role < HEAT_ROLE_COUNT && m.part[p].material[0]);
-            CHECK(m.part[p].role == HEAT_PASSIVE || heat.driver[m.part[p].role] != HEAT_DRIVER_NONE);
         }
         model_destroy(&m);
     }

@@ -119,7 +119,7 @@ static void white_leaf_vanishes(void **state)
     assert_int_equal(visibility_create(&visibility, hand.world.tracer, NULL, &hand.world.frame, &hand.snapshot, false,
                                        hand.arena), STATUS_OK);
     visibility_materials(visibility, &materials);
-    const HemisphereScene scene = {visibility, &hand.air, &materials, hand.catalog, &hand.snapshot};
+    const HemisphereScene scene = {visibility, &hand.air, &materials, NULL, &hand.snapshot};
     const float          *around[AIR_BAND_COUNT];
     hemisphere_light(&gathered, &scene, &hits, (1 << AIR_BAND_COUNT) - 1, 16, key, &counters);
     for (int b = 0; b < AIR_BAND_COUNT; b++) around[b] = gathered.w_m2[b];
@@ -173,7 +173,7 @@ static void white_stand_vanishes(void **state)
     hits.several = false;
     for (int i = 0; i < leaf_count; i++) texture[i] = sun[i] = 1, temp_k[i] = 300, of[hits.radius_m[i] > 0]++;
     CHECK(of[0] > 10 && of[1] > 3);
-    const HemisphereScene scene = {visibility, &hand.air, &materials, hand.catalog, &hand.snapshot};
+    const HemisphereScene scene = {visibility, &hand.air, &materials, NULL, &hand.snapshot};
     const float          *around[AIR_BAND_COUNT];
     hemisphere_light(&gathered, &scene, &hits, (1 << optical_channel_count) - 1, 16, key, &counters);
     for (int b = 0; b < AIR_BAND_COUNT; b++) around[b] = gathered.w_m2[b];

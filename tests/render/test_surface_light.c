@@ -94,7 +94,7 @@ static void compare(bool ground, double least_rad, double limit)
         hand_air_on(sun_enu, 300);
         random_hits(sun_enu, ground);
         assert_int_equal(surface_light_prepare(&light, &hand.air, m, hand.air_arena), STATUS_OK);
-        thermal_temperature(temp_k, &hand.air, m, hand.catalog, &hand.snapshot, &hits, material, arrives, texture,
+        thermal_temperature(temp_k, &hand.air, m, NULL, &hits, material, arrives, texture,
                             warmth_k);
         air_paths_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
         float       *out[AIR_BAND_COUNT];
@@ -153,7 +153,7 @@ static void company_changes_no_bit(void **state)
     hand_draw = 9;
     random_hits(sun_enu, true);
     assert_int_equal(surface_light_prepare(&light, &hand.air, &hand.world.materials, hand.air_arena), STATUS_OK);
-    thermal_temperature(temp_k, &hand.air, &hand.world.materials, hand.catalog, &hand.snapshot, &hits, material, arrives, texture,
+    thermal_temperature(temp_k, &hand.air, &hand.world.materials, NULL, &hits, material, arrives, texture,
                         warmth_k);
     air_paths_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
     SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives, .veils = veils};
@@ -174,7 +174,7 @@ static void company_changes_no_bit(void **state)
         }
         few_texture[k] = texture[i], few_arrives[k] = arrives[i], few_material[k] = material[i];
     }
-    thermal_temperature(few_temp_k, &hand.air, &hand.world.materials, hand.catalog, &hand.snapshot, &few, few_material, few_arrives, few_texture,
+    thermal_temperature(few_temp_k, &hand.air, &hand.world.materials, NULL, &few, few_material, few_arrives, few_texture,
                         warmth_k);
     air_paths_of(few_veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &few, &few_rays, few_temp_k);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {

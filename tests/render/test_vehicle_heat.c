@@ -1,0 +1,349 @@
+/* tests/render/test_vehicle_heat.c: entities' temperatures over time, on weather from paper: nothing comes from nothing, the
+ * sun's side is warm, engines, guns, exhausts, speed and bodies are what balances on paper give, and the past decides. */
+#include "tests/check.h"
+#include "render/heat/vehicle_heat.h"
+#include "render/heat/surface_flux.h"
+#include "render/parts/parts.h"
+
+typedef struct Stage {
+    Catalog   *catalog;
+    Materials  materials;
+    PartTable  table;
+    Tracer    *tracer;
+    PatchSet   patches;
+    LocalFrame frame;
+    Arena     *arena;
+} Stage;
+static Stage stage;
+
+static PlaceHeat weather; /* at all times and places */
+static double    sun_up_s; /* exercise time from which its sun shines; Unix time of exercise time 0 is 0 */
+
+static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const double p_enu[3], bool present)
+{
+    (void)user, (void)p_enu, (void)present;
+    *out = weather;
+    if (unix_s < sun_up_s) out->direct_w_m2 = out->diffuse_w_m2 = 0;
+    return STATUS_OK;
+}
+
+/* All around, air too, at one temperature; no sun. */
+static void enclose(double temp_k)
+{
+    sun_up_s = 0;
+    weather = (PlaceHeat){.air_k = temp_k, .air_density = 1, .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4), .ground_k = temp_k,
+                          .under_k = temp_k, .ground_rho = 0.2, .sun_d_enu = {0, 0, 1}};
+}
+
+static int open_stage(void **state)
+{
+    (void)state;
+    char path[512], materials[512], surfaces[512], machines[512];
+    CHECK(etc_path(path, sizeof path, "catalog.csv") && catalog_open(&stage.catalog, path, 0.01) == STATUS_OK);
+    CHECK(etc_path(materials, sizeof materials, "materials.csv") && etc_path(surfaces, sizeof surfaces, "surfaces.csv"));
+    CHECK(materials_open(&stage.materials, materials, surfaces, stage.catalog) == STATUS_OK);
+    CHECK(etc_path(path, sizeof path, "heat.csv") && etc_path(machines, sizeof machines, "heat_machines.csv"));
+    CHECK(part_table_open(&stage.table, path, machines) == STATUS_OK);
+    CHECK(tracer_create(&stage.tracer, stage.catalog, "avx2") == STATUS_OK);
+    CHECK(patch_set_create(&stage.patches, catalog_model_count(stage.catalog)) == STATUS_OK);
+    CHECK(local_frame_at(&stage.frame, &(Geodetic){0.7, 0.2, 0}) == STATUS_OK);
+    return (stage.arena = arena_create()) == NULL;
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    arena_destroy(stage.arena);
+    patch_set_destroy(&stage.patches);
+    tracer_destroy(stage.tracer);
+    materials_close(&stage.materials);
+    catalog_close(stage.catalog);
+    return 0;
+}
+
+static VehicleHeat *start(double step_s)
+{
+    VehicleHeat            *heat;
+    const VehicleHeatConfig config = {.first_step_s = 1, .step_s = step_s, .capacity = 8, .place = everywhere};
+    const VehicleHeatWorld  world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches};
+    CHECK(vehicle_heat_create(&heat, &config, &world) == STATUS_OK);
+    return heat;
+}
+
+/* One entity: where it stands, facing north; its drives. */
+typedef struct Scene {
+    Snapshot       snapshot;
+    SnapshotEntity entity;
+    SnapshotJoints joints;
+} Scene;
+
+static void place(Scene *s, DisEntityType type, EntityDrives drives)
+{
+    const double p_enu[3] = {0, 0, 0}, r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
+    memset(s, 0, sizeof *s);
+    s->entity = (SnapshotEntity){.id = {1, 1, 1}, .type = type, .model = catalog_find(stage.catalog, type, NULL, NULL),
+                                 .drives = drives, .first_patch = -1};
+    ecef_from_enu(s->entity.p_ecef, &stage.frame, p_enu);
+    m3_mul(s->entity.r_ecef_from_body, stage.frame.r_ecef_from_enu, r_enu_from_body);
+    s->snapshot = (Snapshot){.count = 1, .entity = &s->entity, .joints = &s->joints};
+}
+
+static void fly(Scene *s, double speed_mps)
+{
+    const double v_enu[3] = {0, speed_mps, 0};
+    m3_mul_v3(s->entity.v_ecef_mps, stage.frame.r_ecef_from_enu, v_enu);
+    s->entity.drives.speed_mps = (float)speed_mps;
+}
+
+/* Ticks each second until t_s. */
+static void run(VehicleHeat *heat, Scene *s, double from_s, double to_s)
+{
+    for (double t_s = from_s; t_s <= to_s; t_s += 1) {
+        s->snapshot.t_s = t_s;
+        CHECK(vehicle_heat_tick(heat, &s->snapshot) == STATUS_OK);
+    }
+    CHECK(vehicle_heat_counters(heat)->failed == 0);
+}
+
+/* Mean by area of a role's patches on the side n (axes of their node; NULL: all) that face within 60 degrees of it, at the
+ * snapshot's time. */
+static double mean_k(const VehicleHeat *heat, Scene *s, HeatRole role, const double *n)
+{
+    double sum = 0, m2 = 0;
+    CHECK(vehicle_heat_show(heat, &s->snapshot, stage.arena) == STATUS_OK);
+    CHECK(s->entity.first_patch == 0);
+    const Patches *p = &stage.patches.of[s->entity.model];
+    for (int i = 0; i < p->count; i++) {
+        if (p->patch[i].role != role) continue;
+        if (n && !(p->patch[i].facing * v3_dot(p->patch[i].n_node, n) > 0.5 && v3_dot(p->patch[i].p_node, n) > 0)) continue;
+        sum += p->patch[i].area_m2 * (double)s->snapshot.patch_k[i];
+        m2 += p->patch[i].area_m2;
+    }
+    return m2 > 0 ? sum / m2 : NAN;
+}
+
+static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0}, person = {3, 1, 225, 1, 0, 0, 0}, missile = {2, 2, 225, 1, 0, 0, 0},
+                           flare = {8, 2, 225, 2, 0, 0, 0}, jet = {1, 2, 225, 1, 0, 0, 0};
+
+/* What is as warm as its surroundings stays so, however it is shaped, to the solver's tolerance. */
+static void an_enclosure_stays_as_it_is(void **state)
+{
+    (void)state;
+    for (double temp_k = 220; temp_k < 340; temp_k += 60) {
+        Scene s;
+        enclose(temp_k);
+        VehicleHeat *heat = start(30);
+        place(&s, tank, (EntityDrives){0});
+        run(heat, &s, 0, 300);
+        CHECK(vehicle_heat_show(heat, &s.snapshot, stage.arena) == STATUS_OK);
+        double worst_k = 0;
+        for (int i = 0; i < s.snapshot.patch_count; i++) worst_k = fmax(worst_k, fabs((double)s.snapshot.patch_k[i] - temp_k));
+        print_message("enclosure of %g K: %.1e K\n", temp_k, worst_k);
+        CHECK(worst_k < 1e-3);
+        vehicle_heat_destroy(heat);
+    }
+}
+
+/* The sun 30 degrees up in the east, for three hours: thin sheet follows its balance, armour is on its way. */
+static void the_side_of_the_sun_is_warm(void **state)
+{
+    (void)state;
+    static const double right[3] = {0, 1, 0}, left[3] = {0, -1, 0};
+    Scene s;
+    enclose(285);
+    weather.sun_d_enu[0] = cos(pi_rad / 6), weather.sun_d_enu[2] = 0.5;
+    weather.direct_w_m2 = 700, weather.diffuse_w_m2 = 80;
+    weather.longwave_w_m2 *= 0.8;
+    weather.wind_enu_mps[0] = 2;
+    sun_up_s = -3 * 3600;
+    VehicleHeat *heat = start(30);
+    place(&s, tank, (EntityDrives){0});
+    run(heat, &s, 0, 2);
+    const double east_k = mean_k(heat, &s, HEAT_PASSIVE, right), west_k = mean_k(heat, &s, HEAT_PASSIVE, left);
+    const double turret_k = mean_k(heat, &s, HEAT_TURRET, right) - mean_k(heat, &s, HEAT_TURRET, left);
+    print_message("sheet east %.1f, west %.1f K; turret east over west %.1f K\n", east_k, west_k, turret_k);
+    /* 0.6 .. 0.94 x 606 W/m2 over 15 W/(m2 K) of film and emission, less what conduction takes round the corners */
+    CHECK(east_k - west_k > 10 && east_k - west_k < 32);
+    CHECK(turret_k > 1 && turret_k < 20);
+    vehicle_heat_destroy(heat);
+}
+
+/* An hour of driving, then forty minutes of standing; and three rounds. */
+static void engines_warm_and_stay_warm(void **state)
+{
+    (void)state;
+    static const double up[3] = {0, 0, -1};
+    Scene s;
+    enclose(288);
+    weather.wind_enu_mps[1] = 2;
+    VehicleHeat *heat = start(30);
+    place(&s, tank, (EntityDrives){.engine = 1, .speed_mps = 10});
+    run(heat, &s, 0, 60);
+    const double deck_k = mean_k(heat, &s, HEAT_ENGINE_DECK, up), gas_k = mean_k(heat, &s, HEAT_EXHAUST, NULL),
+                 track_k = mean_k(heat, &s, HEAT_TRACK, NULL), hull_k = mean_k(heat, &s, HEAT_HULL, NULL);
+    print_message("driving: deck %.1f, exhaust %.1f, tracks %.1f, hull %.1f K over the air\n", deck_k - 288, gas_k - 288,
+                  track_k - 288, hull_k - 288);
+    CHECK(deck_k > 288 + 15 && deck_k < 363); /* the engine has 363 K */
+    CHECK(gas_k > 400 && gas_k < 750);        /* between the air and the gas */
+    CHECK(track_k > 295 && track_k < 340 && hull_k > 288.2 && hull_k < 300);
+
+    s.entity.drives.engine = 0, s.entity.drives.speed_mps = 0;
+    run(heat, &s, 61, 61 + 2400);
+    const double after_k = mean_k(heat, &s, HEAT_ENGINE_DECK, up), cold_k = mean_k(heat, &s, HEAT_EXHAUST, NULL);
+    print_message("forty minutes after the halt: deck %.1f, exhaust %.1f, tracks %.1f K\n", after_k - 288, cold_k - 288,
+                  mean_k(heat, &s, HEAT_TRACK, NULL) - 288);
+    CHECK(after_k > 288 + 4 && after_k < deck_k + 5 && cold_k < 310);
+
+    const double bore_k = mean_k(heat, &s, HEAT_GUN, NULL);
+    VehicleNodes before, after;
+    CHECK(vehicle_heat_nodes(&before, heat, s.entity.id));
+    const double held_j = network_heat_j(before.shape->network, before.temp_k), in_j = before.heat_in_j;
+    s.entity.drives.fired_kg[1] = 24;
+    run(heat, &s, 2462, 2462);
+    CHECK(vehicle_heat_nodes(&after, heat, s.entity.id));
+    const double rise_j = network_heat_j(after.shape->network, after.temp_k) - held_j;
+    CHECK_NEAR(rise_j, after.heat_in_j - in_j, 1e-6 * (24 * 180e3)); /* what came from outside is in its nodes */
+    run(heat, &s, 2463, 2462 + 300);
+    const double shot_k = mean_k(heat, &s, HEAT_GUN, NULL) - bore_k;
+    print_message("three rounds, five minutes later: gun %.1f K warmer\n", shot_k);
+    CHECK(shot_k > 1.5 && shot_k < 15); /* 4.3 MJ into a tonne or two of steel */
+    vehicle_heat_destroy(heat);
+}
+
+/* The nodes of a step keep the heat that came from outside. */
+static void heat_is_kept(void **state)
+{
+    (void)state;
+    Scene s;
+    enclose(280);
+    weather.sun_d_enu[2] = 1, weather.direct_w_m2 = 800;
+    VehicleHeat *heat = start(30);
+    place(&s, tank, (EntityDrives){.engine = 0.7f, .speed_mps = 5});
+    run(heat, &s, 0, 0);
+    VehicleNodes n;
+    CHECK(vehicle_heat_nodes(&n, heat, s.entity.id));
+    const double held_j = network_heat_j(n.shape->network, n.temp_k), in_j = n.heat_in_j;
+    run(heat, &s, 1, 600);
+    CHECK(vehicle_heat_nodes(&n, heat, s.entity.id));
+    const double gained_j = network_heat_j(n.shape->network, n.temp_k) - held_j;
+    print_message("gained %.6g J, from outside %.6g J\n", gained_j, n.heat_in_j - in_j);
+    CHECK(fabs(gained_j) > 1e5);
+    CHECK_NEAR(gained_j, n.heat_in_j - in_j, 1e-6 * held_j);
+    vehicle_heat_destroy(heat);
+}
+
+/* Skin of what flies fast: 0.85 v^2 / (2 cp), 26 K at 250 m/s, less what it radiates. */
+static void speed_warms(void **state)
+{
+    (void)state;
+    Scene s;
+    enclose(250);
+    VehicleHeat *heat = start(30);
+    place(&s, jet, (EntityDrives){.engine = 1, .flying = 1});
+    fly(&s, 250);
+    run(heat, &s, 0, 5);
+    const double skin_k = mean_k(heat, &s, HEAT_AIRFRAME, NULL) - 250;
+    vehicle_heat_destroy(heat);
+    heat = start(30);
+    place(&s, missile, (EntityDrives){.motor = 1});
+    fly(&s, 300);
+    run(heat, &s, 0, 2);
+    const double motor_k = mean_k(heat, &s, HEAT_MOTOR, NULL);
+    s.entity.drives.motor = 0;
+    run(heat, &s, 3, 40);
+    const double nose_k = mean_k(heat, &s, HEAT_NOSE, NULL) - 250;
+    print_message("airframe %.1f K at 250 m/s, nose %.1f K at 300 m/s, motor %.0f K after two seconds\n", skin_k, nose_k, motor_k);
+    CHECK(skin_k > 22 && skin_k < 30); /* parts of it are behind the engines */
+    CHECK_NEAR(nose_k, 38.06, 2);
+    CHECK(motor_k > 300 && motor_k < 900);
+    vehicle_heat_destroy(heat);
+}
+
+/* A person in a room; a flare that burns four seconds. */
+static void bodies_and_flares(void **state)
+{
+    (void)state;
+    Scene s;
+    enclose(293);
+    VehicleHeat *heat = start(30);
+    place(&s, person, (EntityDrives){.alive = 1});
+    run(heat, &s, 0, 5);
+    const double skin_k = mean_k(heat, &s, HEAT_SKIN, NULL), cloth_k = mean_k(heat, &s, HEAT_CLOTHING, NULL);
+    print_message("skin %.1f, clothing %.1f K in a room of 293 K\n", skin_k, cloth_k);
+    CHECK(skin_k > 303 && skin_k < 308 && cloth_k > 296 && cloth_k < 303); /* published: 303 .. 307 K */
+    vehicle_heat_destroy(heat);
+    heat = start(30);
+    place(&s, flare, (EntityDrives){.flare = 1});
+    run(heat, &s, 0, 3);
+    const double ember_k = mean_k(heat, &s, HEAT_FLARE, NULL);
+    s.entity.drives.flare = 0;
+    run(heat, &s, 4, 60);
+    print_message("flare %.0f K, a minute later %.0f K\n", ember_k, mean_k(heat, &s, HEAT_FLARE, NULL));
+    CHECK(ember_k > 1500 && ember_k < 2000 && mean_k(heat, &s, HEAT_FLARE, NULL) < 600);
+    vehicle_heat_destroy(heat);
+}
+
+/* Frames between ticks, and another entity beside it, change no bit; steps of 10 s against 30 s little. */
+static void the_past_alone_decides(void **state)
+{
+    (void)state;
+    Scene s;
+    float kept[patches_most];
+    enclose(288);
+    weather.sun_d_enu[1] = 0.6, weather.sun_d_enu[2] = 0.8, weather.direct_w_m2 = 800;
+    for (int k = 0; k < 3; k++) {
+        VehicleHeat *heat = start(k == 2 ? 10 : 30);
+        place(&s, tank, (EntityDrives){.engine = 0.6f});
+        for (double t_s = 0; t_s <= 400; t_s += 1) {
+            if (t_s == 100) s.entity.drives.fired_kg[1] = 8;
+            run(heat, &s, t_s, t_s);
+            s.snapshot.t_s = t_s + 0.37;
+            if (k == 1) CHECK(vehicle_heat_show(heat, &s.snapshot, stage.arena) == STATUS_OK);
+        }
+        s.snapshot.t_s = 400.6;
+        CHECK(vehicle_heat_show(heat, &s.snapshot, stage.arena) == STATUS_OK);
+        double worst_k = 0;
+        for (int i = 0; i < s.snapshot.patch_count; i++) {
+            if (k == 0) kept[i] = s.snapshot.patch_k[i];
+            worst_k = fmax(worst_k, fabs((double)(kept[i] - s.snapshot.patch_k[i])));
+        }
+        if (k == 1) CHECK(worst_k == 0);
+        if (k == 2) print_message("steps of 30 s against 10 s: %.3f K\n", worst_k);
+        CHECK(worst_k < 0.1);
+        print_message("%llu steps, %.1f us each, %zu octets\n", (unsigned long long)vehicle_heat_counters(heat)->steps,
+                      1e6 * vehicle_heat_counters(heat)->spent_s / (double)vehicle_heat_counters(heat)->steps, vehicle_heat_bytes(heat));
+        vehicle_heat_destroy(heat);
+    }
+}
+
+/* Of nine entities the last is left out of eight places, counted, and as warm as the air; one that goes is forgotten. */
+static void room_is_bounded(void **state)
+{
+    (void)state;
+    enum { many = 9 };
+    Scene          s;
+    SnapshotEntity entity[many];
+    SnapshotJoints joints[many] = {{0}};
+    enclose(288);
+    VehicleHeat *heat = start(30);
+    place(&s, tank, (EntityDrives){0});
+    for (int i = 0; i < many; i++) entity[i] = s.entity, entity[i].id.entity = (uint16_t)(i + 1);
+    Snapshot all = {.count = many, .entity = entity, .joints = joints};
+    CHECK(vehicle_heat_tick(heat, &all) == STATUS_OK && vehicle_heat_show(heat, &all, stage.arena) == STATUS_OK);
+    CHECK(entity[7].first_patch >= 0 && entity[8].first_patch == -1 && vehicle_heat_counters(heat)->left_out == 1);
+    const size_t full = vehicle_heat_bytes(heat);
+    all.count = 2, all.t_s = 1;
+    CHECK(vehicle_heat_tick(heat, &all) == STATUS_OK && vehicle_heat_bytes(heat) < full / 2);
+    vehicle_heat_destroy(heat);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_enclosure_stays_as_it_is), cmocka_unit_test(the_side_of_the_sun_is_warm),
+        cmocka_unit_test(engines_warm_and_stay_warm),  cmocka_unit_test(heat_is_kept),
+        cmocka_unit_test(speed_warms),                 cmocka_unit_test(bodies_and_flares),
+        cmocka_unit_test(the_past_alone_decides),      cmocka_unit_test(room_is_bounded),
+    };
+    return cmocka_run_group_tests(tests, open_stage, close_stage);
+}
