@@ -1,0 +1,66 @@
+/* render/heat/network.h: temperatures of a network of thermal nodes: parts of a vehicle that conduct to, radiate to and are
+ * heated by one another, each of one temperature.
+ *
+ *     C_i dT_i/dt = sum of G (T_j - T_i) + sum of sigma A (T_j^4 - T_i^4)           links; exchanges
+ *                 + heat_i + film_i (fluid_i - T_i) - sigma emits_i T_i^4           loads
+ *
+ * SUNDIALS (ARKODE: implicit Runge-Kutta with error control; KLU: sparse factors) solves the whole as one system. Error of a
+ * call: below 0.01 K, whatever its length, with jumps of the loads too (tests/render/test_network.c; against another solver:
+ * tests/system/test_network_judge.sh; rows of `bench precision` and `bench stability`). */
+#ifndef RENDER_HEAT_NETWORK_H
+#define RENDER_HEAT_NETWORK_H
+
+#include "pitviper.h"
+
+/* Conduction. */
+typedef struct NetworkLink {
+    int    a, b;
+    double conductance_w_k;
+} NetworkLink;
+
+/* Radiation: sigma area (Ta^4 - Tb^4) from a to b; area: emissivities and view factors are in it. */
+typedef struct NetworkExchange {
+    int    a, b;
+    double area_m2;
+} NetworkExchange;
+
+typedef struct NetworkShape {
+    int nodes, links, exchanges;
+    const double          *capacity_j_k; /* [nodes], > 0; INFINITY: held at its temperature */
+    const NetworkLink     *link;         /* [links]; two of one pair of nodes add up */
+    const NetworkExchange *exchange;     /* [exchanges] */
+} NetworkShape;
+
+/* What a node meets from outside; a held node takes no notice. */
+typedef struct NetworkLoad {
+    double heat_w;            /* into it: sun, longwave, friction */
+    double film_w_k, fluid_k; /* film_w_k (fluid_k - T) */
+    double emits_m2;          /* it loses sigma emits_m2 T^4 */
+} NetworkLoad;
+
+/* The shape, copied, and the solver's memory: one thread at a time. */
+typedef struct Network Network;
+
+/* STATUS_BAD_VALUE: no node, a capacity that is not positive, a conductance or area that is negative or not finite, a node
+ * that does not exist or is linked to itself; STATUS_NO_MEMORY. */
+Status network_create(Network **out, const NetworkShape *shape);
+void   network_destroy(Network *network); /* accepts NULL */
+int    network_nodes(const Network *network);
+/* New areas, [exchanges], finite and >= 0; nothing else changes. */
+void   network_exchange(Network *network, const double *area_m2);
+
+/* temp_k[nodes], > 0, over dt_s > 0. load[nodes]: at its start; load_end: at its end, each number straight between (NULL: as
+ * load). heat_in_j (may be NULL): the heat that came from outside, held nodes included, is added to it; it is what the
+ * nodes that are not held gained, to 1e-6 of what they exchanged.
+ *
+ * The result is a function of temp_k, loads, areas and dt_s, to the bit, never of earlier steps. STATUS_BAD_VALUE: a value
+ * that is not finite, a temperature or a step that is not positive, a negative film or emitting area, or loads that take
+ * a node to 0 K; STATUS_UNSUPPORTED: more internal steps than network_most_steps; STATUS_NO_MEMORY. On failure
+ * temp_k and heat_in_j are untouched. */
+Status network_step(double *temp_k, double *heat_in_j, Network *network, const NetworkLoad *load, const NetworkLoad *load_end,
+                    double dt_s);
+enum { network_most_steps = 20000 };
+
+double network_heat_j(const Network *network, const double *temp_k); /* stored above 0 K in nodes that are not held */
+
+#endif
