@@ -14,8 +14,8 @@
  * All triangles count, also those that others hide: a hull made of slices has their inner faces in its areas.
  *
  * Geometry alone, from the model at rest, and immutable: any number of threads may read it. The model may go. Built-in
- * models of 15 k triangles take about 10 ms. How much a coarse and a fine build of a model differ:
- * tests/entities/test_patches.c. */
+ * models of 15 k triangles take about 10 ms. A coarse and a fine build of a model may differ by some
+ * patches. */
 #ifndef ENTITIES_MODELS_PATCHES_H
 #define ENTITIES_MODELS_PATCHES_H
 

@@ -321,6 +321,11 @@ void network_exchange(Network *network, const double *area_m2)
     for (int k = 0; k < network->exchanges; k++) network->flow[network->links + k].size = area_m2[k];
 }
 
+void network_conductances(Network *network, const double *w_k)
+{
+    for (int k = 0; k < network->links; k++) network->flow[k].size = w_k[k];
+}
+
 double network_heat_j(const Network *network, const double *temp_k)
 {
     double sum = 0;

@@ -48,6 +48,8 @@ void   network_destroy(Network *network); /* accepts NULL */
 int    network_nodes(const Network *network);
 /* New areas, [exchanges], finite and >= 0; nothing else changes. */
 void   network_exchange(Network *network, const double *area_m2);
+/* New conductances, [links], likewise. */
+void   network_conductances(Network *network, const double *w_k);
 
 /* temp_k[nodes], > 0, over dt_s > 0. load[nodes]: at its start; load_end: at its end, each number straight between (NULL: as
  * load). heat_in_j (may be NULL): the heat that came from outside, held nodes included, is added to it; it is what the

@@ -231,7 +231,8 @@ static void load_patch(NetworkLoad *load, const Moment *m, const VehicleState *s
         at->heat_w += 0.5 * w;
         load[skin->inner].heat_w += 0.5 * w;
     }
-    add_inside(&load[skin->inner], &skin->row, &m->shape->machine, d, area, p->air_k);
+    /* a grain burns at its surface */
+    add_inside(&load[skin->row.inside == INSIDE_GRAIN ? skin->surface : skin->inner], &skin->row, &m->shape->machine, d, area, p->air_k);
 }
 
 static void load_nodes(NetworkLoad *load, const Moment *m, const VehicleState *s, const EntityDrives *d)
