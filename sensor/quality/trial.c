@@ -49,6 +49,8 @@ Status trial_scene_warm(TrialScene *scene, const HeatConfig *config)
 {
     HeatConfig heat = *config;
     heat.unix_s = scene->unix_s;
+    world_vehicles_destroy(scene->vehicles);
+    scene->vehicles = NULL;
     return world_warm_clear(&scene->world, &heat, 16, NULL);
 }
 
@@ -77,6 +79,7 @@ Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char 
 
 void trial_scene_close(TrialScene *scene)
 {
+    world_vehicles_destroy(scene->vehicles);
     entity_table_destroy(scene->table);
     world_close(&scene->world);
     catalog_close(scene->catalog);
@@ -131,12 +134,23 @@ static Status targets(TrialFrame *f)
     return STATUS_OK;
 }
 
+Status trial_warm(TrialScene *scene, Snapshot *snapshot, Arena *arena)
+{
+    static const double step_s = 30;
+    Status              status = STATUS_OK;
+    if (!scene->world.heat) return STATUS_OK;
+    if (!scene->vehicles) status = world_vehicles_create(&scene->vehicles, &scene->world, step_s);
+    if (status == STATUS_OK) status = world_vehicles_tick(scene->vehicles, snapshot);
+    return status == STATUS_OK ? world_vehicles_show(scene->vehicles, snapshot, arena) : status;
+}
+
 void trial_frame(void *user)
 {
     TrialFrame  *f = user;
     const double t0 = wall_clock_s();
     arena_reset(f->arena);
     f->status = entity_table_snapshot(&f->snapshot, f->scene->table, f->scene->sun_now_s + 0.5, f->arena);
+    if (f->status == STATUS_OK) f->status = trial_warm((TrialScene *)f->scene, &f->snapshot, f->arena); /* what it keeps alone changes */
     const double t1 = wall_clock_s();
     if (f->status == STATUS_OK) f->status = light(f);
     const double t2 = wall_clock_s();

@@ -4,6 +4,7 @@
 
 #include "entities/table/entity_table.h"
 #include "render/frame/render.h"
+#include "render/frame/world_vehicles.h"
 #include "sensor/truth/truth.h"
 #include "sensor/publish/plane_hash.h"
 
@@ -12,6 +13,7 @@ typedef struct TrialScene {
     Catalog         *catalog;
     World            world;
     EntityTable     *table;
+    WorldVehicles   *vehicles;    /* of trial_warm */
     double           unix_s, sun_now_s;
 } TrialScene;
 
@@ -20,6 +22,8 @@ Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char 
                         const DisEntityType *types, int type_count, int vehicles);
 /* Warms its ground again, as config says. */
 Status trial_scene_warm(TrialScene *scene, const HeatConfig *config);
+/* Temperatures of the scene's entities into its snapshot. From then on the scene must stay where it is. */
+Status trial_warm(TrialScene *scene, Snapshot *snapshot, Arena *arena);
 void   trial_scene_close(TrialScene *scene);
 
 /* One more report at the scene's time: at this distance east and north of the origin, this high above the ground. */

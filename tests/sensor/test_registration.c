@@ -180,6 +180,18 @@ static void hear(Snapshot *snapshot, EntityTable **table, const DisEntityState *
     assert_int_equal(entity_table_entity_state(*table, pdu, 100), STATUS_OK);
     assert_int_equal(entity_table_snapshot(snapshot, *table, 100, fixture.arena), STATUS_OK);
     assert_int_equal(snapshot->count, 1);
+
+    /* the block is as warm as by a running engine, the plate as the air */
+    const int    model = snapshot->entity[0].model;
+    const World *world = &fixture.world;
+    snapshot->entity[0].first_patch = 0;
+    assert_int_equal(world_need_patches(world, snapshot), STATUS_OK);
+    const Patches *patches = &world->patches->of[model];
+    snapshot->patch_count = patches->count;
+    snapshot->patch_k = arena_alloc(fixture.arena, (size_t)patches->count, sizeof *snapshot->patch_k);
+    assert_non_null(snapshot->patch_k);
+    for (int i = 0; i < patches->count; i++)
+        snapshot->patch_k[i] = patches->patch[i].role == HEAT_ENGINE_DECK ? 360 : 288.15f;
 }
 
 /* Of every pixel's centre; the same for all bands of a shot. */
