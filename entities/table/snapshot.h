@@ -25,7 +25,8 @@ typedef struct SnapshotEntity {
     double        drift_m, drift_rad; /* expected distance and angle from the truth: snapshot_drift */
     int           first_node;      /* into Snapshot.node */
     EntityDrives  drives;          /* what heats it */
-    int           first_patch;     /* into Snapshot.patch_k; -1: none of its temperatures are known */
+    int           first_patch, patches; /* into Snapshot.patch_k; -1, 0: none of its temperatures are known */
+    float         dt_k;            /* mean temperature of its surface less that of open ground where it is; with patches */
 } SnapshotEntity;
 
 /* Joint state of an entity, kept for its nodes: snapshot_pose. */

@@ -24,7 +24,7 @@ static inline double patch_set_temp_k(const PatchSet *set, const Snapshot *snaps
     const SnapshotEntity *e = &snapshot->entity[entity];
     if (e->first_patch < 0 || e->model < 0 || e->model >= set->models || !set->cut[e->model]) return NAN;
     const Patches *patches = &set->of[e->model];
-    if (e->first_patch > snapshot->patch_count - patches->count) return NAN; /* of a file */
+    if (e->patches != patches->count) return NAN; /* of a file, for another model */
     return patches_value(patches, snapshot->patch_k + e->first_patch, part, p_node, n_node);
 }
 

@@ -25,6 +25,7 @@ typedef struct VehicleState {
     double       view_up_body[3];
     PatchView   *view;            /* [patches] */
     NetworkLoad *load;            /* [nodes] at t_s */
+    double       ground_k;        /* in the open, at t_s */
 } VehicleState;
 
 struct VehicleHeat {
@@ -359,6 +360,7 @@ static void stay(VehicleState *s, const Moment *m, double t_s)
 {
     s->t_s    = t_s;
     s->drives = m->entity->drives;
+    s->ground_k = m->place.ground_k;
     ahead_in_enu(s->ahead_enu, m->pose.r_enu_from_body);
     up_in_body(s->up_body, m->pose.r_enu_from_body);
 }
@@ -409,7 +411,7 @@ static Status begin(VehicleState **out, VehicleHeat *h, Moment *m, double t_s)
     Status                status = STATUS_OK;
     if (!s) return STATUS_NO_MEMORY;
     s->id = e->id, s->since_s = e->drives.since_s, s->model = e->model;
-    stay(s, m, t_s);
+    s->drives = e->drives;
     m->place.above_m = 0;
     m->pose.posed = &m->posed;
     status = find_place(m, h, h->config.unix_s + t_s, true);
@@ -426,6 +428,7 @@ static Status begin(VehicleState **out, VehicleHeat *h, Moment *m, double t_s)
         if (status == STATUS_OK) status = find_place(m, h, h->config.unix_s + t_s, true);
     }
     if (status == STATUS_OK) {
+        stay(s, m, t_s);
         load_nodes(s->load, m, s, &s->drives);
         s->span_s = h->config.first_step_s;
         status = predict(h, s, m);
@@ -545,6 +548,14 @@ static const VehicleState *find_state(const VehicleHeat *h, DisEntityId id)
     return NULL;
 }
 
+/* By area. */
+static double mean_of(const Patches *p, const float *value)
+{
+    double sum = 0, m2 = 0;
+    for (int i = 0; i < p->count; i++) sum += p->patch[i].area_m2 * (double)value[i], m2 += p->patch[i].area_m2;
+    return m2 > 0 ? sum / m2 : 0;
+}
+
 Status vehicle_heat_show(const VehicleHeat *h, Snapshot *snapshot, Arena *arena)
 {
     int patches = 0;
@@ -556,12 +567,14 @@ Status vehicle_heat_show(const VehicleHeat *h, Snapshot *snapshot, Arena *arena)
     for (int i = 0; i < snapshot->count; i++) {
         SnapshotEntity     *e = &snapshot->entity[i];
         const VehicleState *s = find_state(h, e->id);
-        e->first_patch = -1;
+        e->first_patch = -1, e->patches = 0, e->dt_k = 0;
         if (!s || !is_same(s, e)) continue;
         const int   count = h->shape[s->model].patches->count;
         const float share = s->next_s > s->t_s ? (float)clamp((snapshot->t_s - s->t_s) / (s->next_s - s->t_s), 0, 1) : 0;
         e->first_patch = snapshot->patch_count;
         for (int k = 0; k < count; k++) patch_k[e->first_patch + k] = s->now_k[k] + share * (s->next_k[k] - s->now_k[k]);
+        e->patches = count;
+        e->dt_k = (float)(mean_of(h->shape[s->model].patches, patch_k + e->first_patch) - s->ground_k);
         snapshot->patch_count += count;
     }
     return STATUS_OK;

@@ -81,9 +81,11 @@ static void entity_fields(Fields *f, SnapshotEntity *e)
     field_int(f, "nodes of an entity", &e->first_node, 0, INT32_MAX - 1);
     if (f->version >= 3) {
         field_int(f, "patches of an entity", &e->first_patch, -1, INT32_MAX - 1);
+        field_int(f, "patches of an entity", &e->patches, 0, INT32_MAX - 1);
+        field_floats(f, "warmth of an entity", &e->dt_k, 1, -1e5f, 1e5f);
     } else { /* heat by role, of which nothing is made any more */
         float heat[21];
-        e->first_patch = -1;
+        e->first_patch = -1, e->patches = 0, e->dt_k = 0;
         field_floats(f, "heat of an entity", heat, 21, -1000, 10000);
     }
 }
@@ -140,6 +142,9 @@ void frame_fields_snapshot(Fields *f, FrameFile *file)
         if (!field_array(f, "patches", &s->patch_count, (void **)&s->patch_k, sizeof *s->patch_k, 4, INT32_MAX - 1)) return;
         field_floats(f, "temperature of a patch", s->patch_k, s->patch_count, 0.1f, 1e5f);
     }
+    for (int e = 0; f->from && e < s->count && fields_good(f); e++)
+        if (s->entity[e].first_patch >= 0 && s->entity[e].first_patch > s->patch_count - s->entity[e].patches)
+            f->fault = "patches of an entity";
     if (f->from) check_order(f, s);
 }
 

@@ -150,6 +150,12 @@ static json_t *target_json(const TargetRecord *t)
         set_id(target, "occluded_by", t->occluder_id);
     else if (t->occluder != OCCLUDER_NONE)
         json_object_set_new(target, "occluded_by", json_string(occluder_name(t->occluder)));
+    set_number(target, "dt_k", t->dt_k);
+    if (t->patches > 0) {
+        json_t *patches = json_array();
+        for (int k = 0; k < t->patches; k++) json_array_append_new(patches, json_real(round(100 * (double)t->patch_k[k]) / 100));
+        json_object_set_new(target, "patch_temp_k", patches);
+    }
     set_number(target, "age_s", t->age_s);
     set_number(target, "position_error_m", t->position_error_m);
     json_object_set_new(target, "bands", bands_json(t));

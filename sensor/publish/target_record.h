@@ -60,6 +60,9 @@ typedef struct TargetRecord {
     double        boresight_error_rad[2];  /* camera right and up */
     TargetOccluder occluder;               /* of the most of it */
     DisEntityId   occluder_id;             /* none: the ground, trees, or not known */
+    double        dt_k;                    /* mean of its patches less the ground in the open */
+    int           patches;                 /* 0: their temperatures are not known */
+    const float  *patch_k;                 /* the snapshot's [patches] */
     double        age_s, position_error_m; /* of the report that it was extrapolated from; estimate */
     TargetBand    band[BAND_COUNT];
 } TargetRecord;

@@ -122,6 +122,10 @@ static const ReferenceField fields[] = {
     {"targets[].occluded_by", "string", "", "site:application:entity, `ground`, or `trees`", "when less than 1 % of it is "
      "occluded",
      "what occludes most of it"},
+    {"targets[].dt_k", "number", "K", "", "without thermal history", "mean temperature of its surface, by area, less "
+     "that of open ground where it is"},
+    {"targets[].patch_temp_k", "list of numbers", "K", "in the order of `pitviper heat MODEL`", "without thermal history",
+     "temperature of each patch of its surface, also of those that are not seen"},
     {"targets[].age_s", "number", "s", "", "", "since its last Entity State"},
     {"targets[].position_error_m", "number", "m", "", "", "error of dead reckoning when it was received"},
     {"targets[].bands", "object", "", "", "", "signal by band; empty: it is occluded"},

@@ -187,7 +187,7 @@ static void hear(Snapshot *snapshot, EntityTable **table, const DisEntityState *
     snapshot->entity[0].first_patch = 0;
     assert_int_equal(world_need_patches(world, snapshot), STATUS_OK);
     const Patches *patches = &world->patches->of[model];
-    snapshot->patch_count = patches->count;
+    snapshot->patch_count = snapshot->entity[0].patches = patches->count;
     snapshot->patch_k = arena_alloc(fixture.arena, (size_t)patches->count, sizeof *snapshot->patch_k);
     assert_non_null(snapshot->patch_k);
     for (int i = 0; i < patches->count; i++)
