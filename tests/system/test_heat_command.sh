@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `pitviper heat`: a tank's day: crossover twice, its sunlit side in the morning, its engine; and what is refused.
+# `pitviper heat`: a tank's day: crossover twice, its engine; a truck's sunlit sides; and what is refused.
 . "$(dirname "$0")/common.sh"
 
 # cell FILE HOUR COLUMN
@@ -23,11 +23,13 @@ check "the summary says when" said 'crossover of vehicle and ground: 0[4-7]:[0-9
 check "the plot marks them" [ "$(grep -oE '>[01][0-9]:[0-9]{2}</text>' <(grep c0392b "$tmp/still/nodes.svg") | wc -l)" = 2 ]
 check "warmer than the ground at night" is "$(cell "$still" 3 dt_k)" '>' 1
 check "colder in the morning" is "$(cell "$still" 9 dt_k)" '<' -1
+run heat truck -o "$tmp/truck" --heading 0 --step 600
+check "heat truck: exit code" [ $code = 0 ]
 # nose to the north: its right side faces east
-sides=$(less "$(cell "$still" 8 skirts_right)" "$(cell "$still" 8 skirts_left)")
-check "skirts at 8 h, east over west: $sides K" is "$sides" '>' 5
-sides=$(less "$(cell "$still" 18 skirts_right)" "$(cell "$still" 18 skirts_left)")
-check "and at 18 h: $sides K" is "$sides" '<' -3
+sides=$(less "$(cell "$tmp/truck/nodes.csv" 8 canvas_right)" "$(cell "$tmp/truck/nodes.csv" 8 canvas_left)")
+check "canvas at 8 h, east over west: $sides K" is "$sides" '>' 5
+sides=$(less "$(cell "$tmp/truck/nodes.csv" 16 canvas_right)" "$(cell "$tmp/truck/nodes.csv" 16 canvas_left)")
+check "and at 16 h: $sides K" is "$sides" '<' -5
 check "all within 260 .. 340 K" awk -F, 'NR > 1 { for (i = 2; i <= NF; i++) if (i != 4 && $i != "" && !($i > 260 && $i < 340)) exit 1 }' "$still"
 days=$(less "$(cell "$still" 24 dt_k)" "$(cell "$still" 0 dt_k)")
 check "a day later much the same: $days K" is "${days#-}" '<' 0.5
