@@ -1,9 +1,9 @@
 /* render/probe_heat_node.c: `pitviper probe heat-node`: temperatures of a part of an entity that begins at a time.
  *
- * Each row is an entity of its own, on level grass in the open, as render/heat/vehicle_heat.h begins one at that time: it has
- * stood there for a day with its engine stopped, and for the last hour done what the row says. Each local day (by the sun's
- * mean time at the place) is an exercise of its own, so that a row's answer depends on no other row. Rows of one model and
- * day after one another are answered without starting again. */
+ * Each row is an entity of its own, on level grass in the open, as render/heat/vehicle_heat.h begins one at that
+ * time: it has stood there for a day with its engine stopped, and for the last hour done what the row says. Each
+ * local day (by the sun's mean time at the place) is an exercise of its own, so that a row's answer depends on no
+ * other row. Rows of one model and day after one another are answered without starting again. */
 #include "render/probe_private.h"
 
 #include "render/frame/heat_drive.h"
@@ -89,7 +89,8 @@ static Status open_world(NodeProbe *p, const char *name)
 /* The heat of the day of a time. */
 static Status warm(NodeProbe *p, double unix_s)
 {
-    const double east_s = day_s * p->place.lon_rad / (2 * pi_rad), begin_s = floor((unix_s + east_s) / day_s) * day_s - east_s;
+    const double east_s = day_s * p->place.lon_rad / (2 * pi_rad);
+    const double begin_s = floor((unix_s + east_s) / day_s) * day_s - east_s;
     HeatConfig   config = heat_default_config();
     if (p->begin_s == begin_s) return STATUS_OK;
     keep_course(p);
@@ -135,7 +136,8 @@ static Status begin(Snapshot *snapshot, SnapshotEntity *entity, NodeProbe *p, do
     model_pose(pose, model, NULL);
     const double t_s = unix_s - p->begin_s;
     *entity = (SnapshotEntity){.id = {1, 1, 1}, .type = {.kind = 1, .domain = 1}, .model = p->model, .first_patch = -1};
-    entity->drives = (EntityDrives){.since_s = t_s, .engine = (float)drive[1], .speed_mps = (float)drive[2], .alive = 1};
+    entity->drives = (EntityDrives){.since_s = t_s, .engine = (float)drive[1], .speed_mps = (float)drive[2],
+                                    .alive = 1};
     ecef_from_enu(entity->p_ecef, &p->world.frame, origin_enu);
     m3_mul(entity->r_ecef_from_body, p->world.frame.r_ecef_from_enu, r_enu_from_body);
     for (int k = 0; k < 3; k++) entity->v_ecef_mps[k] = drive[2] * entity->r_ecef_from_body[3 * k];
@@ -149,7 +151,8 @@ const char *heat_node_probe_row(void *state, const ProbeValue *in, ProbeValue *o
     static const double up[3] = {0, 0, 1}, origin_enu[3] = {0, 0, 0};
     NodeProbe     *p = state;
     const double   unix_s = in[0].number, heading_deg = isnan(in[3].number) ? 270 : in[3].number;
-    const double   drive[3] = {heading_deg * rad_per_deg, isnan(in[4].number) ? 0 : in[4].number, isnan(in[5].number) ? 0 : in[5].number};
+    const double   drive[3] = {heading_deg * rad_per_deg, isnan(in[4].number) ? 0 : in[4].number,
+        isnan(in[5].number) ? 0 : in[5].number};
     Snapshot       snapshot;
     SnapshotEntity entity;
     HeatScene     *scene;
@@ -166,7 +169,8 @@ const char *heat_node_probe_row(void *state, const ProbeValue *in, ProbeValue *o
         world_heat_at(&scene, &p->world, NULL, unix_s, p->arena) != STATUS_OK)
         return "out of memory";
     if (entity.first_patch < 0) return "this model has no temperatures";
-    if (!part_k(out, p, &snapshot, in[2].text)) return "the model has no part of this name; `pitviper model info` lists them";
+    if (!part_k(out, p, &snapshot, in[2].text))
+        return "the model has no part of this name; `pitviper model info` lists them";
     out[3].number = world_air_k(&p->world, unix_s);
     out[4].number = heat_scene_ground_k(&lifted_k, scene, SURFACE_GRASS, origin_enu, up, 1);
     return NULL;

@@ -15,7 +15,7 @@ static const char help[] =
     "A vehicle's temperatures over a clear day. It stands on level grass, its engine stopped unless --drive is given;\n"
     "the air is 288 K on average with a range of 10 K. Hours are of local mean solar time.\n"
     "\n"
-    "NAME: a built-in model (tank, truck, helicopter ...). FILE: as `pitviper model show` takes it. Writes into FOLDER:\n"
+    "NAME: a built-in model (tank, truck, helicopter ...). FILE: as `pitviper model show` takes it. Writes to FOLDER:\n"
     "  nodes.csv          a row each ten minutes, K: air, ground, mean of the vehicle over the ground (dt_k), engine,\n"
     "                     cabin, and each patch of its skin: its part and the side it faces\n"
     "  nodes.svg          a plot of the means of its parts, with the times at which dt_k changes sign\n"
@@ -62,8 +62,8 @@ static bool read_day(double *begin_s, const char *day, double lon_deg)
 static bool read_drive(HeatOptions *o, const char *text)
 {
     int h0, m0, h1, m1, used = 0;
-    if (!text || sscanf(text, "%2d:%2d-%2d:%2d%n", &h0, &m0, &h1, &m1, &used) != 4 || text[used] || used > 11 || h0 < 0 ||
-        m0 < 0 || m0 > 59 || h1 < 0 || m1 < 0 || m1 > 59)
+    if (!text || sscanf(text, "%2d:%2d-%2d:%2d%n", &h0, &m0, &h1, &m1, &used) != 4 || text[used] || used > 11 ||
+        h0 < 0 || m0 < 0 || m0 > 59 || h1 < 0 || m1 < 0 || m1 > 59)
         return false;
     o->course.drive_from_s = 3600 * h0 + 60 * m0;
     o->course.drive_to_s   = 3600 * h1 + 60 * m1;
@@ -91,14 +91,16 @@ static int parse(HeatOptions *o, int argc, char **argv)
             if (!value || !*value) return refuse(option, "needs a folder");
             o->out = value;
         } else if (strcmp(option, "--at") == 0) {
-            if (!in_range(&o->lat_deg, value, -90, 90) || !in_range(&o->lon_deg, i + 2 < argc ? argv[i + 2] : NULL, -180, 180))
+            const char *second = i + 2 < argc ? argv[i + 2] : NULL;
+            if (!in_range(&o->lat_deg, value, -90, 90) || !in_range(&o->lon_deg, second, -180, 180))
                 return refuse(option, "needs a latitude in -90 .. 90 and a longitude in -180 .. 180 deg");
             i++;
         } else if (strcmp(option, "--day") == 0) {
             if (!read_day(&o->begin_s, value, 0)) return refuse(option, "needs a day in 1900 .. 2100, as 2026-06-21");
             o->day = value;
         } else if (strcmp(option, "--drive") == 0) {
-            if (!read_drive(o, value)) return refuse(option, "needs hours of the day, the earlier first, as 06:00-07:30");
+            if (!read_drive(o, value))
+                return refuse(option, "needs hours of the day, the earlier first, as 06:00-07:30");
         } else if (strcmp(option, "--heading") == 0) {
             if (!in_range(&heading_deg, value, -360, 360)) return refuse(option, "needs an angle in -360 .. 360 deg");
         } else if (strcmp(option, "--step") == 0) {
@@ -110,7 +112,8 @@ static int parse(HeatOptions *o, int argc, char **argv)
         i++;
     }
     if (!o->name) return refuse("heat", "needs a model: a built-in name, or a file");
-    if (!read_day(&o->begin_s, o->day, o->lon_deg)) return refuse("--day", "needs a day in 1900 .. 2100, as 2026-06-21");
+    if (!read_day(&o->begin_s, o->day, o->lon_deg)) 
+        return refuse("--day", "needs a day in 1900 .. 2100, as 2026-06-21");
     o->course.heading_rad = heading_deg * rad_per_deg;
     return 0;
 }
@@ -159,12 +162,14 @@ static Status write_text_file(const char *path, const HeatDay *day, const char *
     return STATUS_IO;
 }
 
-static Status write_files(const HeatDay *day, const HeatImages *images, const ModelStage *stage, const HeatOptions *o, Path path[])
+static Status write_files(const HeatDay *day, const HeatImages *images, const ModelStage *stage, const HeatOptions *o,
+                          Path path[])
 {
     char about[256], drive[64] = "engine stopped";
     if (*o->drive) snprintf(drive, sizeof drive, "drives %s", o->drive);
-    snprintf(about, sizeof about, "clear day %s at %g %c %g %c, nose to %g deg, %s; level grass", o->day, fabs(o->lat_deg),
-             o->lat_deg < 0 ? 'S' : 'N', fabs(o->lon_deg), o->lon_deg < 0 ? 'W' : 'E', o->course.heading_rad / rad_per_deg, drive);
+    snprintf(about, sizeof about, "clear day %s at %g %c %g %c, nose to %g deg, %s; level grass", o->day,
+             fabs(o->lat_deg), o->lat_deg < 0 ? 'S' : 'N', fabs(o->lon_deg), o->lon_deg < 0 ? 'W' : 'E',
+             o->course.heading_rad / rad_per_deg, drive);
     Status status = write_text_file(path[file_csv], day, NULL);
     if (status == STATUS_OK) status = write_text_file(path[file_svg], day, about);
     const char *const sheets[2] = {path[file_mwir], path[file_lwir]};

@@ -35,7 +35,8 @@ static const char *side_of(const Patch *patch, const NodePose *pose)
 static void plain(char *text)
 {
     for (char *c = text; *c; c++)
-        if (!((*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') || *c == '.' || *c == '-'))
+        if (!((*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') || *c == '.' ||
+              *c == '-'))
             *c = '_';
 }
 
@@ -131,7 +132,8 @@ static Status ground_k_then(double *ground_k, const ModelStage *stage, double un
     const SurfaceClass surface = landscape_surface(&stage->landscape, p_enu[0], p_enu[1]);
     const Status       status = world_heat_at(&scene, &stage->world, NULL, unix_s, stage->arena);
     if (status != STATUS_OK) return status;
-    *ground_k = heat_scene_ground_k(&lifted_k, scene, (int)(surface == SURFACE_NONE ? SURFACE_GRASS : surface), p_enu, up, 1);
+    const int known = (int)(surface == SURFACE_NONE ? SURFACE_GRASS : surface);
+    *ground_k = heat_scene_ground_k(&lifted_k, scene, known, p_enu, up, 1);
     return STATUS_OK;
 }
 
@@ -160,7 +162,8 @@ static Status note(HeatDay *day, const Course *c, int index)
 
 static Status march(HeatDay *day, HeatImages *images, Course *c)
 {
-    const long long steps = llround(day_s / c->config->step_s), steps_a_row = llround(heat_day_row_s / c->config->step_s);
+    const long long steps = llround(day_s / c->config->step_s);
+    const long long steps_a_row = llround(heat_day_row_s / c->config->step_s);
     char            text[64];
     Status          status = STATUS_OK;
     for (long long i = 0; i <= steps && status == STATUS_OK; i++) {
@@ -182,7 +185,8 @@ static Status march(HeatDay *day, HeatImages *images, Course *c)
         }
         if (status == STATUS_OK) status = note(day, c, row);
         if (status == STATUS_OK && seconds % heat_day_image_s == 0 && seconds < day_s)
-            status = heat_images_draw(images, c->stage, &c->snapshot, seconds / heat_day_image_s, c->stage->begin_s + t_s);
+            status = heat_images_draw(images, c->stage, &c->snapshot, seconds / heat_day_image_s,
+                                      c->stage->begin_s + t_s);
     }
     log_status(NULL);
     return status;
@@ -206,7 +210,7 @@ Status heat_day_run(HeatDay *day, HeatImages *images, ModelStage *stage, const H
     if (status == STATUS_OK) status = march(day, images, &c);
     if (status == STATUS_OK) {
         const uint64_t failed = vehicle_heat_counters(world_vehicles_heat(c.vehicles))->failed;
-        if (failed > 0) log_warn("heat: %llu steps were given up by the solver: temperatures stood still in them; try another --step",
+        if (failed > 0) log_warn("heat: the solver gave up %llu steps: temperatures stood still in them; try another --step",
                                  (unsigned long long)failed);
         find_crossings(day);
     }

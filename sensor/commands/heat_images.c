@@ -10,14 +10,16 @@
 
 #include <stdlib.h>
 
-enum { columns = 4, rows = heat_day_images / columns, tile_width = 360, tile_height = 270, tile = tile_width * tile_height,
-       foot = letters_high + 14, width = columns * tile_width, height = rows * tile_height + foot };
+enum { columns = 4, rows = heat_day_images / columns, tile_width = 360, tile_height = 270,
+      tile = tile_width * tile_height, foot = letters_high + 14, width = columns * tile_width, height = rows * tile_height + foot };
 static const double view_down_deg = 12, least_away_m = 60;
 
 Status heat_images_open(HeatImages *images)
 {
     for (int b = 0; b < 2; b++)
-        if (!(images->radiance[b] = calloc((size_t)heat_day_images * tile, sizeof *images->radiance[b]))) return STATUS_NO_MEMORY;
+        if (!(images->radiance[b] = calloc((size_t)heat_day_images * tile,
+                                          sizeof *images->radiance[b])))
+            return STATUS_NO_MEMORY;
     return STATUS_OK;
 }
 
@@ -33,7 +35,8 @@ static View view_of(const ModelStage *stage)
     const Model *model = catalog_model(stage->catalog, stage->model);
     double       reach_m = 0.5, aim[3], down_rad = view_down_deg * rad_per_deg;
     for (int k = 0; k < 4; k++)
-        reach_m = fmax(reach_m, hypot(k & 1 ? model->box_high[0] : model->box_low[0], k & 2 ? model->box_high[1] : model->box_low[1]));
+        reach_m = fmax(reach_m, hypot(k & 1 ? model->box_high[0] : model->box_low[0],
+                                      k & 2 ? model->box_high[1] : model->box_low[1]));
     const double tall_m = fmax(-model->box_low[2], 0.01);
     const double half_m = 1.05 * fmax(reach_m, 0.75 * tall_m * tile_width / tile_height);
     const double away_m = fmax(least_away_m, 3 * 2 * half_m);

@@ -1,9 +1,9 @@
-/* sensor/commands/heat_plot.c: a vehicle's day as a plot: SVG, temperatures of its parts, air and ground by the hour. */
+/* sensor/commands/heat_plot.c: a vehicle's day as a plot: SVG, temperatures of its parts, air, ground, by the hour. */
 #include "sensor/commands/heat_day.h"
 
 #include "sensor/publish/html.h"
 
-enum { width_px = 900, height_px = 470, left_px = 58, right_px = 650, top_px = 66, bottom_px = 412, most_parts = 10 };
+enum { width_px = 900, height_px = 470, left_px = 58, right_px = 650, top_px = 74, bottom_px = 416, most_parts = 10 };
 
 static const char style[] =
     "<style>.pvh text{font:12px system-ui,'DejaVu Sans',sans-serif}.pvh text.h{font-weight:600;font-size:14px}"
@@ -22,7 +22,10 @@ typedef struct Scale {
 
 static double x_of(double hour) { return left_px + (right_px - left_px) * hour / 24; }
 
-static double y_of(const Scale *s, double k) { return bottom_px - (bottom_px - top_px) * (k - s->low_k) / (s->high_k - s->low_k); }
+static double y_of(const Scale *s, double k)
+{
+    return bottom_px - (bottom_px - top_px) * (k - s->low_k) / (s->high_k - s->low_k);
+}
 
 static void find_range(Curve *c)
 {
@@ -88,10 +91,11 @@ static void draw_axes(FILE *to, const Scale *s)
                     "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%.1f\" y=\"%d\">%02d:00</text>\n",
                 x_of(hour), top_px, x_of(hour), bottom_px, x_of(hour), bottom_px + 17, hour);
     fprintf(to, "<path fill=\"none\" stroke=\"#777\" d=\"M%d %dV%dH%d\"/>\n", left_px, top_px, bottom_px, right_px);
-    fprintf(to, "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%d\" y=\"%d\">local mean solar time, h</text>\n",
+    fprintf(to, "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" x=\"%d\" y=\"%d\">"
+                "local mean solar time, h</text>\n",
             (left_px + right_px) / 2, bottom_px + 38);
-    fprintf(to, "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" transform=\"translate(16 %d) rotate(-90)\">temperature, "
-                "K</text>\n", (top_px + bottom_px) / 2);
+    fprintf(to, "<text class=\"t\" fill=\"#222\" text-anchor=\"middle\" transform=\"translate(16 %d) rotate(-90)\">"
+                "temperature, K</text>\n", (top_px + bottom_px) / 2);
 }
 
 /* A curve, and its row of the legend. */
@@ -99,25 +103,31 @@ static void draw_curve(FILE *to, const Curve *c, const Scale *s, int row)
 {
     const char  *dashes = c->dashed ? " stroke-dasharray=\"6 4\"" : "";
     const double y = top_px + 22 * row + 20;
-    fprintf(to, "<polyline fill=\"none\" stroke-width=\"2\" stroke-linejoin=\"round\"%s stroke=\"%s\" points=\"", dashes, c->colour);
+    fprintf(to, "<polyline fill=\"none\" stroke-width=\"2\" stroke-linejoin=\"round\"%s stroke=\"%s\" points=\"",
+        dashes, c->colour);
     for (int r = 0; r < heat_day_rows; r++)
         fprintf(to, "%s%.1f,%.1f", r ? " " : "", x_of(r * heat_day_row_s / 3600.0), y_of(s, c->k[r]));
-    fprintf(to, "\"/>\n<path fill=\"none\" stroke-width=\"2\"%s stroke=\"%s\" d=\"M%d %.0fh22\"/>", dashes, c->colour, right_px + 18, y);
+    fprintf(to, "\"/>\n<path fill=\"none\" stroke-width=\"2\"%s stroke=\"%s\" d=\"M%d %.0fh22\"/>", dashes, c->colour,
+        right_px + 18, y);
     fprintf(to, "<text class=\"t\" fill=\"#222\" x=\"%d\" y=\"%.0f\">", right_px + 46, y + 4);
     html_text(to, "%.20s", c->name);
-    fprintf(to, "</text><text class=\"d\" fill=\"#666\" text-anchor=\"end\" x=\"%d\" y=\"%.0f\">%.1f &#8211; %.1f</text>\n",
+    fprintf(to, "</text><text class=\"d\" fill=\"#666\" text-anchor=\"end\" x=\"%d\" y=\"%.0f\">"
+                "%.1f &#8211; %.1f</text>\n",
             width_px - 12, y + 4, c->low_k, c->high_k);
 }
 
 /* When the vehicle is as warm as the ground. */
 static void draw_crossings(FILE *to, const HeatDay *day, int row)
 {
+    bool raised = false;
     for (int i = 0; i < day->crossings; i++) {
         const double x = x_of(day->crossing_h[i]);
         const int    minutes = (int)(60 * day->crossing_h[i] + 0.5);
+        const bool   close = i > 0 && x - x_of(day->crossing_h[i - 1]) < 36;
+        raised = close && !raised; /* so that its label stands clear of the one before */
         fprintf(to, "<line stroke=\"#c0392b\" stroke-dasharray=\"2 3\" x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%d\"/>"
                     "<text fill=\"#c0392b\" text-anchor=\"middle\" x=\"%.1f\" y=\"%d\">%02d:%02d</text>\n",
-                x, top_px, x, bottom_px, x, top_px - 5, minutes / 60, minutes % 60);
+                x, top_px, x, bottom_px, x, top_px - (raised ? 17 : 5), minutes / 60, minutes % 60);
     }
     if (day->crossings == 0) return;
     const int y = top_px + 22 * row + 20;
@@ -141,18 +151,19 @@ void heat_day_plot(FILE *to, const HeatDay *day, const char *about)
     find_range(ground);
     const Scale s = scale_of(curve, count);
 
-    fprintf(to, "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvh\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
-                "role=\"img\">%s<title>", width_px, height_px, width_px, height_px, style);
+    fprintf(to, "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvh\" width=\"%d\" height=\"%d\" "
+                "viewBox=\"0 0 %d %d\" role=\"img\">%s<title>", width_px, height_px, width_px, height_px, style);
     html_text(to, "temperatures of %s over a day", day->model);
-    fprintf(to, "</title>\n<rect class=\"bg\" fill=\"#fff\" width=\"%d\" height=\"%d\"/>\n<text class=\"h\" fill=\"#222\" "
-                "font-weight=\"600\" x=\"14\" y=\"20\">", width_px, height_px);
+    fprintf(to, "</title>\n<rect class=\"bg\" fill=\"#fff\" width=\"%d\" height=\"%d\"/>\n"
+                "<text class=\"h\" fill=\"#222\" font-weight=\"600\" x=\"14\" y=\"20\">", width_px, height_px);
     html_text(to, "%.60s: temperatures of its parts, means by area", day->model);
-    fputs("</text><text class=\"d\" fill=\"#666\" x=\"14\" y=\"40\">", to);
+    fputs("</text><text class=\"d\" fill=\"#666\" x=\"14\" y=\"38\">", to);
     html_text(to, "%s", about);
     fputs("</text>\n", to);
     draw_axes(to, &s);
     for (int i = 0; i < count; i++) draw_curve(to, &curve[i], &s, i);
     draw_crossings(to, day, count);
-    fprintf(to, "<text class=\"d\" fill=\"#666\" text-anchor=\"end\" x=\"%d\" y=\"%d\">coldest &#8211; warmest, K</text>\n</svg>\n",
+    fprintf(to, "<text class=\"d\" fill=\"#666\" text-anchor=\"end\" x=\"%d\" y=\"%d\">"
+                "coldest &#8211; warmest, K</text>\n</svg>\n",
             width_px - 12, top_px + 2);
 }

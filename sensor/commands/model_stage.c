@@ -1,8 +1,8 @@
 /* sensor/commands/model_stage.c: see model_stage.h. */
 #include "sensor/commands/model_stage.h"
 
-/* The position nearest to the origin around which the surface class is uniform, and the wanted one; the origin if there is
- * none. */
+/* The position nearest to the origin around which the surface class is uniform, and the wanted one; the origin if
+ * there is none. */
 static void find_place(ModelStage *stage, SurfaceClass wanted, double about_m)
 {
     for (int k = 0; k < 4000; k++) {

@@ -5,7 +5,8 @@
 # cell FILE HOUR COLUMN
 cell() {
     awk -F, -v hour="$2" -v name="$3" \
-        'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i } NR > 1 && $1 + 0 == hour + 0 && c { print $c }' "$1"
+        'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i }
+         NR > 1 && $1 + 0 == hour + 0 && c { print $c }' "$1"
 }
 less() { awk -v a="$1" -v b="$2" 'BEGIN { print a - b }'; }
 
@@ -20,7 +21,7 @@ check "each row has all cells" [ "$(awk -F, '{ print NF }' "$still" | sort -u | 
 crossings=$(awk -F, 'NR > 2 && ($4 > 0) != (was > 0) { n++ } { was = $4 } END { print n + 0 }' "$still")
 check "twice as warm as the ground: $crossings" [ "$crossings" = 2 ]
 check "the summary says when" said 'crossover of vehicle and ground: 0[4-7]:[0-9]+, 1[4-7]:[0-9]+$'
-check "the plot marks them" [ "$(grep -oE '>[01][0-9]:[0-9]{2}</text>' <(grep c0392b "$tmp/still/nodes.svg") | wc -l)" = 2 ]
+check "the plot marks them" [ "$(grep -c 'c0392b.*>[01][0-9]:[0-9][0-9]</text>' "$tmp/still/nodes.svg")" = 2 ]
 check "warmer than the ground at night" is "$(cell "$still" 3 dt_k)" '>' 1
 check "colder in the morning" is "$(cell "$still" 9 dt_k)" '<' -1
 run heat truck -o "$tmp/truck" --heading 0 --step 600
@@ -30,7 +31,8 @@ sides=$(less "$(cell "$tmp/truck/nodes.csv" 8 canvas_right)" "$(cell "$tmp/truck
 check "canvas at 8 h, east over west: $sides K" is "$sides" '>' 5
 sides=$(less "$(cell "$tmp/truck/nodes.csv" 16 canvas_right)" "$(cell "$tmp/truck/nodes.csv" 16 canvas_left)")
 check "and at 16 h: $sides K" is "$sides" '<' -5
-check "all within 260 .. 340 K" awk -F, 'NR > 1 { for (i = 2; i <= NF; i++) if (i != 4 && $i != "" && !($i > 260 && $i < 340)) exit 1 }' "$still"
+check "all within 260 .. 340 K" awk -F, \
+    'NR > 1 { for (i = 2; i <= NF; i++) if (i != 4 && $i != "" && !($i > 260 && $i < 340)) exit 1 }' "$still"
 days=$(less "$(cell "$still" 24 dt_k)" "$(cell "$still" 0 dt_k)")
 check "a day later much the same: $days K" is "${days#-}" '<' 0.5
 if command -v xmllint >/dev/null; then check "the plot is XML" xmllint --noout "$tmp/still/nodes.svg"; fi
