@@ -210,7 +210,8 @@ Status heat_day_run(HeatDay *day, HeatImages *images, ModelStage *stage, const H
     if (status == STATUS_OK) status = march(day, images, &c);
     if (status == STATUS_OK) {
         const uint64_t failed = vehicle_heat_counters(world_vehicles_heat(c.vehicles))->failed;
-        if (failed > 0) log_warn("heat: the solver gave up %llu steps: temperatures stood still in them; try another --step",
+        if (failed > 0)
+            log_warn("heat: the solver gave up %llu steps: temperatures stood still in them; try another --step",
                                  (unsigned long long)failed);
         find_crossings(day);
     }

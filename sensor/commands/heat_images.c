@@ -11,7 +11,8 @@
 #include <stdlib.h>
 
 enum { columns = 4, rows = heat_day_images / columns, tile_width = 360, tile_height = 270,
-      tile = tile_width * tile_height, foot = letters_high + 14, width = columns * tile_width, height = rows * tile_height + foot };
+      tile = tile_width * tile_height, foot = letters_high + 14,
+      width = columns * tile_width, height = rows * tile_height + foot };
 static const double view_down_deg = 12, least_away_m = 60;
 
 Status heat_images_open(HeatImages *images)

@@ -1,6 +1,5 @@
 /* tests/render/test_probe_heat_node.c: `probe heat-node`, through the CSV that a user gives: its rows stand alone,
- * its ground
- * is that of `probe heat-ground`, sun and engine warm what they should. labels: slow */
+ * its ground is that of `probe heat-ground`, sun and engine warm what they should. labels: slow */
 #include "tests/check.h"
 
 #include "render/probe.h"
@@ -11,8 +10,8 @@ enum { most_rows = 16, most_octets = 1 << 14 };
 static int asked(double value[most_rows][8], char reason[most_rows][96], char *name, int results, const char *csv)
 {
     static char text[most_octets];
-    char        day[] = "clear", lat[] = "48", lon[] = "11", *argv[] = {name, day, lat, lon, NULL}, *cell[32], *line,
-        *rest = text;
+    char        day[] = "clear", lat[] = "48", lon[] = "11", *argv[] = {name, day, lat, lon, NULL};
+    char       *cell[32], *line, *rest = text;
     const Probe *probe = NULL;
     for (int i = 0; i < render_probe_count; i++)
         if (strcmp(render_probes[i].name, name) == 0) probe = &render_probes[i];
