@@ -5,6 +5,7 @@
 #include "sensor/bench/sensor/suites.h"
 #include "sensor/commands/exercise.h"
 #include "sensor/commands/frame.h"
+#include "sensor/commands/heat.h"
 #include "sensor/commands/inspect.h"
 #include "sensor/node/live.h"
 #include "sensor/commands/model.h"
@@ -109,6 +110,7 @@ static const struct Command {
     {"exercise", exercise_command, "generate an exercise from a scenario: record it or send it", true},
     {"record", record_command, "record an exercise from the network", false},
     {"model", model_command, "list models; describe or draw one, built in or from a file", true},
+    {"heat", heat_command, "a vehicle's temperatures over a clear day: table, plot and thermal images", true},
     {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true},
     {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false},
     {"bench", run_bench, "benchmark this build on this machine: times with their errors", true},

@@ -192,5 +192,12 @@ const Probe render_probes[] = {
      .in = "unix_s,surface$,slope_deg?,aspect_deg?,shade?,depth_m?",
      .out = "temp_k,air_temp_k,absorbed_w_m2,direct_w_m2,diffuse_w_m2,longwave_w_m2,film_w_m2k,latent_w_m2",
      .open = heat_probe_open, .row = heat_probe_row, .close = heat_probe_close},
+    {.name = "heat-node", .arguments = PROBE_WEATHER_ARGUMENTS,
+     .help = "temperature of a part of a vehicle on level grass, mean by area and range over its patches; each row is an "
+             "entity that begins then: it stood a day with its engine stopped, and for the last hour did what the row says; "
+             "part: as `model info` lists them, empty: all; heading: clockwise from north (270); engine: share of full power "
+             "(0); weather as of `weather`",
+     .in = "unix_s,model$,part$?,heading_deg?,engine?,speed_mps?", .out = "temp_k,low_k,high_k,air_k,ground_k",
+     .open = heat_node_probe_open, .row = heat_node_probe_row, .close = heat_node_probe_close},
 };
 const int render_probe_count = sizeof render_probes / sizeof *render_probes;

@@ -8,4 +8,8 @@ Status      heat_probe_open(void **state, int argc, char **argv);
 const char *heat_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
 void        heat_probe_close(void *state);
 
+Status      heat_node_probe_open(void **state, int argc, char **argv);
+const char *heat_node_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
+void        heat_node_probe_close(void *state);
+
 #endif

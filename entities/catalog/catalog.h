@@ -23,6 +23,9 @@ typedef struct Catalog Catalog;
  * A malformed row: STATUS_BAD_VALUE, file and line logged. sag_m: as
  * parametric_build. */
 Status catalog_open(Catalog **out, const char *path, double sag_m);
+/* One model for all entity types. name: a built-in name, or a file relative to the current folder. Rows of the user's own
+ * catalog would still precede it. */
+Status catalog_open_one(Catalog **out, int *model, const char *name, double sag_m);
 void   catalog_close(Catalog *catalog);
 /* One model for each shape and size; those of one shape have one name. */
 int    catalog_model_count(const Catalog *catalog);

@@ -2,17 +2,16 @@
  * image. */
 #include "sensor/commands/model.h"
 
-#include "entities/import/model_import.h"
 #include "render/frame/render.h"
 #include "render/scene/upright.h"
 #include "sensor/commands/letters.h"
+#include "sensor/commands/model_stage.h"
 #include "sensor/detector/colour.h"
 #include "sensor/detector/level.h"
 #include "sensor/detector/quantise.h"
 #include "sensor/publish/image_file.h"
 
 #include <stdlib.h>
-#include <unistd.h>
 
 enum { columns = 4, rows = 2, tile_width = 360, tile_height = 270, width = columns * tile_width,
        height = rows * tile_height };
@@ -50,120 +49,10 @@ static void draw_scale(uint8_t *rgb, double px_per_m)
     write_text(rgb, 12, y - 20, text);
 }
 
-/* ---- the scene ------------------------------------------------------------------------------- */
-
-typedef struct Stage {
-    Landscape landscape;
-    Catalog  *catalog;
-    World     world;
-    Pool     *pool;
-    Arena    *arena, *air_arena; /* of one side; of all sides */
-    Air       air;
-    int       model;
-    double    unix_s, place_m[2]; /* east and north of the origin */
-} Stage;
-
-/* A catalog with this model for all entity types. */
-static Status open_catalog(Stage *stage, const char *name, double sag_m)
-{
-    char   path[temp_path_size];
-    char  *real = model_is_path(name) ? realpath(name, NULL) : NULL;
-    Status status = STATUS_IO;
-    if (!temp_file(path, ".csv")) {
-        free(real);
-        return STATUS_IO;
-    }
-    FILE *file = fopen(path, "w");
-    if (file) {
-        fputs("type,model,origin\n*,\"", file);
-        for (const char *c = real ? real : name; *c; c++) fputs(*c == '"' ? "\"\"" : (const char[]){*c, 0}, file);
-        fputs("\",base\n", file);
-        if (fclose(file) == 0) status = catalog_open(&stage->catalog, path, sag_m);
-    } else {
-        log_error("model: cannot write %s", path);
-    }
-    unlink(path);
-    free(real);
-    if (status == STATUS_OK) stage->model = catalog_find(stage->catalog, (DisEntityType){.kind = 1}, NULL, NULL);
-    return status;
-}
-
-/* The position nearest to the origin around which the surface class is uniform; the origin if there is none. */
-static void find_place(Stage *stage, double about_m)
-{
-    for (int k = 0; k < 4000; k++) {
-        const double turn = 2.4 * k, away = 2 * sqrt(k) * 5, x = away * cos(turn), y = away * sin(turn);
-        const SurfaceClass here = landscape_surface(&stage->landscape, x, y);
-        bool               same = here != SURFACE_NONE;
-        for (int i = 0; i < 48 && same; i++) {
-            const double r = about_m * (1 + i / 16) / 3, a = i * pi_rad / 8;
-            same = landscape_surface(&stage->landscape, x + r * cos(a), y + r * sin(a)) == here;
-        }
-        if (!same) continue;
-        stage->place_m[0] = x, stage->place_m[1] = y;
-        return;
-    }
-}
-
-/* Ground as warm as on a clear day. */
-static Status warm(Stage *stage)
-{
-    HeatConfig heat = heat_default_config();
-    heat.unix_s = stage->unix_s;
-    return world_warm_clear(&stage->world, &heat, 0, stage->pool);
-}
-
-static Status open_stage(Stage *stage, const char *name, double sag_m)
-{
-    const Geodetic  origin = {.lat_rad = 48 * rad_per_deg, .lon_rad = 11 * rad_per_deg};
-    LandscapeConfig config = landscape_default_config();
-    LocalFrame      frame;
-    config.relief_m = 0;
-    config.half_width_m = 800, config.horizon_m = 4000;
-    Status status = open_catalog(stage, name, sag_m);
-    if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = landscape_create(&stage->landscape, &config, &frame, NULL, 0, NULL, 0);
-    if (status == STATUS_OK) status = world_open(&stage->world, stage->catalog, &stage->landscape, &frame, "avx2");
-    if (status == STATUS_OK) status = atmosphere_open(&stage->world.atmosphere, "us1976");
-    if (status == STATUS_OK) status = pool_create(&stage->pool, thread_processors());
-    if (status == STATUS_OK && (!(stage->arena = arena_create()) || !(stage->air_arena = arena_create())))
-        status = STATUS_NO_MEMORY;
-    if (status == STATUS_OK) find_place(stage, fmin(6 * catalog_model(stage->catalog, stage->model)->radius_m, 120));
-    if (status == STATUS_OK && !text_to_unix_s(&stage->unix_s, "2026-06-21T09:00:00Z")) status = STATUS_BAD_VALUE;
-    if (status == STATUS_OK) status = warm(stage);
-    return status;
-}
-
-static void close_stage(Stage *stage)
-{
-    arena_destroy(stage->arena);
-    arena_destroy(stage->air_arena);
-    pool_destroy(stage->pool);
-    world_close(&stage->world);
-    landscape_destroy(&stage->landscape);
-    catalog_close(stage->catalog);
-}
-
-/* The model on the ground, its nose turned by turn_rad from east towards north. */
-static Status put_model(Snapshot *out, SnapshotEntity *entity, const Stage *stage, double turn_rad)
-{
-    const Model      *model = catalog_model(stage->catalog, stage->model);
-    const LocalFrame *frame = &stage->world.frame;
-    const double      c = cos(turn_rad), s = sin(turn_rad), r_enu_from_body[9] = {c, s, 0, s, -c, 0, 0, 0, -1};
-    const double     *at = stage->place_m;
-    const double      p_enu[3] = {at[0], at[1], elevation_height(&stage->landscape.elevation, at[0], at[1], NULL)};
-    *entity = (SnapshotEntity){.id = {1, 1, 1}, .type = {.kind = 1, .domain = 1}, .model = stage->model};
-    ecef_from_enu(entity->p_ecef, frame, p_enu);
-    m3_mul(entity->r_ecef_from_body, frame->r_ecef_from_enu, r_enu_from_body);
-    NodePose *pose = arena_alloc(stage->arena, (size_t)model->node_count, sizeof *pose);
-    if (!pose) return STATUS_NO_MEMORY;
-    model_pose(pose, model, NULL);
-    *out = (Snapshot){.count = 1, .node_count = model->node_count, .entity = entity, .node = pose};
-    return STATUS_OK;
-}
+/* ---- the view -------------------------------------------------------------------------------- */
 
 /* View from the south, slightly above, with the whole model in the image; px_per_m: scale at the model. */
-static View view_of(double *px_per_m, const Stage *stage)
+static View view_of(double *px_per_m, const ModelStage *stage)
 {
     const Model *model = catalog_model(stage->catalog, stage->model);
     double       reach_m = 0;
@@ -187,27 +76,8 @@ static View view_of(double *px_per_m, const Stage *stage)
 
 /* ---- the image ----------------------------------------------------------------------------- */
 
-/* Sun, atmosphere and view are the same for all sides: only the model turns. */
-static Status light(Stage *stage, const RenderRequest *request)
-{
-    const World *world = &stage->world;
-    Weather      weather;
-    HeatScene   *heat = NULL;
-    Sun          sun;
-    weather_at(&weather, world->course, stage->unix_s);
-    Status status = sun_at(&sun, stage->unix_s, &world->frame.origin, weather.pressure_mbar,
-                                 weather.air_temp_k - 273.15, NAN);
-    if (status == STATUS_OK) status = world_heat_at(&heat, world, NULL, stage->unix_s, stage->air_arena);
-    if (status != STATUS_OK) return status;
-    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir, 0};
-    const AirEye    eye = {request->view.p_enu[2], render_air_bands(request->bands, request->optical), &request->view};
-    status = air_at(&stage->air, &source, &weather, &sun, &eye, stage->pool, stage->air_arena);
-    stage->air.heat = heat;
-    return status;
-}
-
 /* Renders one side into its tile of the three planes. */
-static Status draw_side(float *const plane[3], double white[3], double *px_per_m, Stage *stage, int side)
+static Status draw_side(float *const plane[3], double white[3], double *px_per_m, ModelStage *stage, int side)
 {
     Snapshot       snapshot;
     SnapshotEntity entity;
@@ -222,8 +92,9 @@ static Status draw_side(float *const plane[3], double white[3], double *px_per_m
                                    .target_samples = 48,
                                    .hidden_entity = -1};
     /* first nose on, then clockwise from above: right side, tail ... */
-    Status status = put_model(&snapshot, &entity, stage, -0.5 * pi_rad - side * 0.25 * pi_rad);
-    if (status == STATUS_OK && side == 0) status = light(stage, &request);
+    Status status = model_stage_put(&snapshot, &entity, stage, -0.5 * pi_rad - side * 0.25 * pi_rad);
+    /* sun, atmosphere and view are the same for all sides: only the model turns */
+    if (status == STATUS_OK && side == 0) status = model_stage_light(stage, &request, stage->begin_s);
     if (status == STATUS_OK)
         status = render(&picture, &stage->world, &snapshot, &request, &stage->air, stage->pool, stage->arena);
     if (status != STATUS_OK) return status;
@@ -252,10 +123,19 @@ static void write_labels(uint8_t *rgb, const Model *model, double px_per_m)
     write_text(rgb, width - 12 * (int)strlen(text) - 8, height - 24, text);
 }
 
+/* A morning in June. */
+static Status open_stage(ModelStage *stage, const char *name, double sag_m)
+{
+    const Geodetic   origin = {.lat_rad = 48 * rad_per_deg, .lon_rad = 11 * rad_per_deg};
+    ModelStageConfig config = {.name = name, .sag_m = sag_m, .origin = origin, .surface = SURFACE_NONE};
+    if (!text_to_unix_s(&config.begin_s, "2026-06-21T09:00:00Z")) return STATUS_BAD_VALUE;
+    return model_stage_open(stage, &config);
+}
+
 Status model_show(const char *name, double sag_m, const char *out)
 {
     const size_t count = (size_t)width * height;
-    Stage        stage = {0};
+    ModelStage   stage = {0};
     double       white[3] = {0}, px_per_m = 1;
     float       *values = calloc(3 * count, sizeof *values);
     uint8_t     *rgb = malloc(3 * count);
@@ -284,7 +164,7 @@ Status model_show(const char *name, double sag_m, const char *out)
                    fmax(model->box_high[2], 0) - model->box_low[2]);
     }
     if (status == STATUS_NO_MEMORY) log_error("model: out of memory: %s", name);
-    close_stage(&stage);
+    model_stage_close(&stage);
     free(values);
     free(rgb);
     return status;

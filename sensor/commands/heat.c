@@ -1,0 +1,250 @@
+/* sensor/commands/heat.c: `pitviper heat`: the command line, the files and the summary of a vehicle's day. */
+#include "sensor/commands/heat.h"
+
+#include "sensor/commands/heat_day.h"
+#include "sensor/node/overwrite.h"
+
+#include <errno.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char help[] =
+    "usage: pitviper heat NAME|FILE [-o FOLDER] [--at LAT LON] [--day DAY] [--drive FROM-TO] [--heading DEG]\n"
+    "                     [--step S] [--overwrite]\n"
+    "\n"
+    "A vehicle's temperatures over a clear day. It stands on level grass, its engine stopped unless --drive is given;\n"
+    "the air is 288 K on average with a range of 10 K. Hours are of local mean solar time.\n"
+    "\n"
+    "NAME: a built-in model (tank, truck, helicopter ...). FILE: as `pitviper model show` takes it. Writes to FOLDER:\n"
+    "  nodes.csv          a row each ten minutes, K: air, ground, mean of the vehicle over the ground (dt_k), engine,\n"
+    "                     cabin, and each patch of its skin: its part and the side it faces\n"
+    "  nodes.svg          a plot of the means of its parts, with the times at which dt_k changes sign\n"
+    "  mwir.png lwir.png  the vehicle at 00, 03 ... 21 h from the south-east, in apparent temperature\n"
+    "\n"
+    "  --out FOLDER       or -o (default: NAME_heat in the current folder)\n"
+    "  --at LAT LON       degrees, -90 .. 90 and -180 .. 180 (48 11)\n"
+    "  --day DAY          in 1900 .. 2100 (2026-06-21)\n"
+    "  --drive FROM-TO    hours between which it drives, e.g. 06:00-07:30: 10 m/s, without leaving its place\n"
+    "  --heading DEG      of its nose, clockwise from north, -360 .. 360 (270)\n"
+    "  --step S           time step, a divisor of 600 s from 1 s (60)\n"
+    "  --overwrite        replace these files in FOLDER; without it that is an error\n";
+
+typedef struct HeatOptions {
+    const char   *name, *out, *day;
+    double        lat_deg, lon_deg, begin_s;
+    char          drive[48];
+    HeatDayConfig course;
+    bool          overwrite;
+} HeatOptions;
+
+static int refuse(const char *option, const char *what)
+{
+    text_print(stderr, "pitviper heat: %s: %s; see `pitviper heat --help`\n", option, what);
+    return 2;
+}
+
+static bool in_range(double *out, const char *text, double low, double high)
+{
+    return text && text_to_double(out, text) && *out >= low && *out <= high;
+}
+
+/* Midnight of local mean solar time. */
+static bool read_day(double *begin_s, const char *day, double lon_deg)
+{
+    char text[40];
+    if (!day || strlen(day) != 10) return false;
+    snprintf(text, sizeof text, "%sT00:00:00Z", day);
+    if (!text_to_unix_s(begin_s, text)) return false;
+    *begin_s -= 240 * lon_deg;
+    return true;
+}
+
+static bool read_drive(HeatOptions *o, const char *text)
+{
+    int h0, m0, h1, m1, used = 0;
+    if (!text || sscanf(text, "%2d:%2d-%2d:%2d%n", &h0, &m0, &h1, &m1, &used) != 4 || text[used] || used > 11 ||
+        h0 < 0 || m0 < 0 || m0 > 59 || h1 < 0 || m1 < 0 || m1 > 59)
+        return false;
+    o->course.drive_from_s = 3600 * h0 + 60 * m0;
+    o->course.drive_to_s   = 3600 * h1 + 60 * m1;
+    snprintf(o->drive, sizeof o->drive, "%02d:%02d-%02d:%02d", h0, m0, h1, m1);
+    return o->course.drive_from_s < o->course.drive_to_s && o->course.drive_to_s <= 86400;
+}
+
+/* 0: valid; else the exit code. */
+static int parse(HeatOptions *o, int argc, char **argv)
+{
+    double heading_deg = 270;
+    *o = (HeatOptions){.day = "2026-06-21", .lat_deg = 48, .lon_deg = 11, .course = {.step_s = 60}};
+    for (int i = 1; i < argc; i++) {
+        const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
+        if (strcmp(option, "--overwrite") == 0) {
+            o->overwrite = true;
+            continue;
+        }
+        if (option[0] != '-') {
+            if (o->name) return refuse(option, "one model at a time");
+            o->name = option;
+            continue;
+        }
+        if (strcmp(option, "--out") == 0 || strcmp(option, "-o") == 0) {
+            if (!value || !*value) return refuse(option, "needs a folder");
+            o->out = value;
+        } else if (strcmp(option, "--at") == 0) {
+            const char *second = i + 2 < argc ? argv[i + 2] : NULL;
+            if (!in_range(&o->lat_deg, value, -90, 90) || !in_range(&o->lon_deg, second, -180, 180))
+                return refuse(option, "needs a latitude in -90 .. 90 and a longitude in -180 .. 180 deg");
+            i++;
+        } else if (strcmp(option, "--day") == 0) {
+            if (!read_day(&o->begin_s, value, 0)) return refuse(option, "needs a day in 1900 .. 2100, as 2026-06-21");
+            o->day = value;
+        } else if (strcmp(option, "--drive") == 0) {
+            if (!read_drive(o, value))
+                return refuse(option, "needs hours of the day, the earlier first, as 06:00-07:30");
+        } else if (strcmp(option, "--heading") == 0) {
+            if (!in_range(&heading_deg, value, -360, 360)) return refuse(option, "needs an angle in -360 .. 360 deg");
+        } else if (strcmp(option, "--step") == 0) {
+            if (!in_range(&o->course.step_s, value, 1, heat_day_row_s) || fmod(heat_day_row_s, o->course.step_s) != 0)
+                return refuse(option, "needs a divisor of 600 s, from 1 s");
+        } else {
+            return refuse(option, "no such option");
+        }
+        i++;
+    }
+    if (!o->name) return refuse("heat", "needs a model: a built-in name, or a file");
+    if (!read_day(&o->begin_s, o->day, o->lon_deg)) 
+        return refuse("--day", "needs a day in 1900 .. 2100, as 2026-06-21");
+    o->course.heading_rad = heading_deg * rad_per_deg;
+    return 0;
+}
+
+/* ---- files ------------------------------------------------------------------------------------------ */
+
+enum { file_csv, file_svg, file_mwir, file_lwir, file_count, path_size = 4096 };
+typedef char Path[path_size];
+
+static Status make_paths(Path path[file_count], const HeatOptions *o)
+{
+    static const char *const names[file_count] = {"nodes.csv", "nodes.svg", "mwir.png", "lwir.png"};
+    const char *slash = strrchr(o->name, '/'), *last = slash ? slash + 1 : o->name;
+    char        folder[path_size - 32];
+    const int   length = o->out ? snprintf(folder, sizeof folder, "%s", o->out)
+                                : snprintf(folder, sizeof folder, "%.*s_heat", (int)strcspn(last, "."), last);
+    if (length >= (int)sizeof folder) {
+        log_error("heat: the folder's name is too long; choose a shorter one with --out");
+        return STATUS_BAD_VALUE;
+    }
+    for (int k = 0; k < file_count; k++) {
+        snprintf(path[k], path_size, "%s/%s", folder, names[k]);
+        const Status status = overwrite_file("heat", path[k], o->overwrite);
+        if (status != STATUS_OK) return status;
+    }
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
+        log_error("heat: cannot create %s: %s; choose another folder with --out", folder, strerror(errno));
+        return STATUS_IO;
+    }
+    return STATUS_OK;
+}
+
+static Status write_text_file(const char *path, const HeatDay *day, const char *about)
+{
+    char  part[path_size + 8];
+    snprintf(part, sizeof part, "%s.part", path);
+    FILE *to = fopen(part, "w");
+    bool  good = to != NULL;
+    if (good && about) heat_day_plot(to, day, about);
+    else if (good) heat_day_write_csv(to, day);
+    good = good && !ferror(to);
+    if (to && fclose(to) != 0) good = false;
+    if (good && rename(part, path) == 0) return STATUS_OK;
+    log_error("heat: cannot write %s: %s; choose another folder with --out", path, strerror(errno));
+    unlink(part);
+    return STATUS_IO;
+}
+
+static Status write_files(const HeatDay *day, const HeatImages *images, const ModelStage *stage, const HeatOptions *o,
+                          Path path[])
+{
+    char about[256], drive[64] = "engine stopped";
+    if (*o->drive) snprintf(drive, sizeof drive, "drives %s", o->drive);
+    snprintf(about, sizeof about, "clear day %s at %g %c %g %c, nose to %g deg, %s; level grass", o->day,
+             fabs(o->lat_deg), o->lat_deg < 0 ? 'S' : 'N', fabs(o->lon_deg), o->lon_deg < 0 ? 'W' : 'E',
+             o->course.heading_rad / rad_per_deg, drive);
+    Status status = write_text_file(path[file_csv], day, NULL);
+    if (status == STATUS_OK) status = write_text_file(path[file_svg], day, about);
+    const char *const sheets[2] = {path[file_mwir], path[file_lwir]};
+    return status == STATUS_OK ? heat_images_write(images, stage, sheets) : status;
+}
+
+/* ---- the summary ---------------------------------------------------------------------------------- */
+
+static void print_hour(double hour)
+{
+    const int minutes = (int)(60 * hour + 0.5);
+    log_print("%02d:%02d", minutes / 60, minutes % 60);
+}
+
+static void print_summary(const HeatDay *day)
+{
+    int least = 0, most = 0, hot_row = 0, hot = 0;
+    for (int r = 0; r < heat_day_rows; r++) {
+        if (day->row[r].dt_k < day->row[least].dt_k) least = r;
+        if (day->row[r].dt_k > day->row[most].dt_k) most = r;
+        for (int i = 0; i < day->patches; i++)
+            if (day->patch_k[(size_t)r * (size_t)day->patches + (size_t)i] >
+                day->patch_k[(size_t)hot_row * (size_t)day->patches + (size_t)hot])
+                hot_row = r, hot = i;
+    }
+    log_print("%s: %d patches; local mean solar time\n", day->model, day->patches);
+    log_print("crossover of vehicle and ground:");
+    for (int i = 0; i < day->crossings; i++) {
+        log_print(i ? ", " : " ");
+        print_hour(day->crossing_h[i]);
+    }
+    log_print(day->crossings ? "\n" : " none\n");
+    const struct { const char *what; int row; } extremes[] = {{"warmest over the ground", most}, {"coldest", least}};
+    for (int k = 0; k < 2; k++) {
+        log_print("%s: %+.1f K at ", extremes[k].what, day->row[extremes[k].row].dt_k);
+        print_hour(extremes[k].row * heat_day_row_s / 3600.0);
+        log_print("\n");
+    }
+    log_print("hottest patch: %s, %.1f K at ", day->name[hot],
+              (double)day->patch_k[(size_t)hot_row * (size_t)day->patches + (size_t)hot]);
+    print_hour(hot_row * heat_day_row_s / 3600.0);
+    log_print("\n");
+}
+
+int heat_command(int argc, char **argv)
+{
+    static Path path[file_count];
+    HeatOptions o;
+    thread_flush_denormals();
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+            fputs(help, stdout);
+            return 0;
+        }
+    if (argc < 2) {
+        fputs(help, stderr);
+        return 2;
+    }
+    const int wrong = parse(&o, argc, argv);
+    if (wrong) return wrong;
+    ModelStage             stage = {0};
+    HeatDay                day = {0};
+    HeatImages             images = {0};
+    const Geodetic         origin = {.lat_rad = o.lat_deg * rad_per_deg, .lon_rad = o.lon_deg * rad_per_deg};
+    const ModelStageConfig about = {o.name, 0.005, origin, o.begin_s, SURFACE_GRASS};
+    etc_own_set("catalog.csv", NULL); /* that model, whatever its entity types */
+    Status status = model_stage_open(&stage, &about);
+    if (status == STATUS_OK) status = make_paths(path, &o);
+    if (status == STATUS_OK) status = heat_images_open(&images);
+    if (status == STATUS_OK) status = heat_day_run(&day, &images, &stage, &o.course);
+    if (status == STATUS_OK) status = write_files(&day, &images, &stage, &o, path);
+    if (status == STATUS_OK) print_summary(&day);
+    if (status == STATUS_NO_MEMORY) log_error("heat: out of memory: %s", o.name);
+    heat_images_close(&images);
+    heat_day_free(&day);
+    model_stage_close(&stage);
+    return status == STATUS_OK ? 0 : 1;
+}
