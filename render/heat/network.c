@@ -15,7 +15,7 @@
 
 /* Error of one internal step: the root of the sum over nodes of the squares, so that no node is beyond it. Below 100 K in
  * proportion: temperatures stay positive. */
-static const double tolerance_k = 1e-3, tolerance_full_k = 100;
+static const double tolerance_k = 3e-3, tolerance_full_k = 100;
 
 /* A link or an exchange. */
 typedef struct Flow {

@@ -11,7 +11,7 @@ cat "$tmp/judge.txt"
 [ $code != 77 ] || exit 77
 check "the judge ends well" [ $code = 0 ]
 read -r _ worst moved <<<"$(grep '^node ' "$tmp/judge.txt")"
-check "the nodes moved by more than 50 K: ${moved:-none}" is "${moved:-0}" '>' 50
+check "the nodes moved by more than 20 K: ${moved:-none}" is "${moved:-0}" '>' 20
 check "worst node: ${worst:-none} K" is "${worst:-9}" '<' 0.01
 check "heat from outside is heat stored" is "$(grep -oP '^heat \K.*' "$tmp/judge.txt")" '<' 1e-6
 finish

@@ -17,7 +17,7 @@ typedef struct NetworkVehicle {
 /* nodes: 10 .. vehicle_most_nodes. */
 void   network_vehicle(NetworkVehicle *out, int nodes);
 Status network_vehicle_create(Network **out, const NetworkVehicle *vehicle);
-/* At t_s: clouds of ten minutes, gusts of two, an engine at 300 s on for half an hour of each hour. */
+/* At t_s: clouds of ten minutes, wind of five, an engine at 300 s on for half an hour of each hour. */
 void   network_vehicle_loads(NetworkLoad *out, const NetworkVehicle *vehicle, double t_s);
 
 #endif
