@@ -28,13 +28,16 @@ int main(void)
                 ((double *)at[end])[i] = from[i] + (s % steps + end) / (double)steps * (to[i] - from[i]);
         if (network_step(temp_k, &heat_j, network, at[0], at[1], knot_s / steps) != STATUS_OK) return 1;
     }
-    for (int i = 0; i < nodes; i++) printf("node,%d,%.17g,%.17g,%.17g\n", i, v.capacity_j_k[i], v.start_k[i], temp_k[i]);
+    for (int i = 0; i < nodes; i++)
+        printf("node,%d,%.17g,%.17g,%.17g\n", i, v.capacity_j_k[i], v.start_k[i], temp_k[i]);
     for (int k = 0; k < flows; k++) printf("link,%d,%d,%.17g\n", v.link[k].a, v.link[k].b, v.link[k].conductance_w_k);
-    for (int k = 0; k < flows; k++) printf("exchange,%d,%d,%.17g\n", v.exchange[k].a, v.exchange[k].b, v.exchange[k].area_m2);
+    for (int k = 0; k < flows; k++)
+        printf("exchange,%d,%d,%.17g\n", v.exchange[k].a, v.exchange[k].b, v.exchange[k].area_m2);
     for (int k = 0; k <= knots; k++)
         for (int i = 0; i < nodes; i++) {
             const NetworkLoad *l = &load[k][i];
-            printf("load,%.17g,%d,%.17g,%.17g,%.17g,%.17g\n", k * knot_s, i, l->heat_w, l->film_w_k, l->fluid_k, l->emits_m2);
+            printf("load,%.17g,%d,%.17g,%.17g,%.17g,%.17g\n", k * knot_s, i, l->heat_w, l->film_w_k, l->fluid_k,
+                   l->emits_m2);
         }
     printf("heat,%.17g,%.17g\n", heat_j, network_heat_j(network, temp_k) - before_j);
     network_destroy(network);

@@ -29,7 +29,8 @@ void network_vehicle_loads(NetworkLoad *out, const NetworkVehicle *vehicle, doub
     const double hour_s = 3600, turns = 2 * pi_rad * t_s;
     const double hot = 1 / (1 + exp(-20 * sin(turns / hour_s - 0.5))); /* the engine: on and off within minutes */
     for (int i = 0; i < vehicle->nodes; i++) {
-        const double sun_w = 300 * dice(6, i) * (1 + 0.7 * sin(turns / 600 + i)), engine_w = i % 16 == 3 ? 2000 * hot : 0;
+        const double sun_w = 300 * dice(6, i) * (1 + 0.7 * sin(turns / 600 + i));
+        const double engine_w = i % 16 == 3 ? 2000 * hot : 0;
         out[i] = (NetworkLoad){sun_w + engine_w, (2 + 10 * dice(7, i)) * (1 + 0.4 * sin(turns / 300 + 2 * i)),
                                290 + 5 * sin(turns / (24 * hour_s)), 0.5 * dice(8, i)};
     }

@@ -65,8 +65,8 @@ static Status knob_step(Bench *bench, const NetworkVehicle *vehicle, Network *ne
         compare(&point[k], &set[k], &fine);
     }
     if (status != STATUS_OK) return status;
-    bench_tunable(bench, &(BenchTunable){"steps of a vehicle's heat", "render/heat/network.h", "a minute of 100 nodes", "K",
-                                         "largest, over two hours, steps of 1 s", 0.2}, work, point, settings);
+    bench_tunable(bench, &(BenchTunable){"steps of a vehicle's heat", "render/heat/network.h", "a minute of 100 nodes",
+                                         "K", "largest, over two hours, steps of 1 s", 0.2}, work, point, settings);
     return STATUS_OK;
 }
 
@@ -99,8 +99,10 @@ static void steps(void *user)
 {
     Timed *t = user;
     memcpy(t->temp_k, t->vehicle->start_k, sizeof t->temp_k);
-    for (int s = 0; s < timed_steps; s++)
-        t->failed += network_step(t->temp_k, &t->heat_j, t->network, t->load[s], t->load[s + 1], time_step_s) != STATUS_OK;
+    for (int s = 0; s < timed_steps; s++) {
+        const Status status = network_step(t->temp_k, &t->heat_j, t->network, t->load[s], t->load[s + 1], time_step_s);
+        t->failed += status != STATUS_OK;
+    }
     bench_keep(t->temp_k);
 }
 

@@ -40,7 +40,8 @@ static void one(Stress *worst, Dice *dice)
     } else {
         const double lost_j = network_heat_j(n, temp_k) - before_j - heat_j;
         bench_worse(&worst->energy, fabs(lost_j) / (fabs(heat_j) + gross_w * dt_s + 1e-8 * before_j));
-        for (int i = 0; i < plates; i++) bench_worse(&worst->excess, fmax(fmax(low_k - temp_k[i], temp_k[i] - high_k), 0));
+        for (int i = 0; i < plates; i++)
+            bench_worse(&worst->excess, fmax(fmax(low_k - temp_k[i], temp_k[i] - high_k), 0));
     }
     network_destroy(n);
 }
