@@ -1,5 +1,6 @@
 /* sensor/bench/render/network_vehicle.h: a made-up vehicle as a network of thermal nodes, for figures of its solver:
- * plates of 2 kJ/K to 2 MJ/K that conduct to and radiate to neighbours, in air, sun and the engine's heat. Node 0 is held. */
+ * plates of 2 kJ/K to 2 MJ/K that conduct to and radiate to neighbours, in air, sun and the engine's heat. Node 0 is
+ * held. */
 #ifndef SENSOR_BENCH_RENDER_NETWORK_VEHICLE_H
 #define SENSOR_BENCH_RENDER_NETWORK_VEHICLE_H
 
