@@ -1,12 +1,14 @@
-/* render/heat/network.h: temperatures of a network of thermal nodes: parts of a vehicle that conduct to, radiate to and are
- * heated by one another, each of one temperature.
+/* render/heat/network.h: temperatures of a network of thermal nodes: parts of a vehicle, each of one temperature, that
+ * conduct and radiate to one another and meet air, sun and an engine's heat.
  *
  *     C_i dT_i/dt = sum of G (T_j - T_i) + sum of sigma A (T_j^4 - T_i^4)           links; exchanges
  *                 + heat_i + film_i (fluid_i - T_i) - sigma emits_i T_i^4           loads
  *
- * SUNDIALS (ARKODE: implicit Runge-Kutta with error control; KLU: sparse factors) solves the whole as one system. Error of a
- * call: below 0.01 K, whatever its length, with jumps of the loads too (tests/render/test_network.c; against another solver:
- * tests/system/test_network_judge.sh; rows of `bench precision` and `bench stability`). */
+ * SUNDIALS (ARKODE: implicit Runge-Kutta with error control; KLU: sparse factors) solves the whole as one system.
+ * Error of a call: below 0.01 K, whatever its length, with jumps of the loads too (tests/render/test_network.c;
+ * another solver: tests/system/test_network_judge.sh; rows of `bench precision` and `bench stability`). Cost: about
+ * 55 us a step of 100 nodes, 300 links and 300 exchanges to neighbours, while loads and temperatures change smoothly
+ * over it (`bench speed`); three times that where each may exchange with any other. */
 #ifndef RENDER_HEAT_NETWORK_H
 #define RENDER_HEAT_NETWORK_H
 
@@ -41,8 +43,8 @@ typedef struct NetworkLoad {
 /* The shape, copied, and the solver's memory: one thread at a time. */
 typedef struct Network Network;
 
-/* STATUS_BAD_VALUE: no node, a capacity that is not positive, a conductance or area that is negative or not finite, a node
- * that does not exist or is linked to itself; STATUS_NO_MEMORY. */
+/* STATUS_BAD_VALUE: no node, a capacity that is not positive, a conductance or area that is negative or not finite, a
+ * node that does not exist or is linked to itself; STATUS_NO_MEMORY. */
 Status network_create(Network **out, const NetworkShape *shape);
 void   network_destroy(Network *network); /* accepts NULL */
 int    network_nodes(const Network *network);
@@ -51,16 +53,16 @@ void   network_exchange(Network *network, const double *area_m2);
 /* New conductances, [links], likewise. */
 void   network_conductances(Network *network, const double *w_k);
 
-/* temp_k[nodes], > 0, over dt_s > 0. load[nodes]: at its start; load_end: at its end, each number straight between (NULL: as
- * load). heat_in_j (may be NULL): the heat that came from outside, held nodes included, is added to it; it is what the
- * nodes that are not held gained, to 1e-6 of what they exchanged.
+/* temp_k[nodes], > 0, over dt_s > 0. load[nodes]: at its start; load_end: at its end, each number straight between
+ * (NULL: as load). heat_in_j (may be NULL): the heat that came from outside, held nodes included, is added to it; it is
+ * what the nodes that are not held gained, to 1e-6 of what they exchanged.
  *
- * The result is a function of temp_k, loads, areas and dt_s, to the bit, never of earlier steps. STATUS_BAD_VALUE: a value
- * that is not finite, a temperature or a step that is not positive, a negative film or emitting area, or loads that take
- * a node to 0 K; STATUS_UNSUPPORTED: more internal steps than network_most_steps; STATUS_NO_MEMORY. On failure
- * temp_k and heat_in_j are untouched. */
-Status network_step(double *temp_k, double *heat_in_j, Network *network, const NetworkLoad *load, const NetworkLoad *load_end,
-                    double dt_s);
+ * The result is a function of temp_k, loads, areas and dt_s, to the bit, never of earlier steps. STATUS_BAD_VALUE: a
+ * value that is not finite, a temperature or a step that is not positive, a negative film or emitting area, or loads
+ * that take a node to 0 K; STATUS_UNSUPPORTED: more than network_most_steps internal steps, or no solution found;
+ * STATUS_NO_MEMORY. On failure temp_k and heat_in_j are untouched. */
+Status network_step(double *temp_k, double *heat_in_j, Network *network, const NetworkLoad *load,
+                    const NetworkLoad *load_end, double dt_s);
 enum { network_most_steps = 20000 };
 
 double network_heat_j(const Network *network, const double *temp_k); /* stored above 0 K in nodes that are not held */

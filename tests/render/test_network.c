@@ -1,11 +1,12 @@
-/* Networks of thermal nodes, against closed forms (mpmath; Carslaw & Jaeger, Conduction of Heat in Solids, 1959) in one call
- * over the whole time; energy, memory of earlier steps, extremes. */
+/* Networks of thermal nodes, against closed forms (mpmath; Carslaw & Jaeger, Conduction of Heat in Solids, 1959) in one
+ * call over the whole time; energy, memory of earlier steps, extremes. */
 #include "tests/check.h"
 #include "render/heat/network.h"
 
 enum { most = 64 };
 
-static Network *made(int nodes, const double *capacity_j_k, int links, const NetworkLink *link, int exchanges, const NetworkExchange *exchange)
+static Network *made(int nodes, const double *capacity_j_k, int links, const NetworkLink *link, int exchanges,
+                     const NetworkExchange *exchange)
 {
     Network *n = NULL;
     CHECK(network_create(&n, &(NetworkShape){nodes, links, exchanges, capacity_j_k, link, exchange}) == STATUS_OK);
@@ -48,7 +49,8 @@ static void radiating_steel(void **state)
     (void)state;
     const double          capacity_j_k[] = {39250, INFINITY}, sky_w = 0.9 * 5.670374419184429e-8 * pow(280, 4);
     const NetworkExchange sky = {0, 1, 0.9};
-    const NetworkLoad     emits[1] = {{.emits_m2 = 0.9}}, under_sky[1] = {{.heat_w = sky_w, .emits_m2 = 0.9}}, none[2] = {{0}};
+    const NetworkLoad     emits[1] = {{.emits_m2 = 0.9}}, under_sky[1] = {{.heat_w = sky_w, .emits_m2 = 0.9}};
+    const NetworkLoad     none[2] = {{0}};
     double                temp_k[2] = {400, 280};
     Network              *n = made(1, capacity_j_k, 0, NULL, 0, NULL);
     CHECK(network_step(temp_k, NULL, n, emits, NULL, 3600) == STATUS_OK);
@@ -97,17 +99,18 @@ static void slab(void **state)
     }
 }
 
-/* C T' = q + s t + (film_0 + (film_1 - film_0) t / t_1) (fluid - T): a film that rises from none by an integrating factor. */
+/* C T' = heat + film (fluid - T), heat and fluid rising with time; then a film that rises from none. */
 static void loads_that_change(void **state)
 {
     (void)state;
     const double      capacity_j_k[] = {1e4}, dt_s = 900;
-    const NetworkLoad from[1] = {{.heat_w = 100, .film_w_k = 5, .fluid_k = 280}}, to[1] = {{.heat_w = 1000, .film_w_k = 5, .fluid_k = 310}};
+    const NetworkLoad from[1] = {{.heat_w = 100, .film_w_k = 5, .fluid_k = 280}};
+    const NetworkLoad to[1] = {{.heat_w = 1000, .film_w_k = 5, .fluid_k = 310}};
     double            temp_k[1] = {300}, heat_j = 7;
     Network          *n = made(1, capacity_j_k, 0, NULL, 0, NULL);
     CHECK(network_step(temp_k, &heat_j, n, from, to, dt_s) == STATUS_OK);
     const double tau_s = 2000, drive_k = 300, slope_k_s = (1000.0 / 5 + 310 - drive_k) / dt_s; /* of what T follows */
-    const double want_k = drive_k + slope_k_s * (dt_s - tau_s) + (300 - drive_k + slope_k_s * tau_s) * exp(-dt_s / tau_s);
+    const double want_k = drive_k + slope_k_s * (dt_s - tau_s) + slope_k_s * tau_s * exp(-dt_s / tau_s);
     CHECK_NEAR(temp_k[0], want_k, 0.001);
     CHECK_NEAR(heat_j - 7, 1e4 * (temp_k[0] - 300), 1e-5);
     const NetworkLoad still[1] = {{.fluid_k = 280}}, windy[1] = {{.film_w_k = 20, .fluid_k = 280}};
@@ -120,7 +123,10 @@ static void loads_that_change(void **state)
 /* ---- a vehicle-like network ---------------------------------------------------------------------- */
 
 static double dice(int stream, int i) { return random_uniform(1942, (uint32_t)stream, 0, (uint64_t)i); }
-static double dice_between(double low, double high, int stream, int i) { return low * pow(high / low, dice(stream, i)); }
+static double dice_between(double low, double high, int stream, int i)
+{
+    return low * pow(high / low, dice(stream, i));
+}
 
 typedef struct Vehicle {
     double          capacity_j_k[most];
@@ -140,7 +146,8 @@ static Network *random_vehicle(Vehicle *v, double low_j_k, double high_j_k, doub
     for (int k = 0; k < 3 * most; k++) {
         const int a = k % most;
         v->link[k] = (NetworkLink){a, (a + 1 + (int)(5 * dice(6, k))) % most, dice_between(0.01, 1000, 7, k)};
-        v->exchange[k] = (NetworkExchange){a, (a + 1 + (int)((most - 1) * dice(8, k))) % most, dice_between(1e-6, 10, 9, k)};
+        const int b = (a + 1 + (int)((most - 1) * dice(8, k))) % most;
+        v->exchange[k] = (NetworkExchange){a, b, dice_between(1e-6, 10, 9, k)};
     }
     return made(most, v->capacity_j_k, 3 * most, v->link, 3 * most, v->exchange);
 }
@@ -167,7 +174,8 @@ static void energy_is_kept(void **state)
         for (int s = 0; s < 100; s++) {
             NetworkLoad to[most];
             const double last_j = heat_j;
-            for (int i = 0; i < most; i++) to[i] = (NetworkLoad){500 * dice(2, i + s), 20 * dice(3, i + s), 290, dice(5, i + s)};
+            for (int i = 0; i < most; i++)
+                to[i] = (NetworkLoad){500 * dice(2, i + s), 20 * dice(3, i + s), 290, dice(5, i + s)};
             CHECK(network_step(v.temp_k, &heat_j, n, v.load, to, 30) == STATUS_OK);
             memcpy(v.load, to, sizeof to);
             turned_j += fabs(heat_j - last_j);
@@ -230,13 +238,17 @@ static void extremes(void **state)
     static Vehicle v;
     for (int n = 0; n < 3 * 3 * 4 * 4; n++) {
         const int    c = n / 36;
-        const double begin_k = temps_k[n % 3], around_k = temps_k[n / 3 % 3], low_k = fmin(begin_k, around_k), high_k = fmax(begin_k, around_k);
-        Network *net = random_vehicle(&v, c < 3 ? capacity_j_k[c] : 10, c < 3 ? capacity_j_k[c] : 1e8, begin_k, begin_k, 0);
+        const double begin_k = temps_k[n % 3], around_k = temps_k[n / 3 % 3];
+        const double low_k = fmin(begin_k, around_k), high_k = fmax(begin_k, around_k);
+        const double least_j_k = c < 3 ? capacity_j_k[c] : 10, greatest_j_k = c < 3 ? capacity_j_k[c] : 1e8;
+        Network *net = random_vehicle(&v, least_j_k, greatest_j_k, begin_k, begin_k, 0);
         double   heat_j = 0;
         const double before_j = network_heat_j(net, v.temp_k);
-        for (int i = 0; i < most; i++) v.load[i] = (NetworkLoad){.film_w_k = dice_between(1e-3, 1e4, 3, i), .fluid_k = around_k};
+        for (int i = 0; i < most; i++)
+            v.load[i] = (NetworkLoad){.film_w_k = dice_between(1e-3, 1e4, 3, i), .fluid_k = around_k};
         CHECK(network_step(v.temp_k, &heat_j, net, v.load, NULL, dt_s[n / 9 % 4]) == STATUS_OK);
-        for (int i = 0; i < most; i++) CHECK(v.temp_k[i] > low_k - 0.01 && v.temp_k[i] < high_k + 0.01 && v.temp_k[i] > 0);
+        for (int i = 0; i < most; i++)
+            CHECK(v.temp_k[i] > low_k - 0.01 && v.temp_k[i] < high_k + 0.01 && v.temp_k[i] > 0);
         CHECK_NEAR(network_heat_j(net, v.temp_k) - before_j, heat_j, 1e-6 * fabs(heat_j) + 1e-12 * before_j);
         network_destroy(net);
     }
@@ -265,7 +277,8 @@ static void wrong_shapes_and_steps_are_refused(void **state)
     const NetworkExchange exchanges[] = {{2, 0, 1}, {0, -1, 1}, {0, 0, 1}, {0, 1, NAN}, {0, 1, -1}, {0, 1, INFINITY}};
     CHECK(network_create(&n, &(NetworkShape){.nodes = 0, .capacity_j_k = good}) == STATUS_BAD_VALUE);
     CHECK(network_create(&n, &(NetworkShape){.nodes = 2, .links = -1, .capacity_j_k = good}) == STATUS_BAD_VALUE);
-    for (int k = 0; k < 5; k++) CHECK(network_create(&n, &(NetworkShape){.nodes = 2, .capacity_j_k = bad[k]}) == STATUS_BAD_VALUE);
+    for (int k = 0; k < 5; k++)
+        CHECK(network_create(&n, &(NetworkShape){.nodes = 2, .capacity_j_k = bad[k]}) == STATUS_BAD_VALUE);
     for (int k = 0; k < 6; k++) {
         CHECK(network_create(&n, &(NetworkShape){2, 1, 0, good, &links[k], NULL}) == STATUS_BAD_VALUE);
         CHECK(network_create(&n, &(NetworkShape){2, 0, 1, good, NULL, &exchanges[k]}) == STATUS_BAD_VALUE);
@@ -275,7 +288,7 @@ static void wrong_shapes_and_steps_are_refused(void **state)
     n = made(2, good, 1, &(NetworkLink){0, 1, 3}, 0, NULL);
     static const double wrong_dt_s[] = {0, -1, NAN, INFINITY}, wrong_k[] = {0, -5, NAN, INFINITY};
     static const NetworkLoad load[2] = {{.heat_w = 0}};
-    static const NetworkLoad wrong[][2] = {{{.heat_w = NAN}}, {{.film_w_k = -1}}, {{.film_w_k = 1}, {.fluid_k = INFINITY}},
+    static const NetworkLoad wrong[][2] = {{{.heat_w = NAN}}, {{.film_w_k = -1}}, {{.film_w_k = 1}, {.fluid_k = NAN}},
                                            {{.emits_m2 = -1}}};
     double temp_k[2] = {300, 310};
     for (int k = 0; k < 4; k++) {
@@ -291,10 +304,12 @@ static void wrong_shapes_and_steps_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_nodes), cmocka_unit_test(engine_and_hull), cmocka_unit_test(radiating_steel), cmocka_unit_test(slab),
-        cmocka_unit_test(loads_that_change), cmocka_unit_test(an_enclosure_of_one_temperature_stays), cmocka_unit_test(energy_is_kept),
+        cmocka_unit_test(two_nodes), cmocka_unit_test(engine_and_hull), cmocka_unit_test(radiating_steel),
+        cmocka_unit_test(slab), cmocka_unit_test(loads_that_change),
+        cmocka_unit_test(an_enclosure_of_one_temperature_stays), cmocka_unit_test(energy_is_kept),
         cmocka_unit_test(held_nodes_stay), cmocka_unit_test(earlier_steps_are_forgotten), cmocka_unit_test(extremes),
-        cmocka_unit_test(a_plate_under_open_sky_never_reaches_nothing), cmocka_unit_test(wrong_shapes_and_steps_are_refused),
+        cmocka_unit_test(a_plate_under_open_sky_never_reaches_nothing),
+        cmocka_unit_test(wrong_shapes_and_steps_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -42,7 +42,7 @@ for what in "ground: " "ground: pyramid" "40 m up: frame" "100 m up: frame" "300
             "radar alone" "files of a frame" "heat of the ground: spin-up" "heat of the ground: a step" \
             "heat of the ground: shadows of a day" "heat of the ground: a hit, with shadows" \
             "heat of the ground: a hit, without" "heat of the ground: 100 m up.*as the air" \
-            "heat of the ground: 100 m up.*no shadows" "heat of the ground: 100 m up.*with shadows" \
+            "heat of the ground: 100 m up.*no shadows" "heat of the ground: 100 m up.*with shadows" "heat of a vehicle: a step" \
             "memory: posts" "memory: arena" "memory: resident"; do
     has speed "$what"
 done
@@ -72,7 +72,7 @@ for knob in "Earth to local frame" "latitude. longitude. height" "geoid between 
             "radiance of the sky" "light of the sky on a plane" "range to the ground" "range to a part" "rays a pixel" \
             "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
             "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "a small target's place" "electrons of a radiance" \
-            "steps of the ground's heat" "elements of the ground's heat" "slopes of the ground's heat" \
+            "steps of the ground's heat" "elements of the ground's heat" "slopes of the ground's heat" "steps of a vehicle's heat" \
             "cells of past shade" "display" "converter" \
             "display's curve"; do
     check "precision has one default of: $knob" \
@@ -142,7 +142,8 @@ for what in "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" 
             "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "detector: " "display: " \
             "threads: " "plants: leaves edge-on" "plants: skimmed tops" "plants: trees at the origin and 200 km" \
             "plants: a million trees" "heat: 1 K to 2000 K" "heat: the same: energy" "heat: polar day and night" \
-            "heat: 1950 and 2090" "heat: seven threads" "heat: back and forth in time"; do
+            "heat: 1950 and 2090" "heat: seven threads" "heat: back and forth in time" \
+            "network: 1 K to 2000 K" "network: the same: temperatures"; do
     has stability "$what"
 done
 

@@ -143,7 +143,8 @@ void stress_sphere(Model *m, double radius_m, int bands)
 Status bench_stability(Bench *bench)
 {
     static Status (*const part[])(Bench *) = {stability_parts, stability_ground, stability_light, stability_sun,
-                                              stability_pictures, stability_crowd, stability_plants, stability_heat};
+                                              stability_pictures, stability_crowd, stability_plants, stability_heat,
+                                              stability_network};
     Status failed = STATUS_OK;
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         const Status status = part[k](bench);

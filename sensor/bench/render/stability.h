@@ -49,6 +49,7 @@ Status stability_sun(Bench *bench);      /* the sun at the horizon, overhead, be
 Status stability_pictures(Bench *bench); /* ranges, origins, views, sizes */
 Status stability_plants(Bench *bench);   /* rays against plants */
 Status stability_heat(Bench *bench);     /* the ground's heat */
+Status stability_network(Bench *bench);  /* networks of thermal nodes */
 Status stability_crowd(Bench *bench);    /* numbers of entities, positions of the eye, the radar */
 
 #endif
