@@ -237,3 +237,15 @@ double heat_runs_until(const HeatState *state)
     const HeatDrive engine = state->drive[HEAT_DRIVER_ENGINE];
     return engine.value > 0 ? engine.until_s : -INFINITY;
 }
+
+double heat_engine(const HeatState *state, double t_s)
+{
+    const HeatDrive engine = state->drive[HEAT_DRIVER_ENGINE];
+    return t_s < engine.until_s ? engine.value : 0;
+}
+
+bool heat_grain_burns(const HeatState *state, double t_s)
+{
+    const HeatDrive grain = state->drive[HEAT_DRIVER_PYROTECHNIC];
+    return grain.value > 0 && t_s < grain.until_s;
+}

@@ -70,5 +70,8 @@ uint32_t heat_roles(const Model *model, const HeatTable *table);
 /* Until when engine and rotors turn without a further report: power-plant bit, moving or moved lately, or an air
  * platform; never a destroyed one. -INFINITY: they do not turn; INFINITY: until the next report. */
 double heat_runs_until(const HeatState *state);
+/* The engine's drive at t_s, 0 .. 1; and whether a decoy's grain burns. */
+double heat_engine(const HeatState *state, double t_s);
+bool   heat_grain_burns(const HeatState *state, double t_s);
 
 #endif
