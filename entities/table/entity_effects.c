@@ -193,9 +193,17 @@ static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const Model 
         v3_add(puff->p_ecef, e->p_ecef, at_ecef);
         v3_add_scaled(puff->p_ecef, puff->p_ecef, -puff->age_s, e->v_ecef_mps);
         v3_scale(puff->up_ecef, 1 / v3_length(e->p_ecef), e->p_ecef);
-        memcpy(puff->axis_ecef, d_ecef, sizeof puff->axis_ecef);
-        for (int i = 0; i < 3; i++) puff->throw_mps[i] = jet_mps * d_ecef[i] + e->v_ecef_mps[i];
-        puff->along_m = 0.5 * interval_s * (jet_mps * exp(-puff->age_s / jet_decay_s) + v3_length(e->v_ecef_mps));
+        /* as long as the way from one puff to the next, seen from the outlet, so that they join */
+        const double early = exp(-(puff->age_s - 0.5 * interval_s) / jet_decay_s);
+        const double jet_m = jet_mps * jet_decay_s * early * -expm1(-interval_s / jet_decay_s);
+        const double left_s = interval_s - jet_m / jet_mps; /* times the outlet's speed */
+        double       way[3];
+        for (int i = 0; i < 3; i++) {
+            puff->throw_mps[i] = jet_mps * d_ecef[i] + e->v_ecef_mps[i];
+            way[i] = jet_m * d_ecef[i] - left_s * e->v_ecef_mps[i];
+        }
+        puff->along_m = 0.6 * v3_length(way);
+        if (!v3_normalize(puff->axis_ecef, way)) memcpy(puff->axis_ecef, d_ecef, sizeof puff->axis_ecef);
     }
     return puffs;
 }
@@ -233,7 +241,7 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
     if (air && slot->roles >> HEAT_TURBINE & 1)
         return plume_behind(out, entity, model, EFFECT_JET_EXHAUST, effects, 6, 1, t_s);
     if (!air)
-        return exhaust_behind(out, entity, model, HEAT_EXHAUST, EFFECT_EXHAUST, effects, drive, size_of(model), 25,
+        return exhaust_behind(out, entity, model, HEAT_EXHAUST, EFFECT_EXHAUST, effects, drive, size_of(model), 12,
                               t_s);
     return 0;
 }

@@ -37,7 +37,6 @@ typedef struct Placed {
     double           d_eye_enu[3], temp_k; /* from the eye to its centre */
     double           co2_kg_m3, h2o_kg_m3;  /* at the centre */
     double           gas_share[effect_band_count]; /* of the extinction */
-    double           gas_passed;            /* MWIR: path transmittance over a grey body's */
     uint32_t         group;
     int              index; /* index in the snapshot: order of equals */
 } Placed;
@@ -53,9 +52,8 @@ static void light_volume(Placed *p, int band, const Air *air, const float *groun
     const double below = optical ? ground_rho[band] * (sun_w_m2 * fmax(air->light.sun_d_enu[2], 0) / pi_rad + above)
                                  : air->light.ground_w_m2_sr[band];
     const double lit = veils->air_transmittance[i] * albedo * 0.5;
-    const double passed = band == effect_band_mwir ? 1 - p->gas_share[band] * (1 - p->gas_passed) : 1;
     v->source[band] = veils->added_w_m2_sr[i] + lit * (above + below) +
-                      veils->transmittance[i] * passed * (1 - albedo) * glow_w_m2_sr(band, p->temp_k);
+                      veils->transmittance[i] * (1 - albedo) * glow_w_m2_sr(band, p->temp_k);
     v->from_top[band] = lit * (above - below);
 
     const double cosine = v3_dot(p->d_eye_enu, air->light.sun_d_enu); /* forward: the sun behind the puff */
@@ -129,8 +127,9 @@ static void shade_group(Placed *first, int count, unsigned bands)
 }
 
 /* Extinction of the gas of a cloud's puffs in the thermal bands: grey, such that the ray from the eye through a puff's
- * centre has the emissivity of all the gas of the cloud on it, at the temperature of this puff. On other rays of the
- * same puff: etc/reference/plumes.md. */
+ * centre has the emissivity of all the gas of the cloud on it, at the temperature of this puff. Of that the share that
+ * the air's CO2 lets pass counts, for emission and absorption alike: gas as warm as its background stays invisible.
+ * On other rays of the same puff: etc/reference/plumes.md. */
 static void add_gas(Placed *first, int count, unsigned bands, double eye_up_m)
 {
     static const int    band_of[2] = {effect_band_mwir, effect_band_lwir};
@@ -149,16 +148,18 @@ static void add_gas(Placed *first, int count, unsigned bands, double eye_up_m)
         if (!(gas_kg_m2 > 0)) continue; /* the eye is beyond it */
         const HotGasColumn column = {hot_gas_atm_m(co2_kg_m2, hot_gas_co2_molar_kg, p->temp_k),
                                      hot_gas_atm_m(h2o_kg_m2, hot_gas_h2o_molar_kg, p->temp_k)};
+        const double up_m = fmax(0.5 * (eye_up_m + p->volume.p_enu[2]), 0);
+        const double air_m = p->volume.range_m * exp(-up_m / air_scale_m); /* at sea-level density */
+        const double passed = hot_gas_passed(column.co2_atm_m, p->temp_k, air_m);
         for (int which = 0; which < 2; which++) {
             const int b = band_of[which];
             if (!(bands >> b & 1)) continue;
-            const double gas_per_m = hot_gas_depth(which ? HOT_GAS_LWIR : HOT_GAS_MWIR, column, p->temp_k) / gas_kg_m2 *
-                                     (p->co2_kg_m3 + p->h2o_kg_m3);
+            const double depth = which ? hot_gas_depth(HOT_GAS_LWIR, column, p->temp_k, 1)
+                                       : hot_gas_depth(HOT_GAS_MWIR, column, p->temp_k, passed);
+            const double gas_per_m = depth / gas_kg_m2 * (p->co2_kg_m3 + p->h2o_kg_m3);
             p->volume.extinction_per_m[b] += gas_per_m;
             p->gas_share[b] = p->volume.extinction_per_m[b] > 0 ? gas_per_m / p->volume.extinction_per_m[b] : 0;
         }
-        const double up_m = fmax(0.5 * (eye_up_m + p->volume.p_enu[2]), 0);
-        p->gas_passed = hot_gas_passed(column.co2_atm_m, p->temp_k, p->volume.range_m * exp(-up_m / air_scale_m));
     }
 }
 
@@ -223,7 +224,6 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, con
         placed[count].group  = puff->group;
         placed[count].co2_kg_m3 = volume.co2_kg_m3;
         placed[count].h2o_kg_m3 = volume.h2o_kg_m3;
-        placed[count].gas_passed = 1;
         memset(placed[count].gas_share, 0, sizeof placed[count].gas_share);
         placed[count].index  = i;
         count++;

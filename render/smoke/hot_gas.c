@@ -113,9 +113,9 @@ double hot_gas_emissivity(HotGasBand band, HotGasColumn column, double temp_k)
     return co2 + h2o - co2 * h2o; /* not 1 - products: thin columns would cancel */
 }
 
-double hot_gas_depth(HotGasBand band, HotGasColumn column, double temp_k)
+double hot_gas_depth(HotGasBand band, HotGasColumn column, double temp_k, double seen)
 {
-    return -log1p(-hot_gas_emissivity(band, column, temp_k));
+    return -log1p(-seen * hot_gas_emissivity(band, column, temp_k));
 }
 
 double hot_gas_passed(double co2_atm_m, double temp_k, double range_m)

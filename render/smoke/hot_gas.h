@@ -26,9 +26,9 @@ typedef struct HotGasColumn {
  * itself about 10 % (narrow bands against line by line). At 0.3 atm lines are narrower and the true emissivity is
  * lower, by up to a third. */
 double hot_gas_emissivity(HotGasBand band, HotGasColumn column, double temp_k);
-/* Grey extinction, per atm m of both gases' unit column, with which a column has the right emissivity: -ln(1 -
- * emissivity). Shorter chords of the same volume then appear too transparent (gas is not grey); see plumes.md. */
-double hot_gas_depth(HotGasBand band, HotGasColumn column, double temp_k);
+/* Grey optical depth with which a column has `seen` (0 .. 1) times its emissivity: -ln(1 - seen emissivity). Gas is not
+ * grey: scaled to shorter chords of the same volume it is too transparent (plumes.md). */
+double hot_gas_depth(HotGasBand band, HotGasColumn column, double temp_k, double seen);
 
 /* The air's CO2 (420 ppm) absorbs the hot CO2's own lines more than a grey body's spectrum. The ratio of the hot gas'
  * path transmittance to that of a grey body of its temperature, MWIR: 0 .. 1; 1 at no range. Wings beyond the cold
