@@ -122,8 +122,8 @@ static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *m
         const uint64_t breath = (uint64_t)(int64_t)floor_at + (uint64_t)k;
         length += share * length_m * (0.8 + 0.4 * random_uniform(key, 78, kind, breath));
     }
-    *out = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind), .seed = (uint32_t)(int64_t)floor_at,
-                        .throw_s = 1, .scale = across_scale, .along_m = 0.5 * length,
+    *out = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind),
+                        .seed = (uint32_t)(int64_t)floor_at, .throw_s = 1, .scale = across_scale, .along_m = 0.5 * length,
                         .mass_kg = table->law[kind].mass_kg * across_scale * across_scale * length};
     tail_body[0] = model->box_low[0] - 0.5 * length;
     tail_body[2] = -0.5 * model->height_m;

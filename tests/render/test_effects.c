@@ -145,8 +145,8 @@ static void gas_shines_by_its_bands(void **state)
         const int b = effect_band_mwir + which;
         path_north(&veils, &air, b, 500, (float)k);
         CHECK_NEAR((1 - tau[b]) / want[which], 1, 2e-3);
-        const double radiance = want[which] * (veils.added_w_m2_sr[0] +
-                                               veils.transmittance[0] * planck_band(low_m[which], high_m[which], k, NULL));
+        const double glow = planck_band(low_m[which], high_m[which], k, NULL);
+        const double radiance = want[which] * (veils.added_w_m2_sr[0] + veils.transmittance[0] * glow);
         CHECK_NEAR(added[b] / radiance, 1, 5e-3);
     }
     CHECK(1 - tau[effect_band_lwir] < 1 - tau[effect_band_mwir]);
