@@ -80,6 +80,8 @@ void drives_at(EntityDrives *out, const DriveState *state, double t_s)
                           .flare = now(state->flare, t_s), .fired_kg = {state->fired_kg[0], state->fired_kg[1]}};
 }
 
+double drives_engine(const DriveState *state, double t_s) { return t_s < state->engine.until_s ? state->engine.value : 0; }
+
 double drives_run_until(const DriveState *state)
 {
     return state->engine.value > 0 ? state->engine.until_s : -INFINITY;

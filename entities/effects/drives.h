@@ -54,5 +54,7 @@ void drives_at(EntityDrives *out, const DriveState *state, double t_s);
 /* Until when engine and rotors turn without a further report: power-plant bit, moving or moved lately, or an air
  * platform; never a destroyed one. -INFINITY: they do not turn; INFINITY: until the next report. */
 double drives_run_until(const DriveState *state);
+/* The engine's share of full power at t_s, 0 .. 1. */
+double drives_engine(const DriveState *state, double t_s);
 
 #endif

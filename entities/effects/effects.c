@@ -8,7 +8,7 @@ const double effect_mean_density = 8.0 / 35;
 static const char *const kind_names[EFFECT_KIND_COUNT] = {
     "muzzle_flash", "muzzle_smoke", "launch_flash", "launch_smoke", "burst_flash", "fireball", "burst_smoke",
     "burst_dust", "sparks", "flame", "smoke", "engine_smoke", "dust", "contrail", "motor_plume", "motor_smoke",
-    "afterburner"};
+    "afterburner", "exhaust", "turbine_exhaust", "jet_exhaust", "flare_fire"};
 
 /* ---- table -------------------------------------------------------------------------------- */
 
@@ -30,6 +30,8 @@ static const struct {
     {"life_s", offsetof(EffectModel, life_s), 1e-3, 1e4},
     {"time_power", offsetof(EffectModel, time_power), 0, 1},
     {"billow", offsetof(EffectModel, billow), 0, 1},
+    {"co2_share", offsetof(EffectModel, co2_share), 0, 1},
+    {"h2o_share", offsetof(EffectModel, h2o_share), 0, 1},
 };
 enum { column_count = sizeof columns / sizeof *columns };
 
@@ -163,5 +165,7 @@ bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff
     const double volume_m3 = 4.0 / 3 * pi_rad * out->across_m * out->across_m * out->along_m;
     const double peak_kg_m3 = puff->mass_kg * thin / (volume_m3 * effect_mean_density);
     for (int b = 0; b < effect_band_count; b++) out->extinction_per_m[b] = law->extinction_m2_kg[b] * peak_kg_m3;
+    out->co2_kg_m3 = law->co2_share * peak_kg_m3;
+    out->h2o_kg_m3 = law->h2o_share * peak_kg_m3;
     return true;
 }

@@ -15,6 +15,7 @@ typedef enum EffectKind {
     EFFECT_BURST_FLASH, EFFECT_FIREBALL, EFFECT_BURST_SMOKE, EFFECT_BURST_DUST, EFFECT_SPARKS,
     EFFECT_FLAME, EFFECT_SMOKE, EFFECT_ENGINE_SMOKE, EFFECT_DUST, EFFECT_CONTRAIL,
     EFFECT_MOTOR_PLUME, EFFECT_MOTOR_SMOKE, EFFECT_AFTERBURNER,
+    EFFECT_EXHAUST, EFFECT_TURBINE_EXHAUST, EFFECT_JET_EXHAUST, EFFECT_FLARE_FIRE,
     EFFECT_KIND_COUNT
 } EffectKind;
 
@@ -34,6 +35,7 @@ typedef struct EffectModel {
     double life_s;
     double time_power;
     double billow;
+    double co2_share, h2o_share;        /* of the mass: hot gas, which emits and absorbs in the thermal bands */
 } EffectModel;
 
 typedef struct EffectTable {
@@ -67,7 +69,8 @@ typedef struct EffectVolume {
     double p_enu[3], axis_enu[3];
     double along_m, across_m;           /* half axes; along the axis, and across it */
     double temp_k;
-    double extinction_per_m[effect_band_count]; /* at the centre */
+    double extinction_per_m[effect_band_count]; /* at the centre, without gas */
+    double co2_kg_m3, h2o_kg_m3;                /* at the centre */
 } EffectVolume;
 
 /* Time for which a puff of this kind and scale is visible. */

@@ -109,7 +109,7 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
 
 /* One volume of gas behind the tail with fluctuating length: random at every fiftieth of a second, linear in
  * between. */
-static bool plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, EffectKind kind,
+static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, EffectKind kind,
                          const EffectTable *table, double length_m, double across_scale, double t_s)
 {
     static const double breath_hz = 50;
@@ -122,8 +122,8 @@ static bool plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *
         const uint64_t breath = (uint64_t)(int64_t)floor_at + (uint64_t)k;
         length += share * length_m * (0.8 + 0.4 * random_uniform(key, 78, kind, breath));
     }
-    *out = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind), .seed = (uint32_t)(int64_t)floor_at,
-                        .throw_s = 1, .scale = across_scale, .along_m = 0.5 * length,
+    *out = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind),
+                        .seed = (uint32_t)(int64_t)floor_at, .throw_s = 1, .scale = across_scale, .along_m = 0.5 * length,
                         .mass_kg = table->law[kind].mass_kg * across_scale * across_scale * length};
     tail_body[0] = model->box_low[0] - 0.5 * length;
     tail_body[2] = -0.5 * model->height_m;
@@ -131,23 +131,119 @@ static bool plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *
     v3_add(out->p_ecef, e->p_ecef, tail_ecef);
     for (int i = 0; i < 3; i++) out->axis_ecef[i] = e->r_ecef_from_body[3 * i];
     v3_scale(out->up_ecef, 1 / v3_length(e->p_ecef), e->p_ecef);
+    return 1;
+}
+
+/* Where the gas leaves, body axes, and which way: the middle of the model's outlet parts at rest, and the axis along
+ * which they lie farthest out; never downwards. False: no such part. */
+static bool outlet_of(double at_body[3], double d_body[3], const Model *model, HeatRole role)
+{
+    double sum[3] = {0}, far = -1;
+    int    count = 0, axis = 0;
+    for (int p = 0; p < model->part_count; p++) {
+        const ModelPart *part = &model->part[p];
+        if (part->role != role) continue;
+        for (int c = 0; c < 3 * part->triangle_count; c++) {
+            double at[3], turned[3];
+            memcpy(at, model->vertex[model->triangle[part->first_triangle + c / 3][c % 3]], sizeof at);
+            for (int node = part->node; node >= 0; node = model->node[node].parent) {
+                m3_mul_v3(turned, model->node[node].r_parent_from_node, at);
+                v3_add(at, turned, model->node[node].p_parent);
+            }
+            v3_add(sum, sum, at);
+            count++;
+        }
+    }
+    if (count == 0) return false;
+    v3_scale(at_body, 1.0 / count, sum);
+    double sign = -1;
+    for (int k = 0; k < 3; k++) {
+        const double middle = 0.5 * (model->box_low[k] + model->box_high[k]);
+        const double half = fmax(0.5 * (model->box_high[k] - model->box_low[k]), 0.01);
+        const double off = (at_body[k] - middle) / half;
+        if (k == 2 && off > 0) continue;
+        if (fabs(off) > far) far = fabs(off), axis = k, sign = off > 0 ? 1 : -1;
+    }
+    v3_scale(d_body, 0, d_body);
+    d_body[axis] = sign;
     return true;
 }
 
-bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const EntitySlot *slot,
-                            const SnapshotEntity *entity, double t_s)
+/* Exhaust as a jet that mixes with the air: puffs of exactly equal intervals of age, the first one growing in. They
+ * left where the outlet was at their age ago, and keep its speed and the jet's for a moment; wind and buoyancy carry
+ * them on (effects.c). The whole depends on t alone. */
+static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, HeatRole role, EffectKind kind,
+                          const EffectTable *table, double drive, double scale, double jet_mps, double t_s)
+{
+    enum { puffs = 5 };
+    static const double jet_decay_s = 0.12;
+    double at_body[3], d_body[3] = {0}, at_ecef[3], d_ecef[3];
+    if (!(drive > 0) || !outlet_of(at_body, d_body, model, role)) return 0;
+    const uint64_t key = entity_key(e->id);
+    const double   interval_s = table->law[kind].life_s / (puffs + 0.5), begun = floor(t_s / interval_s);
+    const double   phase = t_s / interval_s - begun;
+    m3_mul_v3(at_ecef, e->r_ecef_from_body, at_body);
+    m3_mul_v3(d_ecef, e->r_ecef_from_body, d_body);
+    for (int k = 0; k < puffs; k++) {
+        EffectPuff *puff = &out[k];
+        *puff = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind),
+                             .throw_s = jet_decay_s, .seed = (uint32_t)((int64_t)begun - k), .scale = scale,
+                             .age_s = (k + phase + 0.5) * interval_s};
+        puff->mass_kg = table->law[kind].mass_kg * scale * scale * drive * interval_s * (k == 0 ? phase : 1);
+        v3_add(puff->p_ecef, e->p_ecef, at_ecef);
+        v3_add_scaled(puff->p_ecef, puff->p_ecef, -puff->age_s, e->v_ecef_mps);
+        v3_scale(puff->up_ecef, 1 / v3_length(e->p_ecef), e->p_ecef);
+        /* as long as the way from one puff to the next, seen from the outlet, so that they join */
+        const double early = exp(-(puff->age_s - 0.5 * interval_s) / jet_decay_s);
+        const double jet_m = jet_mps * jet_decay_s * early * -expm1(-interval_s / jet_decay_s);
+        const double left_s = interval_s - jet_m / jet_mps; /* times the outlet's speed */
+        double       way[3];
+        for (int i = 0; i < 3; i++) {
+            puff->throw_mps[i] = jet_mps * d_ecef[i] + e->v_ecef_mps[i];
+            way[i] = jet_m * d_ecef[i] - left_s * e->v_ecef_mps[i];
+        }
+        puff->along_m = 0.6 * v3_length(way);
+        if (!v3_normalize(puff->axis_ecef, way)) memcpy(puff->axis_ecef, d_ecef, sizeof puff->axis_ecef);
+    }
+    return puffs;
+}
+
+static int fire_about(EffectPuff *out, const SnapshotEntity *e, const EffectTable *table)
+{
+    const uint64_t key = entity_key(e->id);
+    *out = (EffectPuff){.kind = EFFECT_FLARE_FIRE, .owner = key + 1, .group = (uint32_t)(key * 31), .throw_s = 1,
+                        .scale = 1, .mass_kg = table->law[EFFECT_FLARE_FIRE].mass_kg};
+    memcpy(out->p_ecef, e->p_ecef, sizeof out->p_ecef);
+    v3_scale(out->up_ecef, 1 / v3_length(e->p_ecef), e->p_ecef);
+    memcpy(out->axis_ecef, out->up_ecef, sizeof out->axis_ecef);
+    return 1;
+}
+
+int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable *table, const EntitySlot *slot,
+                           const SnapshotEntity *entity, double t_s)
 {
     const Model       *model = catalog_model(table->catalog, entity->model);
     const EffectTable *effects = effect_history_table(table->effects);
+    const bool         platform = slot->type.kind == dis_kind_platform, air = slot->type.domain == dis_domain_air;
+    const double       drive = platform ? drives_engine(&slot->drives, t_s) : 0;
 
-    if (!(fabs(t_s) < effect_latest_s)) return false;
+    if (!(fabs(t_s) < effect_latest_s)) return 0;
     if (motor_burns(slot, t_s)) /* a light missile of 1.2 m: 1.5 m of flame */
         return plume_behind(out, entity, model, EFFECT_MOTOR_PLUME, effects, fmax(1.25 * model->length_m, 0.5),
                             clamp(model->width_m / 0.3, 0.5, 4), t_s);
-    if (slot->type.kind == dis_kind_platform && slot->type.domain == dis_domain_air &&
-        entity->appearance >> dis_appearance_afterburner_bit & 1)
+    if (slot->type.kind == dis_kind_expendable && slot->roles >> HEAT_FLARE & 1 && slot->drives.flare.until_s > t_s)
+        return fire_about(out, entity, effects);
+    if (platform && air && entity->appearance >> dis_appearance_afterburner_bit & 1)
         return plume_behind(out, entity, model, EFFECT_AFTERBURNER, effects, 4, 1, t_s);
-    return false;
+    if (!(drive > 0)) return 0;
+    if (air && slot->roles >> HEAT_ROTOR & 1)
+        return exhaust_behind(out, entity, model, HEAT_TURBINE, EFFECT_TURBINE_EXHAUST, effects, drive, 1, 40, t_s);
+    if (air && slot->roles >> HEAT_TURBINE & 1)
+        return plume_behind(out, entity, model, EFFECT_JET_EXHAUST, effects, 6, 1, t_s);
+    if (!air)
+        return exhaust_behind(out, entity, model, HEAT_EXHAUST, EFFECT_EXHAUST, effects, drive, size_of(model), 12,
+                              t_s);
+    return 0;
 }
 
 /* A ground-clamped entity emits smoke there, and a burst on the ground is on the same ground. */

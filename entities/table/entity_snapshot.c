@@ -340,7 +340,7 @@ static void finish_chunk(void *user, int worker, int chunk)
 /* First the puffs attached to entities, then those emitted by them and by shots. */
 static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Ordered *order, Arena *arena)
 {
-    EffectPuff *carried = NULL, one;
+    EffectPuff *carried = NULL, some[entity_carried_max];
     int         count = 0;
     for (int pass = 0; pass < 2; pass++) {
         const int found = count;
@@ -348,9 +348,10 @@ static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Orde
         if (pass == 1 && !(carried = arena_alloc(arena, (size_t)found, sizeof *carried))) return STATUS_NO_MEMORY;
         count = 0;
         for (int e = 0; e < snapshot->count; e++) {
-            EffectPuff *to = pass ? carried + count : &one;
-            if (entity_effects_carried(to, table, table->slot + order[e].slot, snapshot->entity + e, snapshot->t_s))
-                count++;
+            const int more = entity_effects_carried(some, table, table->slot + order[e].slot, snapshot->entity + e,
+                                                    snapshot->t_s);
+            if (pass == 1) memcpy(carried + count, some, (size_t)more * sizeof *some);
+            count += more;
             if (pass == 1 && count == found) break;
         }
     }

@@ -126,8 +126,9 @@ double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const
 /* entity_effects.c: after every change of a slot's motion or appearance; and when it ends. */
 void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s);
 void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s);
-/* What it carries along at t_s: the flame behind a motor. False: nothing. */
-bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const EntitySlot *slot,
+/* What it carries along at t_s: the flame behind a motor, exhaust gas, a decoy's fire. Returns how many puffs. */
+enum { entity_carried_max = 6 };
+int  entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable *table, const EntitySlot *slot,
                             const SnapshotEntity *entity, double t_s);
 Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
                                int carried_count, Arena *arena);

@@ -7,6 +7,7 @@
  * (Wrenninge, Kulla, Lundqvist 2013): an approximation; a thick white cloud lit from behind the eye gets a
  * reflectance of about 0.4. */
 #include "render/smoke/effects.h"
+#include "render/smoke/hot_gas.h"
 
 #include <stdlib.h>
 
@@ -34,6 +35,8 @@ typedef struct Placed {
     SmokeVolume       volume;
     const EffectModel *law;
     double           d_eye_enu[3], temp_k; /* from the eye to its centre */
+    double           co2_kg_m3, h2o_kg_m3;  /* at the centre */
+    double           gas_share[effect_band_count]; /* of the extinction */
     uint32_t         group;
     int              index; /* index in the snapshot: order of equals */
 } Placed;
@@ -43,7 +46,7 @@ static void light_volume(Placed *p, int band, const Air *air, const float *groun
 {
     SmokeVolume  *v = &p->volume;
     const bool   optical = band < effect_band_mwir;
-    const double albedo = p->law->albedo[band], sun_w_m2 = air->light.sun_w_m2[band];
+    const double albedo = p->law->albedo[band] * (1 - p->gas_share[band]), sun_w_m2 = air->light.sun_w_m2[band];
     /* mean radiances from above and below: thermal ground emits, ground in daylight reflects */
     const double above = air->light.sky_w_m2[band] / pi_rad;
     const double below = optical ? ground_rho[band] * (sun_w_m2 * fmax(air->light.sun_d_enu[2], 0) / pi_rad + above)
@@ -123,6 +126,43 @@ static void shade_group(Placed *first, int count, unsigned bands)
         }
 }
 
+/* Extinction of the gas of a cloud's puffs in the thermal bands: grey, such that the ray from the eye through a puff's
+ * centre has the emissivity of all the gas of the cloud on it, at the temperature of this puff. Of that the share that
+ * the air's CO2 lets pass counts, for emission and absorption alike: gas as warm as its background stays invisible.
+ * On other rays of the same puff: etc/reference/plumes.md. */
+static void add_gas(Placed *first, int count, unsigned bands, double eye_up_m)
+{
+    static const int    band_of[2] = {effect_band_mwir, effect_band_lwir};
+    static const double air_scale_m = 8000;
+    for (int i = 0; i < count; i++) {
+        Placed *p = &first[i];
+        double  co2_kg_m2 = 0, h2o_kg_m2 = 0, eye_enu[3];
+        if (!(p->co2_kg_m3 + p->h2o_kg_m3 > 0)) continue;
+        v3_add_scaled(eye_enu, p->volume.p_enu, -p->volume.range_m, p->d_eye_enu);
+        for (int k = 0; k < count; k++) {
+            const double column_m = smoke_column_m(&first[k].volume, eye_enu, p->d_eye_enu, 0, INFINITY);
+            co2_kg_m2 += column_m * first[k].co2_kg_m3;
+            h2o_kg_m2 += column_m * first[k].h2o_kg_m3;
+        }
+        const double gas_kg_m2 = co2_kg_m2 + h2o_kg_m2;
+        if (!(gas_kg_m2 > 0)) continue; /* the eye is beyond it */
+        const HotGasColumn column = {hot_gas_atm_m(co2_kg_m2, hot_gas_co2_molar_kg, p->temp_k),
+                                     hot_gas_atm_m(h2o_kg_m2, hot_gas_h2o_molar_kg, p->temp_k)};
+        const double up_m = fmax(0.5 * (eye_up_m + p->volume.p_enu[2]), 0);
+        const double air_m = p->volume.range_m * exp(-up_m / air_scale_m); /* at sea-level density */
+        const double passed = hot_gas_passed(column.co2_atm_m, p->temp_k, air_m);
+        for (int which = 0; which < 2; which++) {
+            const int b = band_of[which];
+            if (!(bands >> b & 1)) continue;
+            const double depth = which ? hot_gas_depth(HOT_GAS_LWIR, column, p->temp_k, 1)
+                                       : hot_gas_depth(HOT_GAS_MWIR, column, p->temp_k, passed);
+            const double gas_per_m = depth / gas_kg_m2 * (p->co2_kg_m3 + p->h2o_kg_m3);
+            p->volume.extinction_per_m[b] += gas_per_m;
+            p->gas_share[b] = p->volume.extinction_per_m[b] > 0 ? gas_per_m / p->volume.extinction_per_m[b] : 0;
+        }
+    }
+}
+
 /* View-frustum cull, including shadows: whether any of it can fall into the picture, or shade what does: a cone
  * about the corners, widened. */
 static bool may_matter(const View *view, const EffectVolume *v)
@@ -135,6 +175,19 @@ static bool may_matter(const View *view, const EffectVolume *v)
     if (cam[2] < -reach) return false;
     const double secant = sqrt(1 + tangent * tangent);
     return (sqrt(cam[0] * cam[0] + cam[1] * cam[1]) - fmax(cam[2], 0) * tangent) <= reach * secant;
+}
+
+/* Drops those without extinction in any requested band: gas in the optical ones. */
+static int keep_visible(Placed *placed, int count, unsigned bands)
+{
+    int kept = 0;
+    for (int i = 0; i < count; i++) {
+        double most = 0;
+        for (int b = 0; b < effect_band_count; b++)
+            if (bands >> b & 1) most = fmax(most, placed[i].volume.extinction_per_m[b]);
+        if (most > 0) placed[kept++] = placed[i];
+    }
+    return kept;
 }
 
 Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, const LocalFrame *frame, const View *view,
@@ -169,16 +222,21 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, con
         placed[count].law    = law;
         placed[count].temp_k = volume.temp_k + daylight_temp_at(&air->light, volume.p_enu) - air->light.weather.air_temp_k;
         placed[count].group  = puff->group;
+        placed[count].co2_kg_m3 = volume.co2_kg_m3;
+        placed[count].h2o_kg_m3 = volume.h2o_kg_m3;
+        memset(placed[count].gas_share, 0, sizeof placed[count].gas_share);
         placed[count].index  = i;
         count++;
     }
-    const Status status = light_volumes(placed, count, view, air, ground_rho, bands, arena);
-    if (status != STATUS_OK) return status;
     qsort(placed, (size_t)count, sizeof *placed, by_group);
     for (int first = 0, end; first < count; first = end) {
         for (end = first + 1; end < count && placed[end].group == placed[first].group;) end++;
+        add_gas(placed + first, end - first, bands, view->p_enu[2]);
         shade_group(placed + first, end - first, bands);
     }
+    count = keep_visible(placed, count, bands);
+    const Status status = light_volumes(placed, count, view, air, ground_rho, bands, arena);
+    if (status != STATUS_OK) return status;
     qsort(placed, (size_t)count, sizeof *placed, by_range);
     SmokeVolume *volume = arena_alloc(arena, (size_t)count + 1, sizeof *volume);
     if (!volume) return STATUS_NO_MEMORY;

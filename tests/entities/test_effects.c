@@ -371,6 +371,7 @@ static void dust_lies_along_the_way(void **state)
     double tail_m = NAN;
     for (int i = 0; i < f.snapshot.puff_count; i++) {
         const EffectPuff *p = &f.snapshot.puff[i];
+        if (p->kind == EFFECT_EXHAUST) continue;
         CHECK(p->kind == EFFECT_DUST);
         const double t_s = 8 - p->age_s, way_m = t_s < 6 ? 8 * (t_s - 3) : 24 + 4 * (t_s - 6);
         if (isnan(tail_m)) tail_m = p->p_ecef[2] - way_m;
@@ -548,6 +549,63 @@ static void bad_tables_are_named(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* A running engine gives off gas behind its outlet, as much as it drives, bounded; a stopped one none; and any instant
+ * has its puffs whatever was asked before. The wind takes them along, and they cool and thin out together. */
+static void engines_give_off_gas(void **state)
+{
+    (void)state;
+    static EffectPuff first[8];
+    Fixture f = fixture_open(NULL);
+    DisEntityState tank = report(1, tank_type), craft = report(2, helicopter_type);
+    craft.p_ecef[0] += 100;
+    craft.p_ecef[1] += 500;
+    hear(&f, &tank, 0);
+    seen_at(&f, 1, 1);
+    CHECK(f.snapshot.puff_count == 0); /* stands, and has no power-plant bit */
+    tank.appearance = power_plant_bit;
+    hear(&f, &tank, 1);
+    hear(&f, &craft, 1);
+    seen_at(&f, 1, 2);
+    int count = 0, turbine = 0;
+    for (int i = 0; i < f.snapshot.puff_count; i++) {
+        turbine += f.snapshot.puff[i].kind == EFFECT_TURBINE_EXHAUST;
+        if (f.snapshot.puff[i].kind != EFFECT_EXHAUST) continue;
+        CHECK(count < 8);
+        first[count++] = f.snapshot.puff[i];
+    }
+    CHECK(count == 5 && turbine == 5 && f.snapshot.puff_count == 10);
+    const Weather    still = {.air_temp_k = 288.15}, wind = {.air_temp_k = 288.15, .wind_mps = 5, .wind_from_rad = 0};
+    const LocalFrame frame = frame_here();
+    double           before_k = INFINITY, before_kg_m3 = INFINITY;
+    for (int i = 1; i < count; i++) { /* the first one grows in */
+        EffectVolume a, b;
+        CHECK(effect_volume(&a, f.snapshot.effect_table, &first[i], &still, &frame));
+        CHECK(effect_volume(&b, f.snapshot.effect_table, &first[i], &wind, &frame));
+        CHECK_NEAR(a.p_enu[1] - b.p_enu[1], 5 * first[i].age_s, 1e-9); /* a north wind: to the south */
+        CHECK(a.temp_k > 288.15 && a.temp_k < before_k && a.co2_kg_m3 < before_kg_m3);
+        CHECK(a.co2_kg_m3 > 2 * a.h2o_kg_m3);
+        for (int c = 0; c < effect_band_mwir; c++) CHECK(a.extinction_per_m[c] == 0);
+        CHECK(v3_length(a.p_enu) < 12);
+        before_k = a.temp_k;
+        before_kg_m3 = a.co2_kg_m3;
+    }
+    seen_at(&f, 1, 2.7);
+    seen_at(&f, 1, 2);
+    int same = 0;
+    for (int i = 0; i < f.snapshot.puff_count; i++)
+        if (f.snapshot.puff[i].kind == EFFECT_EXHAUST) {
+            CHECK(memcmp(&f.snapshot.puff[i], &first[same], sizeof *first) == 0);
+            same++;
+        }
+    CHECK(same == count);
+    tank.appearance = craft.appearance = destroyed_bits;
+    hear(&f, &tank, 3);
+    hear(&f, &craft, 3);
+    seen_at(&f, 1, 4);
+    CHECK(f.snapshot.puff_count == 0);
+    fixture_close(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -567,6 +625,7 @@ int main(void)
         cmocka_unit_test(stop_holds_the_place),
         cmocka_unit_test(wrecks_burn_and_go_out),
         cmocka_unit_test(wrecked_guns_droop),
+        cmocka_unit_test(engines_give_off_gas),
         cmocka_unit_test(bad_tables_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

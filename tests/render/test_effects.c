@@ -2,6 +2,7 @@
 #include "tests/check.h"
 
 #include "render/smoke/effects.h"
+#include "render/smoke/hot_gas.h"
 #include "render/frame/render.h"
 
 static Catalog    *catalog;
@@ -120,6 +121,36 @@ static void boresight(double transmittance[effect_band_count], double added[effe
         transmittance[b] = out.any ? out.transmittance[b][0] : 1;
         added[b] = out.any ? out.added[b][0] : 0;
     }
+}
+
+/* Gas through its middle: seen emissivity times a grey body's radiance there, as hot_gas.h gives it; far less in 8 ..
+ * 12 um; nothing in the optical bands; and as warm as the air it can not be told from the air beside it. */
+static void gas_shines_by_its_bands(void **state)
+{
+    (void)state;
+    static AirPaths  veils;
+    const Air        air = air_when(-30);
+    EffectPuff       puff = puff_at(EFFECT_JET_EXHAUST, 500, 0, 0.3);
+    double           tau[effect_band_count], added[effect_band_count];
+    EffectVolume     v;
+    boresight(tau, added, &puff, &air);
+    CHECK(effect_volume(&v, &effects, &puff, &air.light.weather, &world.frame));
+    const double k = air_k_at(&puff, &air) + v.temp_k - 288.15, column_m = 16.0 / 15 * v.across_m;
+    const HotGasColumn column = {hot_gas_atm_m(v.co2_kg_m3 * column_m, hot_gas_co2_molar_kg, k),
+                                 hot_gas_atm_m(v.h2o_kg_m3 * column_m, hot_gas_h2o_molar_kg, k)};
+    const double want[2] = {hot_gas_emissivity(HOT_GAS_MWIR, column, k) * hot_gas_passed(column.co2_atm_m, k, 500),
+                            hot_gas_emissivity(HOT_GAS_LWIR, column, k)};
+    const double low_m[2] = {3.4e-6, 8e-6}, high_m[2] = {4.8e-6, 12e-6};
+    for (int which = 0; which < 2; which++) {
+        const int b = effect_band_mwir + which;
+        path_north(&veils, &air, b, 500, (float)k);
+        CHECK_NEAR((1 - tau[b]) / want[which], 1, 2e-3);
+        const double glow = planck_band(low_m[which], high_m[which], k, NULL);
+        const double radiance = want[which] * (veils.added_w_m2_sr[0] + veils.transmittance[0] * glow);
+        CHECK_NEAR(added[b] / radiance, 1, 5e-3);
+    }
+    CHECK(1 - tau[effect_band_lwir] < 1 - tau[effect_band_mwir]);
+    for (int b = 0; b < effect_band_mwir; b++) CHECK(tau[b] == 1 && added[b] == 0);
 }
 
 /* A muzzle flash at night: (1 - exp(-depth)) (1 - albedo) Planck(T(age)), through the air of the way; the peak comes
@@ -330,6 +361,7 @@ static void a_host_does_not_see_its_own(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gas_shines_by_its_bands),
         cmocka_unit_test(flash_follows_its_closed_form),
         cmocka_unit_test(thick_smoke_reads_its_temperature),
         cmocka_unit_test(near_infrared_sees_it_longer),

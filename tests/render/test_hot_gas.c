@@ -1,0 +1,133 @@
+/* Hot gas in the thermal bands against the narrow-band model it is fitted to, the band intensity of the literature,
+ * and what must hold whatever the figures. */
+#include "tests/check.h"
+
+#include "render/smoke/hot_gas.h"
+#include "render/materials/planck.h"
+
+/* Narrow-band model with the line-by-line parameters of Soufiani & Taine (1997), evaluated outside this program:
+ * between the tabulated temperatures parameters are linear, as there. Temperature, atm m of CO2 and H2O, emissivity
+ * 3.4 .. 4.8 um and 8 .. 12 um. */
+static void slabs_match_line_by_line_bands(void **state)
+{
+    (void)state;
+    static const double want[][5] = {
+        {500, 0.001, 0.001, 0.08172, 0.0002243},
+        {500, 0.02, 0.02, 0.1916, 0.004381},
+        {500, 0.1, 0.1, 0.2391, 0.02031},
+        {500, 0.02, 0, 0.1901, 0.001595},
+        {500, 0, 0.1, 0.007385, 0.01254},
+        {700, 0.001, 0.001, 0.07359, 0.0005524},
+        {700, 0.02, 0.02, 0.1992, 0.01042},
+        {700, 0.1, 0.1, 0.2481, 0.04485},
+        {700, 0.02, 0, 0.1972, 0.003085},
+        {700, 0, 0.1, 0.01079, 0.03007},
+        {900, 0.001, 0.001, 0.06735, 0.0009263},
+        {900, 0.02, 0.02, 0.2122, 0.01708},
+        {900, 0.1, 0.1, 0.27, 0.06988},
+        {900, 0.02, 0, 0.2101, 0.003437},
+        {900, 0, 0.1, 0.01279, 0.05359},
+        {1100, 0.001, 0.001, 0.05728, 0.001304},
+        {1100, 0.02, 0.02, 0.2156, 0.02358},
+        {1100, 0.1, 0.1, 0.2727, 0.09286},
+        {1100, 0.02, 0, 0.2133, 0.003787},
+        {1100, 0, 0.1, 0.0151, 0.07515},
+        {1500, 0.001, 0.001, 0.04464, 0.002048},
+        {1500, 0.02, 0.02, 0.2296, 0.03661},
+        {1500, 0.1, 0.1, 0.2974, 0.1389},
+        {1500, 0.02, 0, 0.227, 0.003049},
+        {1500, 0, 0.1, 0.01851, 0.1254},
+        {1900, 0.001, 0.001, 0.03791, 0.002896},
+        {1900, 0.02, 0.02, 0.2389, 0.05174},
+        {1900, 0.1, 0.1, 0.3156, 0.1939},
+        {1900, 0.02, 0, 0.2358, 0.002393},
+        {1900, 0, 0.1, 0.02159, 0.1843},
+        {2300, 0.001, 0.001, 0.0308, 0.003722},
+        {2300, 0.02, 0.02, 0.2381, 0.0656},
+        {2300, 0.1, 0.1, 0.3181, 0.2391},
+        {2300, 0.02, 0, 0.2346, 0.001751},
+        {2300, 0, 0.1, 0.02462, 0.2328},
+    };
+    double worst[2] = {0, 0};
+    for (size_t i = 0; i < sizeof want / sizeof *want; i++)
+        for (int band = 0; band < 2; band++) {
+            const HotGasColumn column = {want[i][1], want[i][2]};
+            const double error = hot_gas_emissivity((HotGasBand)band, column, want[i][0]) / want[i][3 + band] - 1;
+            worst[band] = fmax(worst[band], fabs(error));
+        }
+    CHECK_NEAR(worst[0], 0, 0.04);
+    CHECK_NEAR(worst[1], 0, 0.04);
+    /* LWIR over MWIR radiance of exhaust of 0.02 atm m each: the ratio of the two columns above times Planck's */
+    for (size_t i = 1; i < sizeof want / sizeof *want; i += 5) {
+        const HotGasColumn column = {want[i][1], want[i][2]};
+        const double t = want[i][0], black = planck_band(8e-6, 12e-6, t, NULL) / planck_band(3.4e-6, 4.8e-6, t, NULL);
+        const double lwir = hot_gas_emissivity(HOT_GAS_LWIR, column, t);
+        const double got = lwir / hot_gas_emissivity(HOT_GAS_MWIR, column, t) * black;
+        CHECK_NEAR(got / (want[i][4] / want[i][3] * black), 1, 0.06);
+        CHECK(got < 0.25); /* exhaust is a source of the middle infrared */
+    }
+}
+
+/* The 4.3 um band's intensity does not depend on temperature but by the gas law: HITRAN's is 2560 .. 2700 cm-2 atm-1
+ * at 273.15 K (all isotopologues with hot bands). Thin emissivity = intensity * Planck at 2340 cm-1 over the band. */
+static void thin_gas_has_the_bands_intensity(void **state)
+{
+    (void)state;
+    static const double intensity = 2630; /* cm-2 atm-1 */
+    for (double temp_k = 700; temp_k <= 2300; temp_k += 400) {
+        const double u = 1e-5, low_m = 1 / 235000.0, high_m = 1 / 233000.0;
+        const double per_cm = planck_band(low_m, high_m, temp_k, NULL) / 20; /* W/(m2 sr cm-1) about 2340 cm-1 */
+        const double want = intensity * 273.15 / temp_k * u * 100 * per_cm / planck_band(3.4e-6, 4.8e-6, temp_k, NULL);
+        const double got = hot_gas_emissivity(HOT_GAS_MWIR, (HotGasColumn){u, 0}, temp_k);
+        CHECK_NEAR(got / want, 1, temp_k < 1000 ? 0.25 : 0.15); /* hot bands lie at longer waves */
+    }
+}
+
+static void limits_hold(void **state)
+{
+    (void)state;
+    for (int band = 0; band < 2; band++)
+        for (double temp_k = 250; temp_k <= 2600; temp_k += 50) {
+            double before = 0;
+            for (double u = 1e-6; u < 1e5; u *= 3) {
+                const double e = hot_gas_emissivity((HotGasBand)band, (HotGasColumn){u, u}, temp_k);
+                CHECK((u < 1 ? e > before : e >= before - 1e-14) && e <= 1);
+                before = e;
+                const double depth = hot_gas_depth((HotGasBand)band, (HotGasColumn){u, u}, temp_k, 0.5);
+                CHECK_NEAR(-expm1(-depth), 0.5 * e, 1e-12);
+            }
+            const double one = hot_gas_emissivity((HotGasBand)band, (HotGasColumn){1e-9, 1e-9}, temp_k);
+            const double two = hot_gas_emissivity((HotGasBand)band, (HotGasColumn){2e-9, 2e-9}, temp_k);
+            CHECK_NEAR(two / one, 2, 1e-4);
+        }
+    CHECK_NEAR(hot_gas_emissivity(HOT_GAS_LWIR, (HotGasColumn){0, 0}, 900), 0, 0);
+    /* 1 kg/m2 of CO2 at 0 C: a mole fills 22.414 l */
+    CHECK_NEAR(hot_gas_atm_m(1, hot_gas_co2_molar_kg, 273.15), 0.022414 / 0.04401, 1e-4);
+}
+
+/* Cold air leaves less of cool gas than of hot, less over longer ranges, never more than of a grey body. */
+static void air_takes_the_cold_band(void **state)
+{
+    (void)state;
+    CHECK_NEAR(hot_gas_passed(0.02, 700, 0), 1, 0);
+    CHECK_NEAR(hot_gas_passed(0.02, 700, 1000), 0.080, 1e-9);  /* the two-layer narrow-band model */
+    CHECK_NEAR(hot_gas_passed(0.02, 1500, 1000), 0.342, 1e-9);
+    for (double temp_k = 300; temp_k <= 2300; temp_k += 100) {
+        double before = 1;
+        for (double range_m = 0.1; range_m < 1e5; range_m *= 1.7) {
+            const double now = hot_gas_passed(0.02, temp_k, range_m);
+            CHECK(now >= 0 && now <= before);
+            if (temp_k > 300) CHECK(now >= hot_gas_passed(0.02, temp_k - 100, range_m) - 0.002);
+            before = now;
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slabs_match_line_by_line_bands), cmocka_unit_test(thin_gas_has_the_bands_intensity),
+        cmocka_unit_test(limits_hold), cmocka_unit_test(air_takes_the_cold_band),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
