@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-enum { weather_kept = 64, vehicle_capacity = 4096 };
+enum { weather_kept = 64, vehicle_capacity = 512 };
 
 struct WorldVehicles {
     const World *world;

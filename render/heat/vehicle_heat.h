@@ -14,6 +14,8 @@
  *     of 288 K) over free convection; 10 % of McAdams's 5.7 + 3.8 v up to 10 m/s; with air density^0.8 above
  *     recovery 0.85 v^2 / (2 cp): between the laminar sqrt(Pr) = 0.84 and the turbulent Pr^(1/3) = 0.89
  *
+ * At most 32 entities begin at a tick: those of a crowd that come later are as warm as the air until then.
+ *
  * Before its first report an entity is taken to have stood there for a day with its engine stopped, and for its last hour to have
  * done what it then does. Munitions and expendables start as warm as the air that flows past them. */
 #ifndef RENDER_HEAT_VEHICLE_HEAT_H
@@ -41,7 +43,7 @@ typedef Status VehiclePlace(PlaceHeat *out, const void *user, double unix_s, con
 typedef struct VehicleHeatConfig {
     double        first_step_s, step_s; /* 1; 30 */
     double        unix_s;               /* of exercise time 0 */
-    int           capacity;             /* entities at most; others stay as warm as the air, and are counted */
+    int           capacity;             /* entities at most, by id; others stay as warm as the air, and are counted */
     VehiclePlace *place;
     const void   *user;
 } VehicleHeatConfig;
