@@ -169,21 +169,33 @@ static bool outlet_of(double at_body[3], double d_body[3], const Model *model, H
     return true;
 }
 
+/* Rotors and a turbine: a rotorcraft, whose gas leaves that. */
+static bool is_rotorcraft(uint32_t roles) { return roles >> HEAT_ROTOR & 1 && roles >> HEAT_TURBINE & 1; }
+
+void entity_effects_outlet(EntityTable *table, int model)
+{
+    ModelOutlet *outlet = &table->outlet[model];
+    if (outlet->known) return;
+    const HeatRole role = is_rotorcraft(table->model_roles[model]) ? HEAT_TURBINE : HEAT_EXHAUST;
+    outlet->is_there = outlet_of(outlet->at_body, outlet->d_body, catalog_model(table->catalog, model), role);
+    outlet->known = true;
+}
+
 /* Exhaust as a jet that mixes with the air: puffs of exactly equal intervals of age, the first one growing in. They
  * left where the outlet was at their age ago, and keep its speed and the jet's for a moment; wind and buoyancy carry
  * them on (effects.c). The whole depends on t alone. */
-static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, HeatRole role, EffectKind kind,
+static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelOutlet *outlet, EffectKind kind,
                           const EffectTable *table, double drive, double scale, double jet_mps, double t_s)
 {
     enum { puffs = 5 };
     static const double jet_decay_s = 0.12;
-    double at_body[3], d_body[3] = {0}, at_ecef[3], d_ecef[3];
-    if (!(drive > 0) || !outlet_of(at_body, d_body, model, role)) return 0;
+    double at_ecef[3], d_ecef[3];
+    if (!(drive > 0) || !outlet->is_there) return 0;
     const uint64_t key = entity_key(e->id);
     const double   interval_s = table->law[kind].life_s / (puffs + 0.5), begun = floor(t_s / interval_s);
     const double   phase = t_s / interval_s - begun;
-    m3_mul_v3(at_ecef, e->r_ecef_from_body, at_body);
-    m3_mul_v3(d_ecef, e->r_ecef_from_body, d_body);
+    m3_mul_v3(at_ecef, e->r_ecef_from_body, outlet->at_body);
+    m3_mul_v3(d_ecef, e->r_ecef_from_body, outlet->d_body);
     for (int k = 0; k < puffs; k++) {
         EffectPuff *puff = &out[k];
         *puff = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind),
@@ -236,12 +248,12 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
     if (platform && air && entity->appearance >> dis_appearance_afterburner_bit & 1)
         return plume_behind(out, entity, model, EFFECT_AFTERBURNER, effects, 4, 1, t_s);
     if (!(drive > 0)) return 0;
-    if (air && slot->roles >> HEAT_ROTOR & 1)
-        return exhaust_behind(out, entity, model, HEAT_TURBINE, EFFECT_TURBINE_EXHAUST, effects, drive, 1, 40, t_s);
+    if (air && is_rotorcraft(slot->roles))
+        return exhaust_behind(out, entity, &table->outlet[entity->model], EFFECT_TURBINE_EXHAUST, effects, drive, 1, 40, t_s);
     if (air && slot->roles >> HEAT_TURBINE & 1)
         return plume_behind(out, entity, model, EFFECT_JET_EXHAUST, effects, 6, 1, t_s);
     if (!air)
-        return exhaust_behind(out, entity, model, HEAT_EXHAUST, EFFECT_EXHAUST, effects, drive, size_of(model), 12,
+        return exhaust_behind(out, entity, &table->outlet[entity->model], EFFECT_EXHAUST, effects, drive, size_of(model), 12,
                               t_s);
     return 0;
 }

@@ -171,6 +171,7 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
         slot->type = pdu->type;
         slot->model = catalog_find(table->catalog, pdu->type, &slot->origin, NULL);
         slot->roles = table->model_roles[slot->model];
+        entity_effects_outlet(table, slot->model);
         slot->articulation.count = 0;
     }
     slot->force = pdu->force;

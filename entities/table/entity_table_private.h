@@ -65,10 +65,17 @@ typedef struct EntityFocus {
     double      ranked_ecef[3], ranked_s; /* from where, and when, all distances were last taken */
 } EntityFocus;
 
+/* Where a model's exhaust gas leaves, body axes, and which way. */
+typedef struct ModelOutlet {
+    bool   known, is_there;
+    double at_body[3], d_body[3];
+} ModelOutlet;
+
 struct EntityTable {
     EntityTableConfig config;
     const Catalog    *catalog;
     uint32_t         *model_roles; /* [catalog_model_count] */
+    ModelOutlet      *outlet;      /* [catalog_model_count], of models that entities have had */
     uint64_t          changes;     /* entity_table_changes */
     EntityIndex       index;
     EntityRanks      *ranks;       /* of all but the focus' own */
@@ -123,6 +130,8 @@ double entity_slot_spin(const EntitySlot *slot, double t_s);
 /* Forward way from the report to a pose reached by dead reckoning. */
 double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const double r_ecef_from_body[9]);
 
+/* entity_effects.c: once an entity has this model. */
+void entity_effects_outlet(EntityTable *table, int model);
 /* entity_effects.c: after every change of a slot's motion or appearance; and when it ends. */
 void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s);
 void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s);

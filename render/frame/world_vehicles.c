@@ -109,6 +109,7 @@ Status world_vehicles_create(WorldVehicles **out, const World *world, double ste
     if (!v) return STATUS_NO_MEMORY;
     v->world = world;
     v->arena = arena_create();
+    for (int k = 0; k < weather_kept; k++) v->kept[k].unix_s = NAN;
     const VehicleHeatConfig config = {.first_step_s = fmin(1, step_s), .step_s = step_s, .unix_s = world->drive->exercise_s,
                                       .capacity = vehicle_capacity, .place = place_there, .user = v};
     const VehicleHeatWorld  about = {world->catalog, &world->materials, &world->parts, &world->frame, world->tracer, world->patches};
