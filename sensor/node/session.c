@@ -386,8 +386,24 @@ int                  session_entities(const Session *s) { return entity_table_co
 uint64_t             session_over_rate(const Session *s) { return entity_table_counters(s->table)->over_rate; }
 const char          *session_host(const Session *s) { return s->host_text; }
 
+static void report_vehicles(const Session *s)
+{
+    if (!s->vehicles) return;
+    const VehicleHeat         *heat = world_vehicles_heat(s->vehicles);
+    const VehicleHeatCounters *c = vehicle_heat_counters(heat);
+    log_detail("heat of vehicles: %llu begun, %llu steps, %.0f ms in all, %.1f ms the longest tick, %.2f MB",
+               (unsigned long long)c->begun, (unsigned long long)c->steps, 1e3 * c->spent_s, 1e3 * c->longest_s,
+               1e-6 * (double)vehicle_heat_bytes(heat));
+    if (c->left_out > 0)
+        log_warn("heat of vehicles: too many entities: those with the highest ids were as warm as the air (entities.shown)");
+    if (c->failed > 0)
+        log_warn("heat of vehicles: %llu steps were given up, and temperatures kept; look at etc/heat.csv and "
+                 "etc/heat_machines.csv for extreme values", (unsigned long long)c->failed);
+}
+
 Status session_close(Session *s, SessionResult *result)
 {
+    report_vehicles(s);
     Status status = consumers_close(&s->consumers); /* the last frames are published before */
     detections_close(s->detections);
     geoid_close(&s->geoid);

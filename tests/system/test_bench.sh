@@ -66,7 +66,7 @@ table precision
 for knob in "Earth to local frame" "latitude. longitude. height" "geoid between posts" "the sun's place" \
             "powers of two" \
             "spacing of invented ground" "reach of the finest level" "height of a post" "detail: weakest octave" "posts of terrain from files" \
-            "dead reckoning" "heat of parts between reports" "radiance of a black body" "temperature of a radiance" \
+            "dead reckoning" "radiance of a black body" "temperature of a radiance" \
             "plants simplified" "rays a pixel among plants" "reach of low plants" "light between leaves" \
             "light on the ground" "smoke along a ray" "air before a pixel. visible" "air before a pixel. thermal" \
             "radiance of the sky" "light of the sky on a plane" "range to the ground" "range to a part" "rays a pixel" \
