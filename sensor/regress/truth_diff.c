@@ -20,6 +20,7 @@ static const struct Field {
     {"los_rate_dps", 1e-3, 1e-5},  {"boresight_error_deg", 1e-4, 0},
     {"pixels", 0.02, 0.005},       {"visible_fraction", 0.005, 0},{"amodal_box_px", 0.02, 0},
     {"foliage_fraction", 0.005, 0},
+    {"dt_k", 0.05, 0},            {"patch_temp_k", 0.05, 0}, /* as temperatures of pixels */
     {"box_px", 0, 0},              {"age_s", 1e-5, 0},            {"position_error_m", 1e-3, 1e-3},
     {"contrast_k", 0.05, 0.01},    {"dt_rss_k", 0.05, 0.01},      {"contrast", 0.01, 0.01},
     {"snr", 0.05, 0.02},           {"veil_transmittance", 0.002, 0}, {"intensity_w_sr", 1e-4, 0.01},
@@ -64,6 +65,7 @@ static Channel channel_of_target(const char *path)
     static const char *const seen[] = {"].pixels", "].visible_fraction", "].box_px", "].amodal_box_px",
                                        "].occluded_by", "].foliage_fraction"};
     if (strstr(path, "].bands.")) return CHANNEL_SIGNALS;
+    if (ends_with(path, "].dt_k") || ends_with(path, "].patch_temp_k")) return CHANNEL_TEMP;
     for (size_t i = 0; i < sizeof seen / sizeof *seen; i++)
         if (ends_with(path, seen[i])) return CHANNEL_TARGETS;
     return CHANNEL_MOTION;
