@@ -278,7 +278,8 @@ void snapshot_pose(NodePose *pose, double *joint_value, const Snapshot *snapshot
     Articulation          articulation;
     articulation.t_s   = joints->report_s;
     articulation.count = joints->count;
-    memcpy(articulation.joint, snapshot->joint_report + joints->first, (size_t)joints->count * sizeof *articulation.joint);
+    if (joints->count > 0)
+        memcpy(articulation.joint, snapshot->joint_report + joints->first, (size_t)joints->count * sizeof *articulation.joint);
     pose_nodes(pose, joint_value, model, &articulation, &joints->drive, joints->time_s, joints->hold_s, e);
 }
 
