@@ -2,12 +2,12 @@
 #include "render/heat/vehicle_heat.h"
 
 #include "render/heat/patch_view.h"
+#include "render/heat/surface_flux.h"
 
 #include <stdlib.h>
 
 enum { begin_most = 32 }; /* entities a tick: of crowds the rest wait */
 
-static const double stefan = 5.670374419184429e-8;
 static const double recovery = 0.85, cp_air_j_kgk = 1005;
 static const double leak_s = 25000;        /* engine that has stopped, and a cabin: to the air through its bay; estimate */
 static const double flame_w_m2 = 20e3;     /* into the skin of what burns: fires of fuel and rubber inside; estimate */
@@ -19,7 +19,7 @@ typedef struct VehicleState {
     int          model;
     double       t_s, next_s, span_s;
     EntityDrives drives;
-    double       up_body[3], ahead_enu[3], joint_sum;
+    double       up_body[3], ahead_enu[3];
     double       heat_in_j;
     double      *temp_k;          /* [nodes] at t_s */
     float       *now_k, *next_k;  /* [patches] at t_s, next_s */
@@ -222,10 +222,10 @@ static void load_patch(NetworkLoad *load, const Moment *m, const VehicleState *s
     const double level_w_m2 = p->direct_w_m2 * fmax(p->sun_d_enu[2], 0) + p->diffuse_w_m2;
     const double sun_w_m2 = p->direct_w_m2 * (double)m->lit[i] + p->diffuse_w_m2 * (double)view->sky +
                             p->ground_rho * level_w_m2 * (double)view->ground;
-    double around_w_m2 = p->longwave_w_m2 * (double)view->sky + stefan * pow(p->ground_k, 4) * (double)view->ground +
-                         stefan * pow(p->under_k, 4) * (double)view->under;
+    double around_w_m2 = p->longwave_w_m2 * (double)view->sky + stefan_w_m2k4 * pow(p->ground_k, 4) * (double)view->ground +
+                         stefan_w_m2k4 * pow(p->under_k, 4) * (double)view->under;
     for (int k = 0; k < view->partners; k++)
-        around_w_m2 += (double)view->share[k] * stefan * pow(s->temp_k[m->shape->skin[view->partner[k]].surface], 4);
+        around_w_m2 += (double)view->share[k] * stefan_w_m2k4 * pow(s->temp_k[m->shape->skin[view->partner[k]].surface], 4);
     at->heat_w += area * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame_w_m2 * (double)d->burning);
     at->emits_m2 = e * area;
     add_film(at, area * film_at(speed_mps, p->air_density), p->air_k + recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk));
@@ -414,8 +414,6 @@ static Status begin(VehicleState **out, VehicleHeat *h, Moment *m, double t_s)
     if (!s) return STATUS_NO_MEMORY;
     s->id = e->id, s->since_s = e->drives.since_s, s->model = e->model;
     s->drives = e->drives;
-    m->place.above_m = 0;
-    m->pose.posed = &m->posed;
     status = find_place(m, h, h->config.unix_s + t_s, true);
     if (status == STATUS_OK) {
         const PlaceHeat now = m->place;
@@ -454,7 +452,7 @@ static Status advance(VehicleHeat *h, VehicleState *s, Moment *m, bool changed, 
     if (status != STATUS_OK) return status;
     up_in_body(up_body, m->pose.r_enu_from_body);
     if (v3_dot(up_body, s->view_up_body) < turned_cos || joints_moved(m, s)) see(s, m);
-    load_nodes(load, m, s, d);
+    if (!changed) load_nodes(load, m, s, d);
     step(h, s, s->temp_k, &s->heat_in_j, &s->drives, s->load, changed ? s->load : load, t_s - s->t_s, scratch);
     take_shots(h, s, d);
     stay(s, m, t_s);

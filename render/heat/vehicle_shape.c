@@ -71,7 +71,7 @@ static void add_insides(VehicleShape *s)
 {
     bool any[INSIDE_COUNT] = {false};
     for (int i = 0; i < s->patches->count; i++) any[s->skin[i].row.inside] = true;
-    s->engine = s->cabin = s->between = -1;
+    s->engine = s->cabin = -1;
     if (any[INSIDE_ENGINE]) s->engine = s->nodes, s->capacity_j_k[s->nodes++] = s->machine.engine_j_k;
     if (any[INSIDE_CABIN]) s->cabin = s->nodes, s->capacity_j_k[s->nodes++] = s->machine.cabin_j_k;
     for (int i = 0; i < s->patches->count; i++) {
@@ -81,7 +81,6 @@ static void add_insides(VehicleShape *s)
         s->link[s->links++] = (NetworkLink){s->skin[i].inner, node, s->skin[i].row.inside_w_m2k * s->patches->patch[i].area_m2};
     }
     if (s->engine < 0 || s->cabin < 0) return;
-    s->between = s->links;
     s->link[s->links++] = (NetworkLink){s->engine, s->cabin, s->machine.engine_j_k / bulkhead_s};
 }
 

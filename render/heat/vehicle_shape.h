@@ -23,7 +23,6 @@ typedef struct VehicleShape {
     const Patches *patches;
     MachineRow     machine;
     int            nodes, links, engine, cabin; /* nodes; -1: it has none */
-    int            between;    /* link of engine and cabin; -1: none */
     double        *capacity_j_k;
     NetworkLink   *link;
     SkinNode      *skin;       /* [patches->count] */
