@@ -8,8 +8,8 @@
 
 typedef struct WorldVehicles WorldVehicles;
 
-/* The world must be warm, and outlive it. step_s: of entities whose drives do not change. */
-Status world_vehicles_create(WorldVehicles **out, const World *world, double step_s);
+/* The world must be warm, and outlive it. step_s: of entities whose drives do not change. window_us: VehicleHeatConfig. */
+Status world_vehicles_create(WorldVehicles **out, const World *world, double step_s, double window_us);
 void   world_vehicles_destroy(WorldVehicles *vehicles); /* accepts NULL */
 /* Of VehicleHeat: ticks in order of time; the frame's snapshot after those up to its time. */
 Status world_vehicles_tick(WorldVehicles *vehicles, const Snapshot *snapshot);

@@ -65,6 +65,10 @@ Status network_step(double *temp_k, double *heat_in_j, Network *network, const N
                     const NetworkLoad *load_end, double dt_s);
 enum { network_most_steps = 20000 };
 
+/* The same in one step of the method, whatever its error: L-stable, so that what settles faster than dt_s has settled.
+ * For a past that is assumed; on failure temp_k is untouched. */
+Status network_leap(double *temp_k, Network *network, const NetworkLoad *load, double dt_s);
+
 double network_heat_j(const Network *network, const double *temp_k); /* stored above 0 K in nodes that are not held */
 
 #endif

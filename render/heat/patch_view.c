@@ -74,7 +74,7 @@ static bool meets_under(const PatchPose *pose, const double o_enu[3], const doub
     return at[0] > low[0] - more_m && at[0] < high[0] + more_m && at[1] > low[1] - more_m && at[1] < high[1] + more_m;
 }
 
-static void look(PatchView *out, const PatchPose *pose, int patch)
+void patch_view_look(PatchView *out, const PatchPose *pose, int patch)
 {
     static const float each = 1.0f / (patch_points * patch_view_rays);
     uint16_t           met[patches_most] = {0};
@@ -113,11 +113,6 @@ static void look(PatchView *out, const PatchPose *pose, int patch)
         met[most] = 0;
     }
     for (int k = 0; k < out->partners; k++) out->share[k] *= each * (float)all / (float)kept;
-}
-
-void patch_view_look(PatchView *out, const PatchPose *pose)
-{
-    for (int i = 0; i < pose->patches->count; i++) look(&out[i], pose, i);
 }
 
 void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3])

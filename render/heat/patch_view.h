@@ -28,9 +28,8 @@ typedef struct PatchPose {
     double above_m;                   /* of its base over the ground */
 } PatchPose;
 
-/* out[patches->count]. */
-void patch_view_look(PatchView *out, const PatchPose *pose);
-/* Share of the direct sun that each patch takes: mean cosine of its points, 0 where its own parts are between. */
+void patch_view_look(PatchView *out, const PatchPose *pose, int patch);
+/* out[patches->count]. Share of the direct sun that each patch takes: mean cosine of its points, 0 where its own parts are between. */
 void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3]);
 /* Unit normal of a patch, ENU. */
 void patch_view_normal(double n_enu[3], const PatchPose *pose, int patch);

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-enum { begin_most = 32 }; /* entities a tick: of crowds the rest wait */
+enum { window_ticks = 10 }; /* of 10 ms */
 
 static const double recovery = 0.85, cp_air_j_kgk = 1005;
 static const double leak_s = 25000;        /* engine that has stopped, and a cabin: to the air through its bay; estimate */
@@ -26,17 +26,30 @@ typedef struct VehicleState {
     double      *joint;           /* [model nodes]: as view saw them */
     double       view_up_body[3];
     PatchView   *view;            /* [patches] */
+    double       view_above_m;
+    int          looked, lived;   /* patches whose view is of that pose; steps of its past that are done */
+    bool         shown, changed;  /* its past is over; its drives are others than those of t_s */
+    double       seen_s, waits_s; /* first seen; since when work waits, INFINITY: none does */
     NetworkLoad *load;            /* [nodes] at t_s */
     double       ground_k;        /* in the open, at t_s */
 } VehicleState;
+
+/* An entity whose work waits. */
+typedef struct Due {
+    VehicleState *state;
+    int           index; /* in the snapshot */
+} Due;
 
 struct VehicleHeat {
     VehicleHeatConfig   config;
     VehicleHeatWorld    world;
     VehicleShape       *shape;    /* [models] */
     bool               *shaped;
-    int                 models, count, room;
+    int                 models, count, room, waiting;
     VehicleState      **state, **was; /* [count], by id; of the tick before */
+    Due                *due;      /* [room]: of a tick */
+    double              tick, spent_us[window_ticks]; /* the last, of 10 ms; work of those up to it, in turn */
+    bool                started, metered; /* metered: after the first tick */
     Arena              *arena;    /* of one entity's step */
     VehicleHeatCounters counters;
 };
@@ -67,6 +80,7 @@ void vehicle_heat_destroy(VehicleHeat *h)
     arena_destroy(h->arena);
     free(h->state);
     free(h->was);
+    free(h->due);
     free(h->shape);
     free(h->shaped);
     free(h);
@@ -116,6 +130,8 @@ size_t vehicle_heat_bytes(const VehicleHeat *h)
     return bytes;
 }
 
+bool vehicle_heat_waits(const VehicleHeat *h) { return h->waiting > 0; }
+
 const VehicleHeatCounters *vehicle_heat_counters(const VehicleHeat *h) { return &h->counters; }
 
 /* ---- an entity now ------------------------------------------------------------------------ */
@@ -155,14 +171,20 @@ static Status catch_moment(Moment *m, VehicleHeat *h, const Snapshot *snapshot, 
     return m->posed.model >= 0 && v3_is_finite(m->p_enu) ? STATUS_OK : STATUS_BAD_VALUE;
 }
 
-static Status find_place(Moment *m, const VehicleHeat *h, double unix_s, bool present)
+/* Without its sun. */
+static Status find_ground(Moment *m, const VehicleHeat *h, double unix_s, bool present)
 {
     const Status status = h->config.place(&m->place, h->config.user, unix_s, m->p_enu, present);
-    if (status != STATUS_OK) return status;
     m->pose.posed   = &m->posed;
     m->pose.above_m = m->place.above_m;
-    patch_view_sun(m->lit, &m->pose, m->place.sun_d_enu);
-    return STATUS_OK;
+    return status;
+}
+
+static Status find_place(Moment *m, const VehicleHeat *h, double unix_s, bool present)
+{
+    const Status status = find_ground(m, h, unix_s, present);
+    if (status == STATUS_OK) patch_view_sun(m->lit, &m->pose, m->place.sun_d_enu);
+    return status;
 }
 
 /* ---- loads -------------------------------------------------------------------------------- */
@@ -276,8 +298,8 @@ static bool is_sound(const double *temp_k, int nodes)
 }
 
 /* A step; where the solver gives up, temperatures stay. scratch: [nodes]. */
-static void step(VehicleHeat *h, VehicleState *s, double *temp_k, double *heat_in_j, const EntityDrives *d, const NetworkLoad *from,
-                 const NetworkLoad *to, double dt_s, double *scratch)
+static void step(VehicleHeat *h, VehicleState *s, double *temp_k, double *heat_in_j, const EntityDrives *d,
+                 const NetworkLoad *from, const NetworkLoad *to, double dt_s, double *scratch)
 {
     const VehicleShape *shape = &h->shape[s->model];
     const size_t        octets = (size_t)shape->nodes * sizeof *temp_k;
@@ -341,11 +363,23 @@ static void ahead_in_enu(double ahead_enu[3], const double r_enu_from_body[9])
     for (int k = 0; k < 3; k++) ahead_enu[k] = r_enu_from_body[3 * k];
 }
 
-static void see(VehicleState *s, const Moment *m)
+/* Whether the views of an entity are of this pose. */
+static bool sees_as(const VehicleState *s, const Moment *m)
 {
-    patch_view_look(s->view, &m->pose);
-    up_in_body(s->view_up_body, m->pose.r_enu_from_body);
-    memcpy(s->joint, m->joint, (size_t)m->model->node_count * sizeof *s->joint);
+    static const double near_m = 0.3, high_m = 1.5; /* above it nothing is under it: patch_view.c */
+    double              up_body[3];
+    up_in_body(up_body, m->pose.r_enu_from_body);
+    const double above_m = fmin(m->place.above_m, high_m), viewed_m = fmin(s->view_above_m, high_m);
+    return v3_dot(up_body, s->view_up_body) >= turned_cos && fabs(above_m - viewed_m) <= near_m && !joints_moved(m, s);
+}
+
+static void stay(VehicleState *s, const Moment *m, double t_s)
+{
+    s->t_s    = t_s;
+    s->drives = m->entity->drives;
+    s->ground_k = m->place.ground_k;
+    ahead_in_enu(s->ahead_enu, m->pose.r_enu_from_body);
+    up_in_body(s->up_body, m->pose.r_enu_from_body);
 }
 
 static bool differs(double a, double b, double share, double least) { return fabs(a - b) > fmax(share * fmax(fabs(a), fabs(b)), least); }
@@ -356,15 +390,6 @@ static bool drives_changed(const EntityDrives *a, const EntityDrives *b)
     return differs((double)a->engine, (double)b->engine, 0, 0.05) || differs((double)a->speed_mps, (double)b->speed_mps, 0.1, 1) ||
            a->burning != b->burning || a->motor != b->motor || a->flare != b->flare || a->alive != b->alive ||
            a->flying != b->flying || a->fired_kg[0] != b->fired_kg[0] || a->fired_kg[1] != b->fired_kg[1];
-}
-
-static void stay(VehicleState *s, const Moment *m, double t_s)
-{
-    s->t_s    = t_s;
-    s->drives = m->entity->drives;
-    s->ground_k = m->place.ground_k;
-    ahead_in_enu(s->ahead_enu, m->pose.r_enu_from_body);
-    up_in_body(s->up_body, m->pose.r_enu_from_body);
 }
 
 /* Where its present loads lead it until its next own time. */
@@ -381,107 +406,188 @@ static Status predict(VehicleHeat *h, VehicleState *s, const Moment *m)
     return STATUS_OK;
 }
 
+/* ---- work, in pieces ---------------------------------------------------------------------- */
+
 /* A day without its engine, an hour as it is now: steps that shorten towards the present. */
-static Status live_until(VehicleHeat *h, VehicleState *s, Moment *m, double t_s)
+static const double past_span_s[] = {10800, 10800, 10800, 10800, 7200, 7200, 7200, 3600, 3600, 3600, 3600, 3600, 1200, 1200,
+                                     600, 600};
+enum { past_steps = sizeof past_span_s / sizeof *past_span_s };
+
+/* What pieces cost, microseconds of one core of 2024: units of account, so that every machine does the same work at the
+ * same time (`bench speed` holds them against the clock). */
+static const double look_us = 45; /* of a patch */
+
+static double past_us(const VehicleShape *shape) { return 2.0 * shape->patches->count + 0.6 * shape->nodes; }
+
+static double advance_us(const VehicleShape *shape) { return 3.0 * shape->patches->count + shape->nodes; }
+
+static int window_place(double tick) { return ((int)fmod(tick, window_ticks) + window_ticks) % window_ticks; }
+
+static void open_window(VehicleHeat *h, double t_s)
 {
-    static const struct { double span_s; int times; } past[] = {{10800, 4}, {7200, 3}, {3600, 5}, {1200, 2}, {600, 2}};
-    static const double now_s = 3600;
-    const int           nodes = m->shape->nodes;
-    double             *scratch = arena_alloc(h->arena, (size_t)nodes, sizeof *scratch), before_s = 0;
-    if (!scratch) return STATUS_NO_MEMORY;
-    for (size_t k = 0; k < sizeof past / sizeof *past; k++) before_s += past[k].span_s * past[k].times;
-    Status status = find_place(m, h, h->config.unix_s + t_s - before_s, false);
-    for (int n = 0; n < nodes && status == STATUS_OK; n++) s->temp_k[n] = m->place.air_k;
-    for (size_t k = 0; k < sizeof past / sizeof *past; k++)
-        for (int i = 0; i < past[k].times && status == STATUS_OK; i++) {
-            const double span_s = past[k].span_s;
-            EntityDrives d = {.alive = s->drives.alive, .flying = s->drives.flying};
-            if (before_s <= now_s) d = s->drives;
-            status = find_place(m, h, h->config.unix_s + t_s - before_s + 0.5 * span_s, false);
-            if (status != STATUS_OK) break;
-            load_nodes(s->load, m, s, &d);
-            step(h, s, s->temp_k, NULL, &d, s->load, s->load, span_s, scratch);
-            before_s -= span_s;
-        }
-    return status;
+    const double tick = floor(t_s * 100 + 0.5);
+    h->metered = h->metered || (h->started && tick != h->tick);
+    h->started = true;
+    if (tick - h->tick >= window_ticks) memset(h->spent_us, 0, sizeof h->spent_us);
+    for (double k = fmax(h->tick + 1, tick - window_ticks + 1); k <= tick; k++) h->spent_us[window_place(k)] = 0;
+    h->tick = tick;
 }
 
-static Status begin(VehicleState **out, VehicleHeat *h, Moment *m, double t_s)
+/* Whether there is room for a piece in this tick; in an empty window there always is. */
+static bool take(VehicleHeat *h, double us)
 {
-    const SnapshotEntity *e = m->entity;
-    VehicleState         *s = new_state(m->shape, m->model);
-    Status                status = STATUS_OK;
-    if (!s) return STATUS_NO_MEMORY;
-    s->id = e->id, s->since_s = e->drives.since_s, s->model = e->model;
-    s->drives = e->drives;
-    status = find_place(m, h, h->config.unix_s + t_s, true);
-    if (status == STATUS_OK) {
-        const PlaceHeat now = m->place;
-        see(s, m);
-        for (int n = 0; n < m->shape->nodes; n++) s->temp_k[n] = now.air_k;
-        if (!snapshot_is_short_lived(e)) {
-            status = live_until(h, s, m, t_s);
-        } else {
-            const double speed_mps = v3_length(m->v_enu_mps);
-            for (int n = 0; n < m->shape->nodes; n++) s->temp_k[n] += recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk);
-        }
-        if (status == STATUS_OK) status = find_place(m, h, h->config.unix_s + t_s, true);
-    }
-    if (status == STATUS_OK) {
-        stay(s, m, t_s);
-        load_nodes(s->load, m, s, &s->drives);
-        s->span_s = h->config.first_step_s;
-        status = predict(h, s, m);
-    }
-    if (status != STATUS_OK) {
-        free(s);
-        return status;
-    }
-    h->counters.begun++;
-    *out = s;
+    double spent_us = 0;
+    for (int k = 0; k < window_ticks; k++) spent_us += h->spent_us[k];
+    if (h->metered && spent_us > 0 && spent_us + us > h->config.window_us) return false;
+    h->spent_us[window_place(h->tick)] += us;
+    return true;
+}
+
+/* One step of its past. */
+static Status live_on(VehicleHeat *h, VehicleState *s, Moment *m)
+{
+    static const double now_s = 3600;
+    double             *scratch = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *scratch), before_s = 0;
+    EntityDrives        d = {.alive = s->drives.alive, .flying = s->drives.flying};
+    if (!scratch) return STATUS_NO_MEMORY;
+    for (int k = s->lived; k < past_steps; k++) before_s += past_span_s[k];
+    const double span_s = past_span_s[s->lived];
+    if (before_s <= now_s) d = s->drives;
+    const Status status = find_place(m, h, h->config.unix_s + s->seen_s - before_s + 0.5 * span_s, false);
+    if (status != STATUS_OK) return status;
+    if (s->lived == 0)
+        for (int n = 0; n < m->shape->nodes; n++) s->temp_k[n] = m->place.air_k;
+    load_nodes(s->load, m, s, &d);
+    set_links(m->shape, &d);
+    h->counters.steps++;
+    memcpy(scratch, s->temp_k, (size_t)m->shape->nodes * sizeof *scratch);
+    if (network_leap(scratch, m->shape->network, s->load, span_s) == STATUS_OK && is_sound(scratch, m->shape->nodes))
+        memcpy(s->temp_k, scratch, (size_t)m->shape->nodes * sizeof *scratch);
+    else
+        step(h, s, s->temp_k, NULL, &d, s->load, s->load, span_s, scratch);
+    s->lived++;
     return STATUS_OK;
 }
 
-static Status advance(VehicleHeat *h, VehicleState *s, Moment *m, bool changed, double t_s)
+/* The past is over: it is shown from now on. */
+static Status appear(VehicleHeat *h, VehicleState *s, Moment *m, double t_s)
+{
+    const Status status = find_place(m, h, h->config.unix_s + t_s, true);
+    if (status != STATUS_OK) return status;
+    if (snapshot_is_short_lived(m->entity)) {
+        const double speed_mps = v3_length(m->v_enu_mps);
+        for (int n = 0; n < m->shape->nodes; n++)
+            s->temp_k[n] = m->place.air_k + recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk);
+    }
+    stay(s, m, t_s);
+    load_nodes(s->load, m, s, &s->drives);
+    s->span_s = h->config.first_step_s;
+    s->shown  = true;
+    h->counters.begun++;
+    return predict(h, s, m);
+}
+
+/* Its views are to be of this pose: those of another entity of its model that is posed alike, or none yet. */
+static void start_looking(VehicleState *s, const Moment *m, const VehicleHeat *h)
+{
+    const int patches = m->shape->patches->count;
+    s->looked = 0;
+    s->view_above_m = m->place.above_m;
+    up_in_body(s->view_up_body, m->pose.r_enu_from_body);
+    memcpy(s->joint, m->joint, (size_t)m->model->node_count * sizeof *s->joint);
+    for (int i = 0; i < h->count; i++) {
+        const VehicleState *o = h->state[i];
+        if (o == s || o->model != s->model || o->looked < patches || !sees_as(o, m)) continue;
+        memcpy(s->view, o->view, (size_t)patches * sizeof *s->view);
+        s->looked = patches;
+        return;
+    }
+}
+
+static Status advance(VehicleHeat *h, VehicleState *s, Moment *m, double t_s)
 {
     const EntityDrives *d = &m->entity->drives;
     const int           nodes = m->shape->nodes;
     NetworkLoad        *load = arena_alloc(h->arena, (size_t)nodes, sizeof *load);
-    double             *scratch = arena_alloc(h->arena, (size_t)nodes, sizeof *scratch), up_body[3];
-    Status              status = load && scratch ? find_place(m, h, h->config.unix_s + t_s, true) : STATUS_NO_MEMORY;
+    double             *scratch = arena_alloc(h->arena, (size_t)nodes, sizeof *scratch);
+    const Status        status = load && scratch ? find_place(m, h, h->config.unix_s + t_s, true) : STATUS_NO_MEMORY;
     if (status != STATUS_OK) return status;
-    up_in_body(up_body, m->pose.r_enu_from_body);
-    if (v3_dot(up_body, s->view_up_body) < turned_cos || joints_moved(m, s)) see(s, m);
-    if (!changed) load_nodes(load, m, s, d);
-    step(h, s, s->temp_k, &s->heat_in_j, &s->drives, s->load, changed ? s->load : load, t_s - s->t_s, scratch);
+    if (!s->changed) load_nodes(load, m, s, d);
+    step(h, s, s->temp_k, &s->heat_in_j, &s->drives, s->load, s->changed ? s->load : load, t_s - s->t_s, scratch);
     take_shots(h, s, d);
     stay(s, m, t_s);
     load_nodes(s->load, m, s, d);
-    s->span_s = changed ? h->config.first_step_s : fmin(2 * s->span_s, h->config.step_s);
+    s->span_s = s->changed ? h->config.first_step_s : fmin(2 * s->span_s, h->config.step_s);
+    s->changed = false;
+    if (!sees_as(s, m)) start_looking(s, m, h);
     return predict(h, s, m);
 }
 
-/* One entity at a tick. state: NULL: a new one. */
-static Status tick_entity(VehicleState **state, VehicleHeat *h, const Snapshot *snapshot, int index)
+/* As much as there is room for of what waits: a step, views, the past. */
+static Status work_on(VehicleHeat *h, VehicleState *s, const Snapshot *snapshot, int index)
 {
-    const SnapshotEntity *e = &snapshot->entity[index];
-    const double          t_s = snapshot->t_s;
-    VehicleState         *s = *state;
-    bool                  changed = false;
-    if (s) {
-        double r_enu_from_body[9], ahead_enu[3], up_body[3];
-        m3_tmul(r_enu_from_body, h->world.frame->r_ecef_from_enu, e->r_ecef_from_body);
-        ahead_in_enu(ahead_enu, r_enu_from_body);
-        up_in_body(up_body, r_enu_from_body);
-        changed = drives_changed(&s->drives, &e->drives) || v3_dot(ahead_enu, s->ahead_enu) < turned_cos ||
-                  v3_dot(up_body, s->up_body) < turned_cos;
-        if (!changed && t_s < s->next_s) return STATUS_OK;
+    const double        t_s = snapshot->t_s;
+    const VehicleShape *shape = &h->shape[s->model];
+    const int           patches = shape->patches->count;
+    Moment              m;
+    arena_reset(h->arena);
+    Status status = catch_moment(&m, h, snapshot, index);
+    if (status == STATUS_BAD_VALUE) s->waits_s = INFINITY; /* not drawable */
+    if (status != STATUS_OK) return status == STATUS_BAD_VALUE ? STATUS_OK : status;
+    if (s->shown && (s->changed || t_s >= s->next_s)) {
+        if (!take(h, advance_us(shape))) return STATUS_OK;
+        status = advance(h, s, &m, t_s);
+    } else {
+        status = find_ground(&m, h, h->config.unix_s + t_s, true);
+        if (status == STATUS_OK && s->looked < 0) start_looking(s, &m, h);
     }
-    Moment moment;
-    Status status = catch_moment(&moment, h, snapshot, index);
-    if (status == STATUS_BAD_VALUE) return STATUS_OK; /* not drawable: no temperatures */
-    if (status == STATUS_OK) status = s ? advance(h, s, &moment, changed, t_s) : begin(state, h, &moment, t_s);
+    for (; status == STATUS_OK && s->looked < patches; s->looked++) {
+        if (!take(h, look_us)) return STATUS_OK;
+        patch_view_look(&s->view[s->looked], &m.pose, s->looked);
+    }
+    const int lives = snapshot_is_short_lived(m.entity) ? 0 : past_steps;
+    while (status == STATUS_OK && !s->shown && s->lived < lives) {
+        if (!take(h, past_us(shape))) return STATUS_OK;
+        status = live_on(h, s, &m);
+    }
+    if (status == STATUS_OK && !s->shown) {
+        if (!take(h, advance_us(shape))) return STATUS_OK;
+        status = appear(h, s, &m, t_s);
+    }
+    s->waits_s = INFINITY;
     return status;
+}
+
+/* Whether an entity has work to wait for. */
+static bool is_due(VehicleState *s, const VehicleHeat *h, const SnapshotEntity *e, double t_s)
+{
+    double r_enu_from_body[9], ahead_enu[3], up_body[3];
+    if (!s->shown) return true;
+    m3_tmul(r_enu_from_body, h->world.frame->r_ecef_from_enu, e->r_ecef_from_body);
+    ahead_in_enu(ahead_enu, r_enu_from_body);
+    up_in_body(up_body, r_enu_from_body);
+    s->changed = s->changed || drives_changed(&s->drives, &e->drives) || v3_dot(ahead_enu, s->ahead_enu) < turned_cos ||
+                 v3_dot(up_body, s->up_body) < turned_cos;
+    return s->changed || t_s >= s->next_s || s->looked < h->shape[s->model].patches->count;
+}
+
+/* Those that have waited longest, first. */
+static int by_wait(const void *a, const void *b)
+{
+    const VehicleState *p = ((const Due *)a)->state, *q = ((const Due *)b)->state;
+    if (p->waits_s != q->waits_s) return p->waits_s < q->waits_s ? -1 : 1;
+    return dis_entity_id_compare(p->id, q->id);
+}
+
+static Status first_sight(VehicleState **out, const VehicleHeat *h, const SnapshotEntity *e, double t_s)
+{
+    VehicleState *s = new_state(&h->shape[e->model], tracer_model(h->world.tracer, e->model));
+    if (!s) return STATUS_NO_MEMORY;
+    s->id = e->id, s->since_s = e->drives.since_s, s->model = e->model;
+    s->drives = e->drives;
+    s->seen_s = t_s, s->waits_s = INFINITY, s->looked = -1;
+    *out = s;
+    return STATUS_OK;
 }
 
 static Status make_room(VehicleHeat *h, int count)
@@ -491,8 +597,10 @@ static Status make_room(VehicleHeat *h, int count)
     VehicleState **larger = realloc(h->state, (size_t)room * sizeof *larger);
     if (larger) h->state = larger;
     VehicleState **also = larger ? realloc(h->was, (size_t)room * sizeof *also) : NULL;
-    if (!also) return STATUS_NO_MEMORY;
-    h->was = also, h->room = room;
+    Due *due = also ? realloc(h->due, (size_t)room * sizeof *due) : NULL;
+    if (also) h->was = also;
+    if (!due) return STATUS_NO_MEMORY;
+    h->due = due, h->room = room;
     return STATUS_OK;
 }
 
@@ -510,7 +618,7 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
     const int      before = h->count;
     if (before > 0) memcpy(was, h->state, (size_t)before * sizeof *was);
     h->count = 0;
-    int at = 0, begun = 0;
+    int at = 0, due = 0;
     for (int i = 0; i < snapshot->count; i++) {
         const SnapshotEntity *e = &snapshot->entity[i];
         VehicleState         *s = NULL;
@@ -519,19 +627,28 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
             s = was[at++];
             if (!is_same(s, e)) free(s), s = NULL;
         }
-        if (!s && begun == begin_most) continue; /* at the next tick */
-        begun += !s;
-        if (e->model < 0 || e->model >= h->models || !catalog_has_shape(h->world.catalog, e->model) || h->count == h->config.capacity) {
+        if (e->model < 0 || e->model >= h->models || !catalog_has_shape(h->world.catalog, e->model) ||
+            h->count == h->config.capacity) {
             h->counters.left_out += h->count == h->config.capacity;
             free(s);
             continue;
         }
-        arena_reset(h->arena);
-        if (status == STATUS_OK) status = need_shape(h, e->model);
-        if (status == STATUS_OK && h->shape[e->model].patches->count > 0) status = tick_entity(&s, h, snapshot, i);
-        if (s) h->state[h->count++] = s;
+        if (!s && status == STATUS_OK) status = need_shape(h, e->model);
+        if (!s && status == STATUS_OK && h->shape[e->model].patches->count > 0) status = first_sight(&s, h, e, snapshot->t_s);
+        if (!s) continue;
+        h->state[h->count++] = s;
+        if (!is_due(s, h, e, snapshot->t_s)) continue;
+        s->waits_s = fmin(s->waits_s, snapshot->t_s);
+        h->due[due++] = (Due){s, i};
     }
     while (at < before) free(was[at++]);
+    qsort(h->due, (size_t)due, sizeof *h->due, by_wait);
+    open_window(h, snapshot->t_s);
+    h->waiting = 0;
+    for (int i = 0; i < due && status == STATUS_OK; i++) {
+        if (h->waiting == 0) status = work_on(h, h->due[i].state, snapshot, h->due[i].index);
+        h->waiting += h->due[i].state->waits_s < INFINITY;
+    }
     const double spent_s = wall_clock_s() - began_s;
     h->counters.spent_s += spent_s;
     h->counters.longest_s = fmax(h->counters.longest_s, spent_s);
@@ -570,7 +687,7 @@ Status vehicle_heat_show(const VehicleHeat *h, Snapshot *snapshot, Arena *arena)
         SnapshotEntity     *e = &snapshot->entity[i];
         const VehicleState *s = find_state(h, e->id);
         e->first_patch = -1, e->patches = 0, e->dt_k = 0;
-        if (!s || !is_same(s, e)) continue;
+        if (!s || !s->shown || !is_same(s, e)) continue;
         const int   count = h->shape[s->model].patches->count;
         const float share = s->next_s > s->t_s ? (float)clamp((snapshot->t_s - s->t_s) / (s->next_s - s->t_s), 0, 1) : 0;
         e->first_patch = snapshot->patch_count;
@@ -585,7 +702,7 @@ Status vehicle_heat_show(const VehicleHeat *h, Snapshot *snapshot, Arena *arena)
 bool vehicle_heat_nodes(VehicleNodes *out, const VehicleHeat *h, DisEntityId id)
 {
     const VehicleState *s = find_state(h, id);
-    if (!s) return false;
+    if (!s || !s->shown) return false;
     *out = (VehicleNodes){&h->shape[s->model], s->temp_k, s->heat_in_j, s->t_s};
     return true;
 }

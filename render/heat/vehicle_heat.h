@@ -14,7 +14,9 @@
  *     of 288 K) over free convection; 10 % of McAdams's 5.7 + 3.8 v up to 10 m/s; with air density^0.8 above
  *     recovery 0.85 v^2 / (2 cp): between the laminar sqrt(Pr) = 0.84 and the turbulent Pr^(1/3) = 0.89
  *
- * At most 32 entities begin at a tick: those of a crowd that come later are as warm as the air until then.
+ * Work is done in pieces, those that have waited longest first, and no more of it in any 0.1 s of exercise time than
+ * window_us; the first tick, before any frame, has no limit. So no frame pays for a crowd that appears at once: an entity is
+ * as warm as the air until its past is worked out.
  *
  * Before its first report an entity is taken to have stood there for a day with its engine stopped, and for its last hour to have
  * done what it then does. Munitions and expendables start as warm as the air that flows past them. */
@@ -42,6 +44,7 @@ typedef Status VehiclePlace(PlaceHeat *out, const void *user, double unix_s, con
 
 typedef struct VehicleHeatConfig {
     double        first_step_s, step_s; /* 1; 30 */
+    double        window_us;            /* of work in 0.1 s of exercise time; INFINITY: no limit */
     double        unix_s;               /* of exercise time 0 */
     int           capacity;             /* entities at most, by id; others stay as warm as the air, and are counted */
     VehiclePlace *place;
@@ -69,6 +72,8 @@ Status vehicle_heat_create(VehicleHeat **out, const VehicleHeatConfig *config, c
 void   vehicle_heat_destroy(VehicleHeat *heat); /* accepts NULL */
 /* At a time not before the last. */
 Status vehicle_heat_tick(VehicleHeat *heat, const Snapshot *snapshot);
+/* Whether work is left for the next tick. */
+bool   vehicle_heat_waits(const VehicleHeat *heat);
 /* Fills first_patch and patch_k of a snapshot at or after the last tick. */
 Status vehicle_heat_show(const VehicleHeat *heat, Snapshot *snapshot, Arena *arena);
 const VehicleHeatCounters *vehicle_heat_counters(const VehicleHeat *heat);

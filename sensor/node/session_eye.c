@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 /* timed-out entities are not visible meanwhile: poses and snapshots omit them */
-enum { expire_ticks = seeker_ticks_per_s / 10 };
+enum { expire_ticks = seeker_ticks_per_s / 10, work_ticks = seeker_ticks_per_s / 10 };
 
 /* The centre of the aim at t_s; false when it is absent. */
 static bool aim_pose(double p_ecef[3], const Session *s, double t_s)
@@ -216,11 +216,13 @@ static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
     turn_rate(eye->w_cam_rps, eye->view.r_enu_from_cam, r_next, step_s);
 }
 
-/* Every second, and when something appeared, fired or burst. */
+/* Every second, when something appeared, fired or burst, and while work is left. */
 static void warm_vehicles(Session *s, double tick_s)
 {
     const uint64_t changes = entity_table_changes(s->table);
-    if (!s->vehicles || (s->tick % seeker_ticks_per_s != 0 && changes == s->vehicle_changes)) return;
+    if (!s->vehicles) return;
+    const bool left = s->tick % work_ticks == 0 && vehicle_heat_waits(world_vehicles_heat(s->vehicles));
+    if (s->tick % seeker_ticks_per_s != 0 && changes == s->vehicle_changes && !left) return;
     Snapshot snapshot;
     arena_reset(s->vehicle_arena);
     Status status = entity_table_snapshot(&snapshot, s->table, tick_s, s->vehicle_arena);

@@ -64,7 +64,7 @@ static int close_stage(void **state)
 static VehicleHeat *start(double step_s)
 {
     VehicleHeat            *heat;
-    const VehicleHeatConfig config = {.first_step_s = 1, .step_s = step_s, .capacity = 8, .place = everywhere};
+    const VehicleHeatConfig config = {.first_step_s = 1, .step_s = step_s, .window_us = INFINITY, .capacity = 8, .place = everywhere};
     const VehicleHeatWorld  world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches};
     CHECK(vehicle_heat_create(&heat, &config, &world) == STATUS_OK);
     return heat;
