@@ -196,8 +196,6 @@ static Status read_marks(Session *s)
     return entity_table_marks_load(s->table, s->shared->unix_s, path);
 }
 
-static const double vehicle_window_us = 3500; /* of work in 0.1 s: 4 ms a frame, measured, at 10 frames a second or more */
-
 /* Temperatures of entities. Of no use where no band shows temperatures. */
 static Status open_vehicles(Session *s)
 {

@@ -61,14 +61,17 @@ static int close_stage(void **state)
     return 0;
 }
 
-static VehicleHeat *start(double step_s)
+static VehicleHeat *start_limited(double step_s, double window_us)
 {
     VehicleHeat            *heat;
-    const VehicleHeatConfig config = {.first_step_s = 1, .step_s = step_s, .window_us = INFINITY, .capacity = 8, .place = everywhere};
+    const VehicleHeatConfig config = {.first_step_s = 1, .step_s = step_s, .window_us = window_us, .capacity = 8,
+                                      .place = everywhere};
     const VehicleHeatWorld  world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches};
     CHECK(vehicle_heat_create(&heat, &config, &world) == STATUS_OK);
     return heat;
 }
+
+static VehicleHeat *start(double step_s) { return start_limited(step_s, INFINITY); }
 
 /* One entity: where it stands, facing north; its drives. */
 typedef struct Scene {
@@ -337,6 +340,50 @@ static void room_is_bounded(void **state)
     vehicle_heat_destroy(heat);
 }
 
+/* What appears at once is worked out one after the other, each before it is shown, and with the temperatures that it has
+ * where nothing limits the work, but for the second or two that it began later; a change is not waited for by all. */
+static void crowds_wait(void **state)
+{
+    (void)state;
+    enum { many = 8 };
+    Scene           s;
+    SnapshotEntity  entity[many];
+    SnapshotJoints  joints[many] = {{0}};
+    Snapshot        none = {0};
+    VehicleHeat    *heat[2];
+    static float    kept[many * patches_most];
+    int             shown_before = 0, slowest = 0;
+    enclose(288);
+    weather.sun_d_enu[1] = 0.6, weather.sun_d_enu[2] = 0.8, weather.direct_w_m2 = 800;
+    place(&s, tank, (EntityDrives){.engine = 0.6f});
+    for (int i = 0; i < many; i++) entity[i] = s.entity, entity[i].id.entity = (uint16_t)(i + 1);
+    Snapshot all = {.count = many, .entity = entity, .joints = joints};
+    heat[0] = start(30), heat[1] = start_limited(30, 3500);
+    for (int k = 0; k < 2; k++) CHECK(vehicle_heat_tick(heat[k], &none) == STATUS_OK);
+    for (int tick = 1; tick <= 300; tick++) {
+        all.t_s = tick / 10.0;
+        for (int k = 0; k < 2; k++) CHECK(vehicle_heat_tick(heat[k], &all) == STATUS_OK);
+        CHECK(!vehicle_heat_waits(heat[0]));
+        CHECK(vehicle_heat_show(heat[1], &all, stage.arena) == STATUS_OK);
+        int shown = 0;
+        for (int i = 0; i < many; i++) shown += entity[i].first_patch >= 0;
+        CHECK(shown >= shown_before && shown - shown_before <= 2); /* one needs 1 ms and more */
+        if (shown < many) slowest = tick;
+        CHECK((shown == many) || vehicle_heat_waits(heat[1]));
+        shown_before = shown;
+    }
+    print_message("%d tanks are warm after %.1f s\n", many, slowest / 10.0 + 0.1);
+    CHECK(shown_before == many && slowest >= many / 2);
+    CHECK(vehicle_heat_show(heat[0], &all, stage.arena) == STATUS_OK);
+    memcpy(kept, all.patch_k, (size_t)all.patch_count * sizeof *kept);
+    CHECK(vehicle_heat_show(heat[1], &all, stage.arena) == STATUS_OK);
+    double worst_k = 0;
+    for (int i = 0; i < all.patch_count; i++) worst_k = fmax(worst_k, fabs((double)(kept[i] - all.patch_k[i])));
+    print_message("limited against not: %.3f K\n", worst_k);
+    CHECK(worst_k < 0.5);
+    for (int k = 0; k < 2; k++) vehicle_heat_destroy(heat[k]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -344,6 +391,7 @@ int main(void)
         cmocka_unit_test(engines_warm_and_stay_warm),  cmocka_unit_test(heat_is_kept),
         cmocka_unit_test(speed_warms),                 cmocka_unit_test(bodies_and_flares),
         cmocka_unit_test(the_past_alone_decides),      cmocka_unit_test(room_is_bounded),
+        cmocka_unit_test(crowds_wait),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
 }

@@ -1,6 +1,7 @@
 /* sensor/bench/sensor/speed_heat.c: what the ground's heat costs: spin-up, steps, shadows, hits, and a frame with it. */
 #include "sensor/bench/sensor/speed_private.h"
 
+#include "render/frame/world_vehicles.h"
 #include "sensor/settings/config.h"
 #include "terrain/weather/weather_course.h"
 
@@ -202,6 +203,62 @@ static Status time_frames(Speed *s, const HeatNow *now)
     return STATUS_OK;
 }
 
+/* ---- vehicles ----------------------------------------------------------------------------------- */
+
+enum { vehicle_rounds = 5 };
+
+/* What the longest 0.1 s and the mean one cost, over a minute in which all of the scene's vehicles appear at once, stand,
+ * and after half of it turn round; and the seconds until all are warm. Their models are known. */
+static Status time_vehicle_minute(double out_s[3], size_t *bytes, const TrialScene *scene, Snapshot snapshot)
+{
+    WorldVehicles *v = NULL;
+    const Snapshot none = {0};
+    Status         status = world_vehicles_create(&v, &scene->world, config_default().heat.vehicle_step_s, vehicle_window_us);
+    if (status == STATUS_OK) status = world_vehicles_tick(v, &none);
+    double spent_s = 0;
+    out_s[0] = out_s[2] = 0;
+    for (int k = 1; k <= 600 && status == STATUS_OK; k++) {
+        snapshot.t_s = k / 10.0;
+        for (int i = 0; k == 300 && i < snapshot.count; i++)
+            for (int m = 0; m < 9; m++) snapshot.entity[i].r_ecef_from_body[m] *= m % 3 < 2 ? -1 : 1;
+        const double before_s = vehicle_heat_counters(world_vehicles_heat(v))->spent_s;
+        status = world_vehicles_tick(v, &snapshot);
+        const VehicleHeatCounters *counters = vehicle_heat_counters(world_vehicles_heat(v));
+        out_s[0] = fmax(out_s[0], counters->spent_s - before_s);
+        if (counters->begun < (uint64_t)snapshot.count) out_s[2] = snapshot.t_s;
+        spent_s = counters->spent_s;
+    }
+    out_s[1] = spent_s / 600;
+    *bytes = v ? vehicle_heat_bytes(world_vehicles_heat(v)) : 0;
+    world_vehicles_destroy(v);
+    return status;
+}
+
+static Status time_vehicles(Speed *s)
+{
+    double   longest_s = INFINITY, mean_s = INFINITY, warm_s = 0;
+    size_t   bytes = 0;
+    Snapshot snapshot;
+    arena_reset(s->arena[2]);
+    Status status = entity_table_snapshot(&snapshot, s->scene.table, s->scene.sun_now_s + 0.5, s->arena[2]);
+    bench_progress(s->bench, "heat of vehicles");
+    for (int round = 0; round < vehicle_rounds && status == STATUS_OK; round++) {
+        double out_s[3];
+        status = time_vehicle_minute(out_s, &bytes, &s->scene, snapshot);
+        if (status != STATUS_OK) return status;
+        longest_s = fmin(longest_s, out_s[0]), mean_s = fmin(mean_s, out_s[1]), warm_s = out_s[2];
+    }
+    BenchRow row = bench_row("heat of the vehicles: the longest 0.1 s of a minute");
+    row.median = row.best = longest_s, row.unit = "s";
+    row.rate = 1e-6 * (double)bytes, row.rate_unit = "MB";
+    row.error = warm_s, row.error_unit = "s", row.against = "until all are warm";
+    bench_add(s->bench, &row);
+    row = bench_row("heat of the vehicles: the mean 0.1 s of that minute");
+    row.median = row.best = mean_s, row.unit = "s";
+    bench_add(s->bench, &row);
+    return status;
+}
+
 Status speed_heat(Speed *s)
 {
     HeatNow *now = NULL;
@@ -212,6 +269,7 @@ Status speed_heat(Speed *s)
     if (status == STATUS_OK) status = heat_now(&now, s->scene.world.heat, s->scene.unix_s, arena);
     if (status == STATUS_OK) status = time_hits(s, now);
     if (status == STATUS_OK) status = time_frames(s, now);
+    if (status == STATUS_OK) status = time_vehicles(s);
     arena_destroy(arena);
     return status;
 }
