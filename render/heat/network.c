@@ -362,6 +362,9 @@ static Status solve(Network *n, double dt_s, bool once)
     double reached_s;
     int    code = ARKStepReInit(n->arkode, NULL, derivative, 0, n->state);
     if (code == 0) code = ARKStepSetFixedStep(n->arkode, once ? dt_s : 0);
+    /* a long step needs more iterations, which may end at 0.01 K */
+    if (code == 0) code = ARKStepSetMaxNonlinIters(n->arkode, once ? 20 : 0);
+    if (code == 0) code = ARKStepSetNonlinConvCoef(n->arkode, once ? 10 : 0);
     if (code == 0 && !once) code = ARKStepSetInitStep(n->arkode, dt_s);
     if (code == 0) code = ARKStepSetStopTime(n->arkode, dt_s);
     if (code == 0) code = ARKStepEvolve(n->arkode, dt_s, n->state, &reached_s, ARK_NORMAL);

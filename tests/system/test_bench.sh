@@ -42,7 +42,7 @@ for what in "ground: " "ground: pyramid" "40 m up: frame" "100 m up: frame" "300
             "radar alone" "files of a frame" "heat of the ground: spin-up" "heat of the ground: a step" \
             "heat of the ground: shadows of a day" "heat of the ground: a hit, with shadows" \
             "heat of the ground: a hit, without" "heat of the ground: 100 m up.*as the air" \
-            "heat of the ground: 100 m up.*no shadows" "heat of the ground: 100 m up.*with shadows" "heat of a vehicle: a step" \
+            "heat of the ground: 100 m up.*no shadows" "heat of the ground: 100 m up.*with shadows" "heat of a vehicle: a step" "heat of the vehicles: the longest" "heat of the vehicles: the mean" \
             "memory: posts" "memory: arena" "memory: resident"; do
     has speed "$what"
 done
