@@ -642,7 +642,7 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
         h->due[due++] = (Due){s, i};
     }
     while (at < before) free(was[at++]);
-    qsort(h->due, (size_t)due, sizeof *h->due, by_wait);
+    if (due > 1) qsort(h->due, (size_t)due, sizeof *h->due, by_wait);
     open_window(h, snapshot->t_s);
     h->waiting = 0;
     for (int i = 0; i < due && status == STATUS_OK; i++) {
