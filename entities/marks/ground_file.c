@@ -9,12 +9,14 @@ enum { path_size = 4096 };
 /* Columns; numbers from column `from_unix_s` on. Empty where a kind does not have it. */
 enum {
     at_kind, at_owner, at_from, at_to, at_p, at_q = at_p + 3, at_r = at_q + 3, at_low = at_r + 9, at_high = at_low + 3,
-    at_width = at_high + 3, at_apart, at_tracked, at_radius, at_crater, at_heat, column_count
+    at_width = at_high + 3, at_apart, at_tracked, at_radius, at_crater, at_heat, at_blow,
+    at_blow_d = at_blow + 3, at_blow_radius = at_blow_d + 3, at_blow_speed, at_blow_excess, at_blow_from, at_blow_to, column_count
 };
 static const char *const column_name[column_count] = {
     "kind", "owner", "from_unix_s", "to_unix_s", "x_m", "y_m", "z_m", "to_x_m", "to_y_m", "to_z_m", "r11", "r12", "r13",
     "r21", "r22", "r23", "r31", "r32", "r33", "low_x_m", "low_y_m", "low_z_m", "high_x_m", "high_y_m", "high_z_m",
-    "width_m", "apart_m", "tracked", "radius_m", "crater_m", "heat_j_m2"};
+    "width_m", "apart_m", "tracked", "radius_m", "crater_m", "heat_j_m2", "outlet_x_m", "outlet_y_m", "outlet_z_m", "blow_x",
+    "blow_y", "blow_z", "blow_radius_m", "blow_mps", "blow_excess_k", "blow_from_unix_s", "blow_to_unix_s"};
 
 static const double latest_unix_s = 1e12, earth_m = 1e8, largest_m = 1000, hottest_j_m2 = 1e9;
 static const double longest_s = 3.2e10; /* of a stand: a thousand years */
@@ -44,6 +46,17 @@ static void end_row(FILE *to, int column)
     fputc('\n', to);
 }
 
+static void put_blow(FILE *to, int *column, const GroundBlow *b, double unix_s)
+{
+    put_lengths(to, column, at_blow, b->at_m, 3);
+    put_lengths(to, column, at_blow_d, b->d, 3);
+    put_lengths(to, column, at_blow_radius, &b->radius_m, 1);
+    put_lengths(to, column, at_blow_speed, &b->speed_mps, 1);
+    put_lengths(to, column, at_blow_excess, &b->excess_k, 1);
+    put(to, column, at_blow_from, unix_s + b->from_s, 17);
+    if (isfinite(b->to_s)) put(to, column, at_blow_to, unix_s + b->to_s, 17);
+}
+
 static void put_stand(FILE *to, const GroundStand *s, double unix_s)
 {
     int column = at_owner;
@@ -54,6 +67,7 @@ static void put_stand(FILE *to, const GroundStand *s, double unix_s)
     put_places(to, &column, at_r, s->r_ecef_from_body, 9);
     put_lengths(to, &column, at_low, s->low_m, 3);
     put_lengths(to, &column, at_high, s->high_m, 3);
+    if (s->blow.to_s > s->blow.from_s) put_blow(to, &column, &s->blow, unix_s);
     end_row(to, column);
 }
 
@@ -171,6 +185,18 @@ static bool is_rotation(const double m[9])
     return v3_dot(across, m + 6) > 0;
 }
 
+static void take_blow(GroundBlow *b, Row *r, double stand_to_s)
+{
+    const char *to = table_text(r->table, r->row, r->column[at_blow_to]);
+    lengths(b->at_m, r, at_blow, 3, -largest_m, largest_m);
+    lengths(b->d, r, at_blow_d, 3, -1.001, 1.001);
+    lengths(&b->radius_m, r, at_blow_radius, 1, 0, largest_m);
+    lengths(&b->speed_mps, r, at_blow_speed, 1, 0, 1000);
+    lengths(&b->excess_k, r, at_blow_excess, 1, 0, 5000);
+    b->from_s = time_of(r, at_blow_from);
+    b->to_s   = *to ? fmin(time_of(r, at_blow_to), stand_to_s) : stand_to_s;
+}
+
 static void take_stand(GroundHistory *h, Row *r)
 {
     GroundStand s = {0};
@@ -182,6 +208,7 @@ static void take_stand(GroundHistory *h, Row *r)
     numbers(s.r_ecef_from_body, r, at_r, 9, 2);
     lengths(s.low_m, r, at_low, 3, -largest_m, largest_m);
     lengths(s.high_m, r, at_high, 3, -largest_m, largest_m);
+    if (r->column[at_blow_from] >= 0 && *table_text(r->table, r->row, r->column[at_blow_from])) take_blow(&s.blow, r, s.to_s);
     if (r->status != STATUS_OK) return;
     if (!is_rotation(s.r_ecef_from_body)) r->status = complain(r, "r11 to r33 are no rotation");
     else if (!(s.from_s <= s.to_s && (!*to || s.to_s - s.from_s <= longest_s)))
@@ -256,8 +283,13 @@ Status ground_marks_load(GroundHistory *h, double unix_s, const char *path)
     Status status = table_open(&table, path);
     for (int c = 0; c < column_count && status == STATUS_OK; c++) {
         column[c] = table_column(&table, column_name[c]);
-        if (column[c] >= 0) continue;
+        if (column[c] >= 0 || c >= at_blow) continue; /* a file may be without exhaust */
         log_error("marks: %s has no column %s", path, column_name[c]);
+        status = STATUS_BAD_VALUE;
+    }
+    for (int c = at_blow; c < column_count && status == STATUS_OK; c++) {
+        if ((column[c] >= 0) == (column[at_blow] >= 0)) continue;
+        log_error("marks: %s has some of the columns outlet_x_m to blow_to_unix_s only", path);
         status = STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK) status = ground_history_create(&loaded);

@@ -49,6 +49,11 @@ void ground_stand_until(GroundHistory *h, uint64_t handle, double to_s)
     stand->to_s = fmax(stand->from_s, to_s);
 }
 
+void ground_stand_blows(GroundHistory *h, uint64_t handle, const GroundBlow *blow)
+{
+    if (stand_is_kept(h, handle)) h->stand[(handle - 1) % ground_stand_capacity].blow = *blow;
+}
+
 uint64_t ground_stand_again(double *from_s, const GroundHistory *h, const GroundStand *stand, double since_s)
 {
     uint64_t  found = 0; /* of entries with this owner the latest */

@@ -6,7 +6,7 @@
 #ifndef ENTITIES_MARKS_GROUND_MARKS_H
 #define ENTITIES_MARKS_GROUND_MARKS_H
 
-#include "pitviper.h"
+#include "entities/effects/exhaust_jet.h"
 
 /* most: of a snapshot, with the tracks since the last reports. */
 enum { ground_stand_capacity = 4096, ground_track_capacity = 32768, ground_burn_capacity = 1024,
@@ -14,15 +14,24 @@ enum { ground_stand_capacity = 4096, ground_track_capacity = 32768, ground_burn_
 /* Longer pieces are refused by readers: those made are shorter than 60 m/s for a long timeout. */
 static const double ground_track_longest_m = 20000;
 
+/* Exhaust from a place where an entity stands: one interval of its engine. */
+typedef struct GroundBlow {
+    float  at_m[3], d[3];          /* ExhaustJet, body axes */
+    float  radius_m, speed_mps, excess_k;
+    double from_s, to_s;           /* exercise time; not after: none */
+} GroundBlow;
+
 /* An entity that stood still within 0.5 m and 5 degrees for 60 s or more, or stands: recorded with the first report that
  * finds it so. One that first appears standing is taken to have stood for EntityTableConfig.ambient_s before: from_s is
- * its first report less that. Ends with the report that shows it moved or turned, its removal, or its timeout. */
+ * its first report less that, and to have run its engine for the last hour if it does then. An engine that starts again begins
+ * another stand. Ends with the report that shows it moved or turned, its removal, or its timeout. */
 typedef struct GroundStand {
     double   p_ecef[3];            /* the model's origin (base centre), as reported: not clamped to the ground */
     double   r_ecef_from_body[9];
     float    low_m[3], high_m[3];  /* bounding box of the model at rest, body axes, from that origin */
     double   from_s, to_s;         /* exercise time; to_s INFINITY: still there */
     uint64_t owner;                /* entity_key + 1 */
+    GroundBlow blow;
 } GroundStand;
 
 /* One straight piece of a trail: both tracks, or the wheels of both sides. */
@@ -71,6 +80,7 @@ int64_t ground_history_forgotten(const GroundHistory *history);
  * have no effect below. */
 uint64_t ground_stand_open(GroundHistory *history, const GroundStand *stand);
 void     ground_stand_until(GroundHistory *history, uint64_t handle, double to_s);
+void     ground_stand_blows(GroundHistory *history, uint64_t handle, const GroundBlow *blow);
 /* The latest stand of the owner, if it is in the same place and ended at since_s or later; 0: none. O(capacity). */
 uint64_t ground_stand_again(double *from_s, const GroundHistory *history, const GroundStand *stand, double since_s);
 /* Within 0.5 m and 5 degrees. */

@@ -177,7 +177,14 @@ void entity_effects_outlet(EntityTable *table, int model)
     ModelOutlet *outlet = &table->outlet[model];
     if (outlet->known) return;
     const HeatRole role = is_rotorcraft(table->model_roles[model]) ? HEAT_TURBINE : HEAT_EXHAUST;
-    outlet->is_there = outlet_of(outlet->at_body, outlet->d_body, catalog_model(table->catalog, model), role);
+    const Model       *shape = catalog_model(table->catalog, model);
+    const bool         turbine = role == HEAT_TURBINE;
+    const EffectModel *law = &effect_history_table(table->effects)->law[turbine ? EFFECT_TURBINE_EXHAUST : EFFECT_EXHAUST];
+    ExhaustJet        *jet = &outlet->jet;
+    outlet->is_there = outlet_of(jet->at_body, jet->d_body, shape, role);
+    jet->radius_m = law->radius_start_m * (turbine ? 1 : size_of(shape));
+    jet->speed_mps = turbine ? 40 : 12; /* estimates */
+    jet->excess_k = law->temp_rise_k;
     outlet->known = true;
 }
 
@@ -185,17 +192,18 @@ void entity_effects_outlet(EntityTable *table, int model)
  * left where the outlet was at their age ago, and keep its speed and the jet's for a moment; wind and buoyancy carry
  * them on (effects.c). The whole depends on t alone. */
 static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelOutlet *outlet, EffectKind kind,
-                          const EffectTable *table, double drive, double scale, double jet_mps, double t_s)
+                          const EffectTable *table, double drive, double scale, double t_s)
 {
     enum { puffs = 5 };
+    const double jet_mps = outlet->jet.speed_mps;
     static const double jet_decay_s = 0.12;
     double at_ecef[3], d_ecef[3];
     if (!(drive > 0) || !outlet->is_there) return 0;
     const uint64_t key = entity_key(e->id);
     const double   interval_s = table->law[kind].life_s / (puffs + 0.5), begun = floor(t_s / interval_s);
     const double   phase = t_s / interval_s - begun;
-    m3_mul_v3(at_ecef, e->r_ecef_from_body, outlet->at_body);
-    m3_mul_v3(d_ecef, e->r_ecef_from_body, outlet->d_body);
+    m3_mul_v3(at_ecef, e->r_ecef_from_body, outlet->jet.at_body);
+    m3_mul_v3(d_ecef, e->r_ecef_from_body, outlet->jet.d_body);
     for (int k = 0; k < puffs; k++) {
         EffectPuff *puff = &out[k];
         *puff = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind),
@@ -249,12 +257,11 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
         return plume_behind(out, entity, model, EFFECT_AFTERBURNER, effects, 4, 1, t_s);
     if (!(drive > 0)) return 0;
     if (air && is_rotorcraft(slot->roles))
-        return exhaust_behind(out, entity, &table->outlet[entity->model], EFFECT_TURBINE_EXHAUST, effects, drive, 1, 40, t_s);
+        return exhaust_behind(out, entity, &table->outlet[entity->model], EFFECT_TURBINE_EXHAUST, effects, drive, 1, t_s);
     if (air && slot->roles >> HEAT_TURBINE & 1)
         return plume_behind(out, entity, model, EFFECT_JET_EXHAUST, effects, 6, 1, t_s);
     if (!air)
-        return exhaust_behind(out, entity, &table->outlet[entity->model], EFFECT_EXHAUST, effects, drive, size_of(model), 12,
-                              t_s);
+        return exhaust_behind(out, entity, &table->outlet[entity->model], EFFECT_EXHAUST, effects, drive, size_of(model), t_s);
     return 0;
 }
 

@@ -43,12 +43,37 @@ static void base_of(double p_base_ecef[3], const EntitySlot *slot, const Model *
 
 static double lasts_until_s(const EntitySlot *slot) { return slot->report_s + slot->timeout_s; }
 
+/* What its exhaust did from this place, after a report. False: its engine runs again, and that is another stand's. */
+static bool blows(EntityTable *table, const EntitySlot *slot, EntityMarks *m, bool is_first, double t_s)
+{
+    static const double before_s = 3600; /* render/heat/vehicle_heat.h assumes the same of its past */
+    const ModelOutlet  *outlet = &table->outlet[slot->model];
+    const DriveUntil   *engine = &slot->drives.engine;
+    GroundBlow         *b = &m->blow;
+    const bool          began = b->to_s > b->from_s;
+    if (!outlet->is_there) return true;
+    if (!(drives_engine(&slot->drives, t_s) > 0)) {
+        if (began) b->to_s = fmin(b->to_s, t_s);
+        return true;
+    }
+    if (began && b->to_s < t_s) return false;
+    if (!began) {
+        const ExhaustJet *jet = &outlet->jet;
+        *b = (GroundBlow){.radius_m = (float)jet->radius_m, .speed_mps = (float)jet->speed_mps, .excess_k = (float)jet->excess_k,
+                          .from_s = is_first ? fmax(t_s - before_s, m->from_s) : t_s};
+        for (int k = 0; k < 3; k++) b->at_m[k] = (float)jet->at_body[k], b->d[k] = (float)jet->d_body[k];
+    }
+    b->to_s = engine->until_s;
+    return true;
+}
+
 static void begin_stand(EntityTable *table, EntitySlot *slot, const double p_ecef[3], bool is_first, double t_s)
 {
     EntityMarks *m = marks_of(table, slot);
     m->stands = true;
     m->from_s = is_first ? t_s - table->config.ambient_s : t_s;
     m->stand = 0;
+    m->blow = (GroundBlow){0};
     memcpy(m->p_ecef, p_ecef, sizeof m->p_ecef);
     memcpy(m->r_ecef_from_body, slot->reported.r_ecef_from_body, sizeof m->r_ecef_from_body);
     if (!is_first) return;
@@ -62,13 +87,16 @@ static void begin_stand(EntityTable *table, EntitySlot *slot, const double p_ece
 /* Recorded with the first report that finds it old enough, or that ends it. */
 static void record_stand(EntityTable *table, const EntitySlot *slot, EntityMarks *m, double to_s, double t_s)
 {
+    GroundBlow blow = m->blow;
+    blow.to_s = fmin(blow.to_s, to_s);
     if (m->stand) {
         ground_stand_until(table->ground, m->stand, to_s);
+        if (blow.to_s > blow.from_s) ground_stand_blows(table->ground, m->stand, &blow);
         return;
     }
     if (!(t_s - m->from_s >= stood_s)) return;
     const Model *model = catalog_model(table->catalog, slot->model);
-    GroundStand  stand = {.from_s = m->from_s, .to_s = to_s, .owner = entity_key(slot->id) + 1};
+    GroundStand  stand = {.from_s = m->from_s, .to_s = to_s, .owner = entity_key(slot->id) + 1, .blow = blow};
     memcpy(stand.p_ecef, m->p_ecef, sizeof stand.p_ecef);
     memcpy(stand.r_ecef_from_body, m->r_ecef_from_body, sizeof stand.r_ecef_from_body);
     for (int k = 0; k < 3; k++) {
@@ -223,7 +251,11 @@ void entity_marks_report(EntityTable *table, EntitySlot *slot, bool is_first, do
 
     if (m->stands && !(still && ground_stand_same_place(p_ecef, r, m->p_ecef, m->r_ecef_from_body)))
         end_stand(table, slot, m, t_s);
-    if (!m->stands && still && is_on_ground(table, slot, p_ecef)) begin_stand(table, slot, p_ecef, is_first, t_s);
+    if (m->stands && !blows(table, slot, m, false, t_s)) end_stand(table, slot, m, t_s);
+    if (!m->stands && still && is_on_ground(table, slot, p_ecef)) {
+        begin_stand(table, slot, p_ecef, is_first, t_s);
+        blows(table, slot, m, is_first, t_s);
+    }
     if (m->stands) record_stand(table, slot, m, lasts_until_s(slot), t_s);
     table->counters.marks_forgotten = (uint64_t)ground_history_forgotten(table->ground);
 }

@@ -51,6 +51,7 @@ typedef struct EntityMarks {
     double      p_ecef[3];     /* of the model's origin */
     double      r_ecef_from_body[9];
     double      from_s;
+    GroundBlow  blow;          /* of its exhaust, from this place */
     uint64_t    stand;         /* handle of ground_marks.h; 0: not recorded yet */
     GroundTrail trail;
     double      followed_s;    /* the entity's own time up to which the trail has been followed */
@@ -67,8 +68,8 @@ typedef struct EntityFocus {
 
 /* Where a model's exhaust gas leaves, body axes, and which way. */
 typedef struct ModelOutlet {
-    bool   known, is_there;
-    double at_body[3], d_body[3];
+    bool       known, is_there;
+    ExhaustJet jet;
 } ModelOutlet;
 
 struct EntityTable {

@@ -6,6 +6,7 @@
 #include "dis/pdu.h"
 #include "entities/effects/drives.h"
 #include "entities/effects/effects.h"
+#include "entities/effects/exhaust_jet.h"
 #include "entities/marks/ground_marks.h"
 #include "entities/models/articulation.h"
 
@@ -25,6 +26,7 @@ typedef struct SnapshotEntity {
     double        drift_m, drift_rad; /* expected distance and angle from the truth: snapshot_drift */
     int           first_node;      /* into Snapshot.node */
     EntityDrives  drives;          /* what heats it */
+    const ExhaustJet *exhaust;     /* of its model; NULL: no outlet is known */
     int           first_patch, patches; /* into Snapshot.patch_k; -1, 0: none of its temperatures are known */
     float         dt_k;            /* mean temperature of its surface less that of open ground where it is; with patches */
 } SnapshotEntity;

@@ -1,11 +1,16 @@
 /* render/heat/mark_heat.c: see mark_heat.h. */
 #include "render/heat/mark_heat.h"
 
+#include "render/heat/jet_path.h"
+#include "render/heat/surface_flux.h"
+
 static const double cell_m = 32, least_sun = 0.1; /* lower suns cast no lasting shadow */
 static const double touches_m = 1.5;              /* of a mark's height over the ground that it belongs to */
 
 typedef struct Stand {
     double p_enu[3], axis[3][3], low_m[3], high_m[3], from_s, to_s, reach_m;
+    double blow_from_s, blow_to_s;
+    const JetPath *jet;   /* NULL: none reaches the ground */
 } Stand;
 typedef struct Track {
     double a_enu[3], d[2], length_m, a_s, b_s, width_m, apart_m, heat_j_m2, loose;
@@ -78,10 +83,34 @@ static void put_line(MarkHeat *m, int mark, const Track *t)
     }
 }
 
+/* Its exhaust, where that comes near the ground. */
+static Status blow_of(Stand *out, const GroundBlow *b, double air_k, double exercise_s, Arena *arena)
+{
+    static const double still[3] = {0};
+    const ExhaustJet    jet = {.radius_m = (double)b->radius_m, .speed_mps = (double)b->speed_mps, .excess_k = (double)b->excess_k};
+    double              at_enu[3], d_enu[3] = {0};
+    if (!(b->to_s > b->from_s) || !(jet.radius_m > 0 && jet.speed_mps > 0 && jet.excess_k > 0)) return STATUS_OK;
+    memcpy(at_enu, out->p_enu, sizeof at_enu);
+    for (int a = 0; a < 3; a++) {
+        v3_add_scaled(at_enu, at_enu, (double)b->at_m[a], out->axis[a]);
+        v3_add_scaled(d_enu, d_enu, (double)b->d[a], out->axis[a]);
+    }
+    if (!v3_normalize(d_enu, d_enu)) return STATUS_OK;
+    JetPath *path = arena_alloc(arena, 1, sizeof *path);
+    if (!path) return STATUS_NO_MEMORY;
+    jet_path(path, &jet, at_enu, d_enu, still, air_k);
+    if (path->count < 2 || path->low_m[2] > out->p_enu[2] + touches_m) return STATUS_OK;
+    out->jet = path;
+    out->blow_from_s = exercise_s + b->from_s, out->blow_to_s = exercise_s + b->to_s;
+    for (int k = 0; k < 2; k++)
+        out->reach_m = fmax(out->reach_m, fmax(path->high_m[k] - out->p_enu[k], out->p_enu[k] - path->low_m[k]));
+    return STATUS_OK;
+}
+
 /* Within what a float's cell can count; hostile places are left out. */
 static bool near_enough(const double p_enu[3]) { return fabs(p_enu[0]) < 5e5 && fabs(p_enu[1]) < 5e5 && fabs(p_enu[2]) < 5e4; }
 
-static void take_stand(MarkHeat *m, const GroundStand *s, const LocalFrame *frame, double exercise_s)
+static Status take_stand(MarkHeat *m, const GroundStand *s, const LocalFrame *frame, double exercise_s, Arena *arena)
 {
     Stand *out = &m->stand[m->stands];
     enu_from_ecef(out->p_enu, frame, s->p_ecef);
@@ -94,7 +123,11 @@ static void take_stand(MarkHeat *m, const GroundStand *s, const LocalFrame *fram
     const double high_m = fmin(fmax(-out->low_m[2], 0), 40);
     out->from_s = exercise_s + s->from_s, out->to_s = exercise_s + s->to_s;
     out->reach_m = fmin(0.5 * hypot(out->high_m[0] - out->low_m[0], out->high_m[1] - out->low_m[1]) + high_m / least_sun, 120);
-    if (near_enough(out->p_enu) && out->reach_m > 0) put_square(m, m->stands++, out->p_enu, out->reach_m);
+    out->jet = NULL;
+    if (!near_enough(out->p_enu)) return STATUS_OK;
+    const Status status = blow_of(out, &s->blow, m->now->table.air_k, exercise_s, arena);
+    if (out->reach_m > 0) put_square(m, m->stands++, out->p_enu, fmin(out->reach_m, 120));
+    return status;
 }
 
 static void take_track(MarkHeat *m, const GroundTrack *t, const LocalFrame *frame, double exercise_s)
@@ -141,7 +174,10 @@ Status mark_heat_create(MarkHeat **out, const GroundMarks *marks, const LocalFra
     m->entry  = arena_alloc(arena, (size_t)m->capacity, sizeof *m->entry);
     if (!m->stand || !m->track || !m->burn || !m->bucket || !m->entry) return STATUS_NO_MEMORY;
     for (int b = 0; b < m->buckets; b++) m->bucket[b] = -1;
-    for (int i = 0; i < marks->stands; i++) take_stand(m, &marks->stand[i], frame, exercise_s);
+    for (int i = 0; i < marks->stands; i++) {
+        const Status status = take_stand(m, &marks->stand[i], frame, exercise_s, arena);
+        if (status != STATUS_OK) return status;
+    }
     for (int i = 0; i < marks->tracks; i++) take_track(m, &marks->track[i], frame, exercise_s);
     for (int i = 0; i < marks->burns; i++) take_burn(m, &marks->burn[i], frame, exercise_s);
     *out = m;
@@ -219,6 +255,21 @@ static double stand_k(const MarkHeat *m, const Stand *s, const HeatPast *p, int 
     return m->sun_scale[kind] * taken_k + (sky_k != 0 ? m->sky_scale[kind] * sky_k * hidden_share(s, p_enu) : 0);
 }
 
+/* Kelvins that the stand's exhaust gave the ground, by one time of the grid. */
+static double blow_k(const Stand *s, const HeatPast *p, int kind, double excess_k, double speed_mps)
+{
+    const double film = plate_film_w_m2k(speed_mps) - plate_film_w_m2k(0); /* the kind has its own of free air */
+    const double newest_s = p->count > 0 ? p->unix_s[0] + 0.5 * p->span_s[0] : 0;
+    const double lasted_s = fmin(s->blow_to_s, newest_s) - s->blow_from_s;
+    double       now_k = 0, ended_k = 0; /* for 1 W/m2: now; when it ended, or now */
+    for (int i = 0; i < p->count; i++) {
+        const double begin_s = p->unix_s[i] - 0.5 * p->span_s[i], end_s = begin_s + p->span_s[i], k = (double)p->watt_k[kind][i];
+        now_k   += k * fmax(fmin(end_s, s->blow_to_s) - fmax(begin_s, s->blow_from_s), 0) / p->span_s[i];
+        ended_k += k * fmax(end_s - fmax(begin_s, newest_s - lasted_s), 0) / p->span_s[i];
+    }
+    return film * excess_k * now_k / (1 + film * ended_k);
+}
+
 /* Kelvins that a pulse of heat, age_s ago, still makes. Within the newest interval: of a body without end. */
 static double pulse_k(const HeatPast *p, int kind, double heat_j_m2, double age_s)
 {
@@ -273,7 +324,11 @@ bool mark_heat_at(MarkedGround *out, const MarkHeat *m, int kind, const double p
             if (hypot(p_enu[0] - s->p_enu[0], p_enu[1] - s->p_enu[1]) > s->reach_m) continue;
             const double before_k = stand_k(m, s, &m->now->past[0], kind, from_enu, n_enu, lit);
             const double after_k = stand_k(m, s, &m->now->past[1], kind, from_enu, n_enu, lit);
+            double       excess_k, speed_mps;
             out->add_k -= before_k + m->now->share * (after_k - before_k);
+            if (!s->jet || !jet_path_at(&excess_k, &speed_mps, NULL, s->jet, p_enu, true)) continue;
+            const double blew_k = blow_k(s, &m->now->past[0], kind, excess_k, speed_mps);
+            out->add_k += blew_k + m->now->share * (blow_k(s, &m->now->past[1], kind, excess_k, speed_mps) - blew_k);
         } else if (at->mark < m->stands + m->tracks) {
             add_track(out, m, &m->track[at->mark - m->stands], kind, p_enu);
         } else {

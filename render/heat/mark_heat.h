@@ -5,6 +5,9 @@
  * columns that see none. A track was rubbed warm once, by a pulse of heat that the same response lets
  * fade, and lies loosened: some of the way to ploughed ground, for good. A burst burnt its ground but for the crater, which is loose soil,
  * and left heat.
+ * The exhaust of what stands warms the ground that it reaches (jet_path.h, in still air: what reaches the ground does so within
+ * metres of the outlet, before a wind bends it): a flux by the film of its speed (vehicle_heat.h) that falls as the ground warms, through
+ * the kind's response; ground that the sun has made warmer than the gas is not cooled, and the gas' radiation is left out.
  * Estimates: the loosened share (0.6 of tracks, 0.3 of wheels), the burnt edge. */
 #ifndef RENDER_HEAT_MARK_HEAT_H
 #define RENDER_HEAT_MARK_HEAT_H

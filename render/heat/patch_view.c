@@ -128,3 +128,21 @@ void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3]
         out[i] = (float)(sum / patch_points);
     }
 }
+
+void patch_view_gas(float *excess_k, float *speed_mps, const PatchPose *pose, int patch, const JetPath *path)
+{
+    double sum_k = 0, sum_mps = 0;
+    for (int point = 0; point < patch_points; point++) {
+        double  o_enu[3], n_enu[3], from_enu[3], way[3], here_k, here_mps;
+        PartHit hit;
+        stand(o_enu, n_enu, pose, patch, point);
+        if (!jet_path_at(&here_k, &here_mps, from_enu, path, o_enu, true)) continue;
+        v3_sub(way, from_enu, o_enu);
+        const double far_m = v3_length(way);
+        if (!(v3_dot(way, n_enu) > 0) || !v3_normalize(way, way)) continue;
+        if (parts_first_hit(&hit, pose->posed, o_enu, way, far_m, false) < far_m) continue;
+        sum_k += here_k, sum_mps += here_mps;
+    }
+    *excess_k  = (float)(sum_k / patch_points);
+    *speed_mps = (float)(sum_mps / patch_points);
+}

@@ -7,6 +7,7 @@
 #define RENDER_HEAT_PATCH_VIEW_H
 
 #include "entities/models/patches.h"
+#include "render/heat/jet_path.h"
 #include "render/parts/parts.h"
 
 enum { patch_view_rays = 12, patch_partners = 8 };
@@ -31,6 +32,8 @@ typedef struct PatchPose {
 void patch_view_look(PatchView *out, const PatchPose *pose, int patch);
 /* out[patches->count]. Share of the direct sun that each patch takes: mean cosine of its points, 0 where its own parts are between. */
 void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3]);
+/* Of a jet that flows past a patch: means over its points, 0 where its own parts are between them and the jet upstream. */
+void patch_view_gas(float *excess_k, float *speed_mps, const PatchPose *pose, int patch, const JetPath *path);
 /* Unit normal of a patch, ENU. */
 void patch_view_normal(double n_enu[3], const PatchPose *pose, int patch);
 

@@ -1,6 +1,7 @@
 /* render/heat/vehicle_heat.c: see vehicle_heat.h. */
 #include "render/heat/vehicle_heat.h"
 
+#include "render/heat/jet_path.h"
 #include "render/heat/patch_view.h"
 #include "render/heat/surface_flux.h"
 
@@ -147,6 +148,7 @@ typedef struct Moment {
     double               *joint;
     double                p_enu[3], v_enu_mps[3];
     float                *lit;      /* [patches] */
+    float                *gas_k, *gas_mps; /* [patches]: of its own exhaust that flows past, over the air; 0: none */
     PlaceHeat             place;
 } Moment;
 
@@ -159,8 +161,10 @@ static Status catch_moment(Moment *m, VehicleHeat *h, const Snapshot *snapshot, 
     m->node  = arena_alloc(h->arena, (size_t)m->model->node_count, sizeof *m->node);
     m->joint = arena_alloc(h->arena, (size_t)m->model->node_count, sizeof *m->joint);
     m->lit   = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->lit);
+    m->gas_k = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->gas_k);
+    m->gas_mps = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->gas_mps);
     m->posed.node = arena_alloc(h->arena, (size_t)parts_node_count(h->world.tracer, e->model) + 1, sizeof *m->posed.node);
-    if (!m->node || !m->joint || !m->lit || !m->posed.node) return STATUS_NO_MEMORY;
+    if (!m->node || !m->joint || !m->lit || !m->gas_k || !m->gas_mps || !m->posed.node) return STATUS_NO_MEMORY;
     enu_from_ecef(m->p_enu, frame, e->p_ecef);
     m3_tmul_v3(m->v_enu_mps, frame->r_ecef_from_enu, e->v_ecef_mps);
     m3_tmul(m->pose.r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
@@ -189,7 +193,7 @@ static Status find_place(Moment *m, const VehicleHeat *h, double unix_s, bool pr
 
 /* ---- loads -------------------------------------------------------------------------------- */
 
-static double film_at(double speed_mps, double air_density) { return (4 + 6.1 * pow(speed_mps, 0.8)) * pow(air_density, 0.8); }
+static double film_at(double speed_mps, double air_density) { return plate_film_w_m2k(speed_mps) * pow(air_density, 0.8); }
 
 /* Speed of the air past a patch: of the entity, and of blades that turn. */
 static double air_speed(const Moment *m, const Patch *patch, const EntityDrives *drives)
@@ -250,7 +254,8 @@ static void load_patch(NetworkLoad *load, const Moment *m, const VehicleState *s
         around_w_m2 += (double)view->share[k] * stefan_w_m2k4 * pow(s->temp_k[m->shape->skin[view->partner[k]].surface], 4);
     at->heat_w += area * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame_w_m2 * (double)d->burning);
     at->emits_m2 = e * area;
-    add_film(at, area * film_at(speed_mps, p->air_density), p->air_k + recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk));
+    add_film(at, area * film_at(fmax(speed_mps, (double)m->gas_mps[i]), p->air_density),
+             p->air_k + recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk) + (double)m->gas_k[i]);
     if (skin->row.drive == PART_DRIVE_MOTION && !(d->flying > 0)) {
         const double w = area * skin->friction * skin->row.drive_value * clamp((double)d->speed_mps / 10, 0, 2);
         at->heat_w += 0.5 * w;
@@ -260,10 +265,28 @@ static void load_patch(NetworkLoad *load, const Moment *m, const VehicleState *s
     add_inside(&load[skin->row.inside == INSIDE_GRAIN ? skin->surface : skin->inner], &skin->row, &m->shape->machine, d, area, p->air_k);
 }
 
-static void load_nodes(NetworkLoad *load, const Moment *m, const VehicleState *s, const EntityDrives *d)
+/* Its own exhaust past its patches. */
+static void find_gas(Moment *m, const EntityDrives *d)
+{
+    const SnapshotEntity *e = m->entity;
+    const int             patches = m->shape->patches->count;
+    double                at_enu[3], d_enu[3], flow[3];
+    JetPath               path;
+    memset(m->gas_k, 0, (size_t)patches * sizeof *m->gas_k);
+    memset(m->gas_mps, 0, (size_t)patches * sizeof *m->gas_mps);
+    if (!e->exhaust || !(d->engine > 0)) return;
+    m3_mul_v3(at_enu, m->pose.r_enu_from_body, e->exhaust->at_body);
+    m3_mul_v3(d_enu, m->pose.r_enu_from_body, e->exhaust->d_body);
+    v3_sub(flow, m->place.wind_enu_mps, m->v_enu_mps);
+    jet_path(&path, e->exhaust, at_enu, d_enu, flow, m->place.air_k);
+    for (int i = 0; i < patches; i++) patch_view_gas(&m->gas_k[i], &m->gas_mps[i], &m->pose, i, &path);
+}
+
+static void load_nodes(NetworkLoad *load, Moment *m, const VehicleState *s, const EntityDrives *d)
 {
     const VehicleShape *shape = m->shape;
     const MachineRow   *machine = &shape->machine;
+    find_gas(m, d);
     for (int n = 0; n < shape->nodes; n++) load[n] = (NetworkLoad){.fluid_k = m->place.air_k};
     for (int i = 0; i < shape->patches->count; i++) load_patch(load, m, s, i, d);
     if (shape->engine >= 0) { /* the thermostat's radiator takes what the engine gives at its temperature */

@@ -8,10 +8,10 @@
  *
  * At a patch: sun by rays past its own parts, with the ground's shade; sky and ground light; longwave of sky, of ground (in
  * the open, and in its own shade below it) and of its other patches, at their temperatures of the step's beginning;
- * convection by wind and its own speed, to the air's recovery temperature; what is behind it (etc/heat.csv).
+ * convection by wind and its own speed, to the air's recovery temperature, and where its own exhaust flows past it, to that
+ * (jet_path.h); what is behind it (etc/heat.csv).
  *
- *     film 4 + 6.1 v^0.8 W/(m2 K): turbulent flow over a plate of 1 m (Incropera & DeWitt: Nu = 0.037 Re^0.8 Pr^(1/3), air
- *     of 288 K) over free convection; 10 % of McAdams's 5.7 + 3.8 v up to 10 m/s; with air density^0.8 above
+ *     film plate_film_w_m2k (surface_flux.h), with air density^0.8 above
  *     recovery 0.85 v^2 / (2 cp): between the laminar sqrt(Pr) = 0.84 and the turbulent Pr^(1/3) = 0.89
  *
  * Work is done in pieces, those that have waited longest first, and no more of it in any 0.1 s of exercise time than

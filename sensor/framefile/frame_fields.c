@@ -152,6 +152,17 @@ void frame_fields_snapshot(Fields *f, FrameFile *file)
 
 static const float largest_m = 1000, hottest_j_m2 = 1e9f;
 
+static void blow_fields(Fields *f, GroundBlow *b)
+{
+    field_floats(f, "outlet of a stand", b->at_m, 3, -largest_m, largest_m);
+    field_floats(f, "exhaust of a stand", b->d, 3, -1.001f, 1.001f);
+    field_floats(f, "exhaust of a stand", &b->radius_m, 1, 0, largest_m);
+    field_floats(f, "exhaust of a stand", &b->speed_mps, 1, 0, 1000);
+    field_floats(f, "exhaust of a stand", &b->excess_k, 1, 0, 5000);
+    field_real(f, "exhaust of a stand", &b->from_s, -long_s, long_s);
+    field_real(f, "exhaust of a stand", &b->to_s, -long_s, INFINITY);
+}
+
 static void stand_fields(Fields *f, GroundStand *s)
 {
     field_reals(f, "place of a stand", s->p_ecef, 3, earth_m);
@@ -161,6 +172,7 @@ static void stand_fields(Fields *f, GroundStand *s)
     field_real(f, "begin of a stand", &s->from_s, -long_s, long_s);
     field_real(f, "end of a stand", &s->to_s, s->from_s, INFINITY);
     field_u64(f, &s->owner);
+    if (f->version >= 4) blow_fields(f, &s->blow);
 }
 
 static void track_fields(Fields *f, GroundTrack *t)

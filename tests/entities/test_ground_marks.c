@@ -2,6 +2,7 @@
  * alone; bounds; files. */
 #include "entities/marks/ground_marks.h"
 #include "entities/table/entity_index.h"
+#include "dis/enumerations.h"
 #include "tests/entities/entity_fixture.h"
 
 enum { heartbeat_s = 5 };
@@ -82,6 +83,8 @@ static void a_tank_leaves_tracks_and_a_stand(void **state)
         CHECK(s->low_m[k] == (float)model->box_low[k] && s->high_m[k] == (float)model->box_high[k]);
     /* forward is north */
     CHECK_NEAR(s->r_ecef_from_body[6], 1, 1e-6);
+    /* its engine idles for two minutes */
+    CHECK(s->blow.from_s == arrives_s && s->blow.to_s == arrives_s + 120 && s->blow.excess_k > 100 && s->blow.radius_m > 0.05f);
 
     /* 200 m in four pieces of 50 m at most (the reports are 50 m apart), 100 m in two */
     CHECK(m->tracks == 6);
@@ -101,6 +104,25 @@ static void a_tank_leaves_tracks_and_a_stand(void **state)
         CHECK(t->heat_j_m2 > 3e3 && t->heat_j_m2 < 5e4);
     }
     CHECK_NEAR(sum_m, 300, 1e-6);
+    fixture_close(&f);
+}
+
+/* An engine that runs, stops, and runs again: two stands of one place; one that runs at the first report has done so for an hour. */
+static void an_engine_that_starts_again_is_another_stand(void **state)
+{
+    (void)state;
+    Fixture f = fixture_open(NULL);
+    for (int t_s = 0; t_s <= 3000; t_s += heartbeat_s) {
+        DisEntityState pdu = driving(1, tank_type, 0, 0);
+        if (t_s < 1000 || t_s >= 2000) pdu.appearance |= 1u << dis_appearance_power_plant_bit;
+        hear(&f, &pdu, t_s);
+    }
+    const GroundMarks *m = marks_at(&f, 3000);
+    CHECK(m->stands == 2);
+    const GroundBlow *a = &m->stand[0].blow, *b = &m->stand[1].blow;
+    CHECK(a->from_s == -3600 && a->to_s >= 1000 - heartbeat_s && a->to_s <= 1000 + heartbeat_s);
+    CHECK(b->from_s >= 2000 && b->from_s <= 2000 + heartbeat_s && b->to_s > 3000);
+    CHECK(m->stand[0].to_s == m->stand[1].from_s);
     fixture_close(&f);
 }
 
@@ -549,6 +571,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tank_leaves_tracks_and_a_stand),
+        cmocka_unit_test(an_engine_that_starts_again_is_another_stand),
         cmocka_unit_test(marks_depend_on_pdus_alone),
         cmocka_unit_test(timeouts_found_late_change_nothing),
         cmocka_unit_test(the_trail_reaches_its_vehicle),

@@ -2,6 +2,9 @@
  * dimensions by finite volumes, sunlit by a box of its own; trails against a pulse of heat; burnt ground; bounds. */
 #include "tests/render/heat_day.h"
 
+#include "render/heat/jet_path.h"
+#include "render/heat/mark_heat.h"
+
 static GroundKinds kinds;
 static Arena      *arena;
 static LocalFrame  frame;
@@ -69,6 +72,10 @@ static double behind(double y, double hx, double hy, double top)
     return hidden / 4000.0;
 }
 
+/* A film to gas that is warmer than the air by so much; what stays in the calm: its surface. */
+static double       blow_w_m2k, blow_excess_k;
+static const Field *calm;
+
 /* One explicit step of places from first to last; box: it stands there. */
 static void fv_step(Field *f, const GroundKind *kind, const Column *layers, double t_s, int count, bool box, const double hidden[places])
 {
@@ -88,8 +95,9 @@ static void fv_step(Field *f, const GroundKind *kind, const Column *layers, doub
         ground_flux(&law, &c, &w, &e);
         for (int n = 0; n < 8; n++) { /* the surface's own balance */
             double falls;
-            const double miss = surface_flux_w_m2(&falls, f->surface_k[p], &law) - 2 * k_w_mk / cell_z_m * (f->surface_k[p] - old.t_k[p][0]);
-            f->surface_k[p] += miss / (falls + 2 * k_w_mk / cell_z_m);
+            const double blown = calm ? blow_w_m2k * (blow_excess_k - (f->surface_k[p] - calm->surface_k[p])) : 0;
+            const double miss = surface_flux_w_m2(&falls, f->surface_k[p], &law) + blown - 2 * k_w_mk / cell_z_m * (f->surface_k[p] - old.t_k[p][0]);
+            f->surface_k[p] += miss / (falls + (calm ? blow_w_m2k : 0) + 2 * k_w_mk / cell_z_m);
         }
         for (int z = 0; z < cells; z++) {
             const double above = z == 0 ? 2 * (f->surface_k[p] - old.t_k[p][0]) : old.t_k[p][z - 1] - old.t_k[p][z];
@@ -167,6 +175,58 @@ static void a_box_at_night(void **state)
     CHECK(k[0] > 1 && k[1] < 0.8 * k[0] && k[2] < k[1] && k[2] > 0);
     heat_destroy(h);
     arena_reset(arena);
+}
+
+/* An outlet near the ground blows for an hour at night: against the same volumes with a film of warm gas. */
+static void exhaust_warms_the_ground(void **state)
+{
+    (void)state;
+    enum { kind = SURFACE_SAND, times = 4 };
+    static const double from_h = 21, to_h = 22, until_h[times] = {21.3, 21.95, 22.5, 24}, up[3] = {0, 0, 1};
+    static Field  still, blown;
+    const double  no_hidden[places] = {0};
+    Column        layers;
+    Heat         *h = paper_heat(&kinds, &paper_summer, 20, NULL);
+    GroundStand   stand = box_at(from_h, INFINITY, 0.02, 0.02, 0.02);
+    stand.blow = (GroundBlow){.at_m = {0, 0, -0.4f}, .d = {1, 0, 0}, .radius_m = 0.15f, .speed_mps = 20, .excess_k = 200,
+                              .from_s = 3600 * from_h, .to_s = 3600 * to_h};
+    CHECK(ground_layers(&layers, &kinds.kind[kind], &ground_grid_default) == STATUS_OK);
+    const ExhaustJet jet = {.radius_m = 0.15, .speed_mps = 20, .excess_k = 200};
+    const double     outlet[3] = {0, 0, 0.4}, north[3] = {0, 1, 0}, wind[3] = {0, 0, 0}, p_enu[3] = {0, 4.5, 0};
+    JetPath          path;
+    double           speed_mps;
+    jet_path(&path, &jet, outlet, north, wind, (double)at(h, from_h)->table.air_k);
+    CHECK(jet_path_at(&blow_excess_k, &speed_mps, NULL, &path, p_enu, true));
+    print_message("%.1f K\n", blow_excess_k);
+    CHECK(blow_excess_k > 5 && blow_excess_k < 150);
+    blow_w_m2k = plate_film_w_m2k(speed_mps) - plate_film_w_m2k(0);
+    still.surface_k[0] = 290;
+    for (int z = 0; z < cells; z++) still.t_k[0][z] = 293;
+    double t_h = -72;
+    for (; t_h < from_h; t_h += fv_step_s / 3600) fv_step(&still, &kinds.kind[kind], &layers, paper_unix_s + 3600 * t_h, 1, false, no_hidden);
+    blown = still;
+    for (int t = 0; t < times; t++) {
+        for (; t_h < until_h[t]; t_h += fv_step_s / 3600) {
+            calm = NULL;
+            fv_step(&still, &kinds.kind[kind], &layers, paper_unix_s + 3600 * t_h, 1, false, no_hidden);
+            calm = t_h < to_h ? &still : NULL;
+            fv_step(&blown, &kinds.kind[kind], &layers, paper_unix_s + 3600 * t_h, 1, false, no_hidden);
+        }
+        calm = NULL;
+        const GroundMarks marks = {.stands = 1, .stand = &stand};
+        MarkHeat         *heat;
+        MarkedGround      mark, beside;
+        CHECK(mark_heat_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * until_h[t], at(h, until_h[t]), arena) == STATUS_OK);
+        CHECK(mark_heat_at(&mark, heat, kind, p_enu, up, 1));
+        mark_heat_at(&beside, heat, kind, (const double[3]){0, -2, 0}, up, 1); /* behind the outlet */
+        const double want_k = blown.surface_k[0] - still.surface_k[0];
+        print_message("%.2f h: exhaust %.1f K over the air at %.1f m/s: ground %+.2f K, volumes %+.2f K\n", until_h[t], blow_excess_k,
+                      speed_mps, mark.add_k, want_k);
+        CHECK_NEAR(mark.add_k, want_k, 0.1 * want_k + 0.1);
+        CHECK(fabs(beside.add_k) < 0.05);
+        arena_reset(arena);
+    }
+    heat_destroy(h);
 }
 
 /* Rubbed warm by 20 kJ/m2: a body without end within minutes (Carslaw & Jaeger 1959), less what the surface gives away later. */
@@ -261,7 +321,7 @@ static void bounds(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_box_that_left), cmocka_unit_test(a_box_at_night),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_box_that_left), cmocka_unit_test(a_box_at_night), cmocka_unit_test(exhaust_warms_the_ground),
                                        cmocka_unit_test(a_trail_cools), cmocka_unit_test(a_burst), cmocka_unit_test(bounds)};
     return cmocka_run_group_tests(tests, open_kinds, close_kinds);
 }

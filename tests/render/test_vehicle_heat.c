@@ -214,6 +214,32 @@ static void engines_warm_and_stay_warm(void **state)
 }
 
 /* The nodes of a step keep the heat that came from outside. */
+/* A jet that blows on the hull's rear warms it, and the turret's front hardly; away from the entity it warms nothing, nor does an engine that is off. */
+static void exhaust_warms_what_it_blows_on(void **state)
+{
+    (void)state;
+    static const double back[3] = {-1, 0, 0}, front[3] = {1, 0, 0};
+    const ExhaustJet    across = {.at_body = {-5.5, 0, -0.95}, .d_body = {1, 0, 0}, .radius_m = 0.3, .speed_mps = 30, .excess_k = 300};
+    const ExhaustJet    away = {.at_body = {-5.5, 0, -0.95}, .d_body = {-1, 0, 0}, .radius_m = 0.3, .speed_mps = 30, .excess_k = 300};
+    double              back_k[4], front_k[4];
+    enclose(288);
+    for (int c = 0; c < 4; c++) { /* none, across, away, across without its engine */
+        Scene        s;
+        VehicleHeat *heat = start(30);
+        place(&s, tank, (EntityDrives){.engine = c == 3 ? 0 : 0.6f});
+        s.entity.exhaust = c == 0 ? NULL : c == 2 ? &away : &across;
+        run(heat, &s, 0, 600);
+        back_k[c] = mean_k(heat, &s, HEAT_HULL, back), front_k[c] = mean_k(heat, &s, HEAT_TURRET, front);
+        vehicle_heat_destroy(heat);
+    }
+    print_message("rear of the hull and front of the turret: no outlet %.2f %.2f K, one that blows on it %.2f %.2f K, one that blows away %.2f %.2f K\n", back_k[0],
+                  front_k[0], back_k[1], front_k[1], back_k[2], front_k[2]);
+    CHECK(back_k[1] > back_k[0] + 10 && back_k[1] < 288 + 300);
+    CHECK(fabs(front_k[1] - front_k[0]) < 0.1 * (back_k[1] - back_k[0]));
+    CHECK(back_k[2] == back_k[0] && front_k[2] == front_k[0]);
+    CHECK_NEAR(back_k[3], 288, 0.01);
+}
+
 static void heat_is_kept(void **state)
 {
     (void)state;
@@ -388,7 +414,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_enclosure_stays_as_it_is), cmocka_unit_test(the_side_of_the_sun_is_warm),
-        cmocka_unit_test(engines_warm_and_stay_warm),  cmocka_unit_test(heat_is_kept),
+        cmocka_unit_test(engines_warm_and_stay_warm),  cmocka_unit_test(exhaust_warms_what_it_blows_on),
+        cmocka_unit_test(heat_is_kept),
         cmocka_unit_test(speed_warms),                 cmocka_unit_test(bodies_and_flares),
         cmocka_unit_test(the_past_alone_decides),      cmocka_unit_test(room_is_bounded),
         cmocka_unit_test(crowds_wait),
