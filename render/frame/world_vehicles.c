@@ -103,7 +103,8 @@ static Status place_there(PlaceHeat *out, const void *user, double unix_s, const
     return present ? ground_there(out, v, unix_s, p_enu) : STATUS_OK;
 }
 
-Status world_vehicles_create(WorldVehicles **out, const World *world, double step_s, double window_us)
+Status world_vehicles_create(WorldVehicles **out, const World *world, double step_s, double window_us,
+                             const GivenHeat *given)
 {
     WorldVehicles *v = calloc(1, sizeof *v);
     if (!v) return STATUS_NO_MEMORY;
@@ -112,7 +113,8 @@ Status world_vehicles_create(WorldVehicles **out, const World *world, double ste
     for (int k = 0; k < weather_kept; k++) v->kept[k].unix_s = NAN;
     const VehicleHeatConfig config = {.first_step_s = fmin(1, step_s), .step_s = step_s, .window_us = window_us,
                                       .unix_s = world->drive->exercise_s, .capacity = vehicle_capacity, .place = place_there, .user = v};
-    const VehicleHeatWorld  about = {world->catalog, &world->materials, &world->parts, &world->frame, world->tracer, world->patches};
+    const VehicleHeatWorld  about = {world->catalog, &world->materials, &world->parts, &world->frame, world->tracer, world->patches,
+                                     given};
     const Status            status = v->arena ? vehicle_heat_create(&v->heat, &config, &about) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) *out = v;
     else world_vehicles_destroy(v);
@@ -140,7 +142,7 @@ Status world_warm_snapshot(Snapshot *snapshot, const World *world, Arena *arena)
 {
     WorldVehicles *v = NULL;
     if (!world->heat) return STATUS_OK;
-    Status status = world_vehicles_create(&v, world, 1, INFINITY);
+    Status status = world_vehicles_create(&v, world, 1, INFINITY, NULL);
     if (status == STATUS_OK) status = world_vehicles_tick(v, snapshot);
     if (status == STATUS_OK) status = world_vehicles_show(v, snapshot, arena);
     world_vehicles_destroy(v);

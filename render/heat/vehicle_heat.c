@@ -32,6 +32,7 @@ typedef struct VehicleState {
     bool         shown, changed;  /* its past is over; its drives are others than those of t_s */
     double       seen_s, waits_s; /* first seen; since when work waits, INFINITY: none does */
     NetworkLoad *load;            /* [nodes] at t_s */
+    int         *given;           /* [patches] of GivenHeat, -1: none */
     double       ground_k;        /* in the open, at t_s */
 } VehicleState;
 
@@ -104,7 +105,7 @@ static VehicleState *new_state(const VehicleShape *shape, const Model *model)
 {
     const size_t n = (size_t)shape->nodes, p = (size_t)shape->patches->count, j = (size_t)model->node_count;
     const size_t doubles = sizeof(VehicleState) + n * sizeof(double) + j * sizeof(double) + n * sizeof(NetworkLoad);
-    char        *at = calloc(1, doubles + p * sizeof(PatchView) + 2 * p * sizeof(float));
+    char        *at = calloc(1, doubles + p * sizeof(PatchView) + 2 * p * sizeof(float) + p * sizeof(int));
     if (!at) return NULL;
     VehicleState *s = (VehicleState *)(void *)at;
     s->temp_k = (double *)(void *)(at + sizeof *s);
@@ -113,6 +114,7 @@ static VehicleState *new_state(const VehicleShape *shape, const Model *model)
     s->view   = (PatchView *)(void *)(at + doubles);
     s->now_k  = (float *)(void *)(s->view + p);
     s->next_k = s->now_k + p;
+    s->given  = (int *)(void *)(s->next_k + p);
     return s;
 }
 
@@ -120,7 +122,7 @@ static size_t state_bytes(const VehicleShape *shape, const Model *model)
 {
     const size_t n = (size_t)shape->nodes, p = (size_t)shape->patches->count;
     return sizeof(VehicleState) + (n + (size_t)model->node_count) * sizeof(double) + n * sizeof(NetworkLoad) +
-           p * (sizeof(PatchView) + 2 * sizeof(float));
+           p * (sizeof(PatchView) + 2 * sizeof(float) + sizeof(int));
 }
 
 size_t vehicle_heat_bytes(const VehicleHeat *h)
@@ -602,6 +604,23 @@ static int by_wait(const void *a, const void *b)
     return dis_entity_id_compare(p->id, q->id);
 }
 
+/* Of all parts of a patch's body, what names one the closest. */
+static void find_given(VehicleState *s, const VehicleHeat *h)
+{
+    const Patches *patches = h->shape[s->model].patches;
+    const Model   *model = tracer_model(h->world.tracer, s->model);
+    for (int i = 0; i < patches->count; i++) {
+        int best = -1;
+        s->given[i] = -1;
+        for (int part = 0; h->world.given && part < model->part_count; part++) {
+            int rank;
+            if (patches->body_of_part[part] != patches->body_of_part[patches->patch[i].part]) continue;
+            const int found = given_heat_find(&rank, h->world.given, s->id, model, part);
+            if (rank > best) best = rank, s->given[i] = found;
+        }
+    }
+}
+
 static Status first_sight(VehicleState **out, const VehicleHeat *h, const SnapshotEntity *e, double t_s)
 {
     VehicleState *s = new_state(&h->shape[e->model], tracer_model(h->world.tracer, e->model));
@@ -609,6 +628,7 @@ static Status first_sight(VehicleState **out, const VehicleHeat *h, const Snapsh
     s->id = e->id, s->since_s = e->drives.since_s, s->model = e->model;
     s->drives = e->drives;
     s->seen_s = t_s, s->waits_s = INFINITY, s->looked = -1;
+    find_given(s, h);
     *out = s;
     return STATUS_OK;
 }
@@ -715,6 +735,8 @@ Status vehicle_heat_show(const VehicleHeat *h, Snapshot *snapshot, Arena *arena)
         const float share = s->next_s > s->t_s ? (float)clamp((snapshot->t_s - s->t_s) / (s->next_s - s->t_s), 0, 1) : 0;
         e->first_patch = snapshot->patch_count;
         for (int k = 0; k < count; k++) patch_k[e->first_patch + k] = s->now_k[k] + share * (s->next_k[k] - s->now_k[k]);
+        for (int k = 0; k < count; k++)
+            if (s->given[k] >= 0) patch_k[e->first_patch + k] = (float)given_heat_k(h->world.given, s->given[k], snapshot->t_s);
         e->patches = count;
         e->dt_k = (float)(mean_of(h->shape[s->model].patches, patch_k + e->first_patch) - s->ground_k);
         snapshot->patch_count += count;

@@ -25,6 +25,7 @@
 #define RENDER_HEAT_VEHICLE_HEAT_H
 
 #include "entities/table/snapshot.h"
+#include "render/heat/given_heat.h"
 #include "render/heat/patch_set.h"
 #include "render/heat/vehicle_shape.h"
 #include "render/parts/tracer.h"
@@ -62,6 +63,7 @@ typedef struct VehicleHeatWorld {
     const LocalFrame *frame;
     Tracer           *tracer;
     PatchSet         *patches;
+    const GivenHeat  *given;   /* shown instead, where it has a part; NULL: nothing is given */
 } VehicleHeatWorld;
 
 typedef struct VehicleHeatCounters {

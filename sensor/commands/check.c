@@ -3,6 +3,7 @@
 #include "sensor/commands/check.h"
 
 #include "entities/effects/effects_history.h"
+#include "render/heat/given_heat.h"
 #include "render/heat/part_table.h"
 #include "sensor/detector/preset.h"
 #include "sensor/node/host_run.h"
@@ -158,6 +159,16 @@ static bool weather_is_valid(const Check *c)
     return true;
 }
 
+static bool given_heat_is_valid(const Check *c)
+{
+    GivenHeat *given;
+    if (!*c->config->heat.given) return true;
+    if (given_heat_open(&given, c->config->heat.given) != STATUS_OK)
+        return report(c, "heat.given", "empty is always right; etc/reference/vehicle_heat.md has an example");
+    given_heat_close(given);
+    return true;
+}
+
 /* Catalog, its models and sidecars, and the materials of their parts. */
 static bool models_are_valid(Check *c)
 {
@@ -199,6 +210,7 @@ static bool tables_are_valid(Check *c)
     good &= sensors_are_valid(c);
     good &= atmosphere_is_valid(c);
     good &= weather_is_valid(c);
+    good &= given_heat_is_valid(c);
     good &= terrain_is_valid(c);
     if (!known.bundled)
         known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "heat.csv", read_heat) &&

@@ -203,7 +203,10 @@ static Status open_vehicles(Session *s)
     if (!shared->world->heat) return STATUS_OK;
     s->vehicle_arena = arena_create();
     if (!s->vehicle_arena) return STATUS_NO_MEMORY;
-    return world_vehicles_create(&s->vehicles, shared->world, shared->config->heat.vehicle_step_s, vehicle_window_us);
+    const char  *given = shared->config->heat.given;
+    const Status status = *given ? given_heat_open(&s->given, given) : STATUS_OK;
+    if (status != STATUS_OK) return status;
+    return world_vehicles_create(&s->vehicles, shared->world, shared->config->heat.vehicle_step_s, vehicle_window_us, s->given);
 }
 
 static Status open_session(Session *s)
@@ -422,6 +425,7 @@ Status session_close(Session *s, SessionResult *result)
     else session_result_free(&s->result);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);
     world_vehicles_destroy(s->vehicles);
+    given_heat_close(s->given);
     arena_destroy(s->vehicle_arena);
     entity_table_destroy(s->table);
     frame_pool_destroy(s->frames);

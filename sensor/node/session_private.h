@@ -20,6 +20,7 @@ struct Session {
     char                 host_text[dis_id_text_size];
     EntityTable         *table;
     Player              *player;        /* the caller's */
+    GivenHeat           *given;         /* of vehicles; NULL: none */
     WorldVehicles       *vehicles;      /* NULL: parts are as warm as the air */
     Arena               *vehicle_arena; /* of the snapshot of a tick */
     Status               vehicle_status; /* the first failure: frames fail with it */

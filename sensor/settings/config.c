@@ -219,6 +219,9 @@ static const Setting keys[] = {
      "slopes and azimuths of the ground's heat: a grid of so many a side, odd"},
     {"heat.shadow_m", SETTING_DOUBLE, AT(heat.shadow_m), 0, 1000, NULL, "m",
      "cells of the shadows that relief and plants cast over the day; 0: no shadow cools the ground"},
+    {"heat.given", SETTING_PATH, AT(heat.given), 0, 0, NULL, "",
+     "file of temperatures of parts over exercise time (CSV: entity, part, t_s, temp_k) that are shown instead of those worked "
+     "out; empty: none"},
     {"heat.marks", SETTING_PATH, AT(heat.marks), 0, 0, NULL, "",
      "file of what stood, drove and burst (CSV): read at the start where it is there, written at the end, for a node that "
      "starts again; empty: none"},

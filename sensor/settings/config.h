@@ -102,6 +102,7 @@ typedef struct Config {
         double vehicle_step_s;     /* longest step of that of vehicles */
         int    facets;             /* normals of the ground, a side */
         double shadow_m;           /* cells of the shadow map; 0: none */
+        char   given[1024];        /* file of temperatures of parts; empty: none */
         char   marks[1024];        /* file of ground marks over a restart; empty: none */
     } heat;
     struct {

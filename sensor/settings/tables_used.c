@@ -142,5 +142,10 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
         snprintf(name, sizeof name, "weather/%.150s", slash ? slash + 1 : config->weather.day);
         status = add(out, name, config->weather.day);
     }
+    if (*config->heat.given && status == STATUS_OK) {
+        const char *slash = strrchr(config->heat.given, '/');
+        snprintf(name, sizeof name, "heat/%.150s", slash ? slash + 1 : config->heat.given);
+        status = add(out, name, config->heat.given);
+    }
     return status == STATUS_OK ? add_models(out, catalog) : status;
 }

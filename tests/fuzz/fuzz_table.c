@@ -6,6 +6,7 @@
 #include "pitviper_channels.h"
 #include "entities/catalog/catalog.h"
 #include "entities/effects/effects.h"
+#include "render/heat/given_heat.h"
 #include "render/heat/part_table.h"
 #include "render/materials/materials.h"
 #include "sensor/detector/sheet.h"
@@ -21,13 +22,15 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
                                        "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
-    switch (index % (names + 1)) {
+    switch (index % (names + 2)) {
+    case names + 1:
+        return fuzz_seed_text(out, "entity,part,t_s,temp_k\n*,hull,0,290\ntank,hull,0,300\ntank,hull,60,310\n1:1:1,*,5,400\n");
     case names:
         return fuzz_seed_text(out, "type,model,origin\n1.1.*.2,unknown,base\n1,\"tank_t72\",centre\n*,unknown,base\n");
     default:
         break;
     }
-    FILE *file = etc_path(path, sizeof path, name[index % (names + 1)]) ? fopen(path, "rb") : NULL;
+    FILE *file = etc_path(path, sizeof path, name[index % (names + 2)]) ? fopen(path, "rb") : NULL;
     if (!file) return 0;
     const size_t size = fread(out, 1, fuzz_seed_octets, file);
     fclose(file);
@@ -88,6 +91,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         EffectTable  effects;
         SensorPreset preset;
         Materials    materials;
+        GivenHeat   *given;
+        if (table_column(&table, "temp_k") >= 0 && given_heat_open(&given, path) == STATUS_OK) {
+            static ModelPart part = {.name = "hull", .role = HEAT_HULL};
+            const Model      model = {.name = "tank", .part = &part, .part_count = 1};
+            int              rank;
+            const int        index = given_heat_find(&rank, given, (DisEntityId){1, 1, 1}, &model, 0);
+            for (double t_s = -1e10; index >= 0 && t_s < 1e10; t_s += 1e9)
+                if (!(given_heat_k(given, index, t_s) >= 1 && given_heat_k(given, index, t_s) <= 4000)) abort();
+            given_heat_close(given);
+        }
         if (table_column(&table, "inside") >= 0) (void)part_table_roles(&parts, path);
         if (table_column(&table, "engine_kw") >= 0) (void)part_table_machines(&parts, path);
         if (table_column(&table, "life_s") >= 0) (void)effect_table_open(&effects, path);

@@ -66,7 +66,7 @@ static VehicleHeat *start_limited(double step_s, double window_us)
     VehicleHeat            *heat;
     const VehicleHeatConfig config = {.first_step_s = 1, .step_s = step_s, .window_us = window_us, .capacity = 8,
                                       .place = everywhere};
-    const VehicleHeatWorld  world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches};
+    const VehicleHeatWorld  world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches, NULL};
     CHECK(vehicle_heat_create(&heat, &config, &world) == STATUS_OK);
     return heat;
 }

@@ -1,0 +1,142 @@
+/* render/heat/given_heat.c: see given_heat.h. */
+#include "render/heat/given_heat.h"
+
+#include <stdlib.h>
+
+enum { by_any = 0, by_kind, by_name };
+
+/* Rows of one entity and part: [first, last) of GivenHeat's. */
+typedef struct GivenPart {
+    int         entity_by, part_by; /* kind: of a model; of a role */
+    DisEntityId id;
+    HeatRole    role;
+    const char *model, *part;       /* the table's */
+    int         first, last;
+} GivenPart;
+
+struct GivenHeat {
+    Table      table;
+    int        count;
+    GivenPart *part;
+    double    *t_s, *temp_k;        /* [rows], those of a part together */
+};
+
+/* A row, to be brought together with those of its part. */
+typedef struct GivenRow {
+    const char *entity, *part;
+    int         row;
+} GivenRow;
+
+static int by_part(const void *a, const void *b)
+{
+    const GivenRow *p = a, *q = b;
+    int             order = strcmp(p->entity, q->entity);
+    if (order == 0) order = strcmp(p->part, q->part);
+    return order != 0 ? order : (p->row > q->row) - (p->row < q->row);
+}
+
+static Status complain(const Table *table, int row, const char *what)
+{
+    log_error("heat.given: %s:%d: %s", table->path, table->line[row + 1], what);
+    return STATUS_BAD_VALUE;
+}
+
+static Status begin_part(GivenPart *out, const Table *table, const GivenRow *row, int at)
+{
+    *out = (GivenPart){.model = row->entity, .part = row->part, .first = at, .last = at};
+    if (!*row->entity || !*row->part) return complain(table, row->row, "entity or part is empty; * stands for all of them");
+    out->entity_by = strcmp(row->entity, "*") == 0 ? by_any : dis_entity_id_parse(&out->id, row->entity) ? by_name : by_kind;
+    out->part_by = strcmp(row->part, "*") == 0 ? by_any : heat_role_find(&out->role, row->part) ? by_kind : by_name;
+    return STATUS_OK;
+}
+
+static Status take_rows(GivenHeat *g, GivenRow *row, const int column[4])
+{
+    Status status = STATUS_OK;
+    for (int i = 0; i < g->table.rows; i++)
+        row[i] = (GivenRow){table_text(&g->table, i, column[0]), table_text(&g->table, i, column[1]), i};
+    qsort(row, (size_t)g->table.rows, sizeof *row, by_part);
+    for (int i = 0; i < g->table.rows && status == STATUS_OK; i++) {
+        const bool same = i > 0 && strcmp(row[i].entity, row[i - 1].entity) == 0 && strcmp(row[i].part, row[i - 1].part) == 0;
+        if (!same) status = begin_part(&g->part[g->count++], &g->table, &row[i], i);
+        if (status == STATUS_OK) status = table_number(&g->t_s[i], &g->table, row[i].row, column[2], -1e9, 1e9);
+        if (status == STATUS_OK) status = table_number(&g->temp_k[i], &g->table, row[i].row, column[3], 1, 4000);
+        if (status == STATUS_OK && same && !(g->t_s[i] > g->t_s[i - 1]))
+            status = complain(&g->table, row[i].row, "t_s does not ascend for this entity and part; sort the rows by time");
+        g->part[g->count - 1].last = i + 1;
+    }
+    return status;
+}
+
+Status given_heat_open(GivenHeat **out, const char *path)
+{
+    static const char *const name[4] = {"entity", "part", "t_s", "temp_k"};
+    int        column[4];
+    GivenHeat *g = calloc(1, sizeof *g);
+    if (!g) return STATUS_NO_MEMORY;
+    Status status = table_open(&g->table, path);
+    for (int c = 0; c < 4 && status == STATUS_OK; c++) {
+        column[c] = table_column(&g->table, name[c]);
+        if (column[c] >= 0) continue;
+        log_error("heat.given: %s has no column %s; its columns are entity, part, t_s, temp_k", path, name[c]);
+        status = STATUS_BAD_VALUE;
+    }
+    const size_t rows = status == STATUS_OK ? (size_t)g->table.rows : 0;
+    GivenRow    *row = calloc(rows + 1, sizeof *row);
+    g->part   = calloc(rows + 1, sizeof *g->part);
+    g->t_s    = calloc(rows + 1, sizeof *g->t_s);
+    g->temp_k = calloc(rows + 1, sizeof *g->temp_k);
+    if (status == STATUS_OK && !(row && g->part && g->t_s && g->temp_k)) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) status = take_rows(g, row, column);
+    free(row);
+    if (status == STATUS_OK) *out = g;
+    else given_heat_close(g);
+    return status;
+}
+
+void given_heat_close(GivenHeat *g)
+{
+    if (!g) return;
+    table_close(&g->table);
+    free(g->part);
+    free(g->t_s);
+    free(g->temp_k);
+    free(g);
+}
+
+static bool is_entity(const GivenPart *p, DisEntityId id, const Model *model)
+{
+    return p->entity_by == by_any || (p->entity_by == by_name ? dis_entity_id_compare(p->id, id) == 0 : strcmp(p->model, model->name) == 0);
+}
+
+static bool is_part(const GivenPart *p, const ModelPart *part)
+{
+    return p->part_by == by_any || (p->part_by == by_kind ? p->role == part->role : strcmp(p->part, part->name) == 0);
+}
+
+int given_heat_find(int *rank, const GivenHeat *g, DisEntityId id, const Model *model, int part)
+{
+    int found = -1;
+    *rank = -1;
+    for (int i = 0; i < g->count; i++) {
+        const GivenPart *p = &g->part[i];
+        const int        closer = 3 * (p->entity_by == by_any ? 0 : p->entity_by == by_kind ? 1 : 2) +
+                                  (p->part_by == by_any ? 0 : p->part_by == by_kind ? 1 : 2);
+        if (closer > *rank && is_entity(p, id, model) && is_part(p, &model->part[part])) *rank = closer, found = i;
+    }
+    return found;
+}
+
+double given_heat_k(const GivenHeat *g, int index, double t_s)
+{
+    const GivenPart *p = &g->part[index];
+    int              low = p->first, high = p->last - 1;
+    if (!(t_s > g->t_s[low])) return g->temp_k[low];
+    if (t_s >= g->t_s[high]) return g->temp_k[high];
+    while (high - low > 1) {
+        const int middle = low + (high - low) / 2;
+        if (g->t_s[middle] <= t_s) low = middle;
+        else high = middle;
+    }
+    return g->temp_k[low] + (t_s - g->t_s[low]) / (g->t_s[high] - g->t_s[low]) * (g->temp_k[high] - g->temp_k[low]);
+}

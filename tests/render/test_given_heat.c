@@ -1,0 +1,93 @@
+/* Temperatures that the user gives: lines between rows, who wins, files that are refused. */
+#include "tests/check.h"
+
+#include "render/heat/given_heat.h"
+
+static ModelPart part[] = {{.name = "hull", .role = HEAT_HULL}, {.name = "deck", .role = HEAT_ENGINE_DECK},
+                           {.name = "grille", .role = HEAT_ENGINE_DECK}};
+static Model     tank = {.name = "tank", .part = part, .part_count = 3}, truck = {.name = "truck", .part = part, .part_count = 3};
+static const DisEntityId first = {1, 1, 1}, second = {1, 1, 2};
+
+static Status open_text(GivenHeat **out, const char *text)
+{
+    char path[text_file_size];
+    text_file(path, text);
+    *out = NULL;
+    const Status status = given_heat_open(out, path);
+    remove(path);
+    return status;
+}
+
+static double k_of(const GivenHeat *g, DisEntityId id, const Model *model, int p, double t_s)
+{
+    int       rank;
+    const int index = given_heat_find(&rank, g, id, model, p);
+    CHECK((index >= 0) == (rank >= 0));
+    return index < 0 ? NAN : given_heat_k(g, index, t_s);
+}
+
+static void lines_between_rows(void **state)
+{
+    (void)state;
+    GivenHeat *g;
+    CHECK(open_text(&g, "# of a test\nentity,part,t_s,temp_k\ntank,hull,10,300\ntank,deck,0,1\ntank,hull,20,320\ntank,hull,40,310\n") == STATUS_OK);
+    static const double t_s[] = {-INFINITY, -5, 10, 12.5, 20, 30, 40, 1e12, INFINITY}, k[] = {300, 300, 300, 305, 320, 315, 310, 310, 310};
+    for (int i = 0; i < 9; i++) CHECK_NEAR(k_of(g, first, &tank, 0, t_s[i]), k[i], 1e-12);
+    CHECK(k_of(g, first, &tank, 0, NAN) == 300);
+    CHECK(k_of(g, first, &tank, 1, 7) == 1);
+    CHECK(isnan(k_of(g, first, &tank, 2, 7)) && isnan(k_of(g, first, &truck, 0, 7)));
+    given_heat_close(g);
+}
+
+static void the_closest_name_wins(void **state)
+{
+    (void)state;
+    GivenHeat *g;
+    CHECK(open_text(&g, "temp_k,entity,part,t_s\n201,*,*,0\n202,*,engine_deck,0\n203,*,deck,0\n204,tank,*,0\n205,tank,engine_deck,0\n"
+                        "206,1:1:2,*,0\n207,1:1:2,grille,0\n") == STATUS_OK);
+    CHECK(k_of(g, first, &truck, 0, 0) == 201 && k_of(g, first, &truck, 2, 0) == 202 && k_of(g, first, &truck, 1, 0) == 203);
+    CHECK(k_of(g, first, &tank, 0, 0) == 204 && k_of(g, first, &tank, 1, 0) == 205 && k_of(g, first, &tank, 2, 0) == 205);
+    CHECK(k_of(g, second, &tank, 1, 0) == 206 && k_of(g, second, &tank, 2, 0) == 207 && k_of(g, second, &truck, 0, 0) == 206);
+    given_heat_close(g);
+}
+
+static void what_is_refused(void **state)
+{
+    (void)state;
+    static const struct { const char *text, *says; } bad[] = {
+        {"entity,part,t_s\ntank,hull,0\n", "no column temp_k"},
+        {"entity,part,t_s,temp_k\ntank,hull,0,0.5\n", "temp_k"},
+        {"entity,part,t_s,temp_k\ntank,hull,0,4001\n", "temp_k"},
+        {"entity,part,t_s,temp_k\ntank,hull,0,nan\n", "temp_k"},
+        {"entity,part,t_s,temp_k\ntank,hull,inf,300\n", "t_s"},
+        {"entity,part,t_s,temp_k\ntank,hull,,300\n", "t_s"},
+        {"entity,part,t_s,temp_k\ntank,hull,0,300\ntank,*,0,300\ntank,hull,0,301\n", ":4"},
+        {"entity,part,t_s,temp_k\ntank,hull,5,300\ntank,hull,4,301\n", "ascend"},
+        {"entity,part,t_s,temp_k\n,hull,5,300\n", "empty"},
+        {"entity,part,t_s,temp_k\ntank,,5,300\n", "empty"},
+        {"entity,part,t_s,temp_k\ntank,hull,5\n", ":2"},
+        {"", "pitviper-test"},
+    };
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        GivenHeat *g;
+        check_said[0] = 0;
+        CHECK(open_text(&g, bad[i].text) != STATUS_OK && !g);
+        if (!strstr(check_said, bad[i].says)) print_message("%zu said: %s\n", i, check_said);
+        CHECK(strstr(check_said, bad[i].says));
+    }
+    GivenHeat *g = NULL;
+    CHECK(given_heat_open(&g, "/none/at/all.csv") != STATUS_OK && !g);
+    log_set_sink(NULL, NULL);
+    CHECK(open_text(&g, "entity,part,t_s,temp_k\n") == STATUS_OK); /* no rows: nothing is given */
+    CHECK(isnan(k_of(g, first, &tank, 0, 0)));
+    given_heat_close(g);
+    given_heat_close(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lines_between_rows), cmocka_unit_test(the_closest_name_wins),
+                                       cmocka_unit_test(what_is_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
