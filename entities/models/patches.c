@@ -335,7 +335,7 @@ static Status cut_model(int *count, Cutter *c)
                 sum += c->body[b].count;
                 expect += expected(&c->body[b], &fineness[i], boxes_m2);
             }
-            const bool fits = expect <= patches_wanted || i == finenesses - 1;
+            const bool fits = expect <= c->wanted || i == finenesses - 1;
             if (fits && sum <= patches_most) *count = sum;
         }
     }
@@ -508,13 +508,16 @@ static Status fill(Patches *out, Cutter *c)
     return status == STATUS_OK ? patches_link(out, c) : status;
 }
 
-Status patches_create(Patches *out, const Model *model)
+Status patches_create(Patches *out, const Model *model) { return patches_create_of(out, model, patches_wanted); }
+
+Status patches_create_of(Patches *out, const Model *model, int wanted)
 {
     memset(out, 0, sizeof *out);
     Status  status = STATUS_NO_MEMORY;
     Cutter *c      = calloc(1, sizeof *c);
     if (!c) return status;
     c->model        = model;
+    c->wanted       = wanted;
     c->pose         = calloc((size_t)model->node_count, sizeof *c->pose);
     c->body_of_part = calloc((size_t)model->part_count, sizeof *c->body_of_part);
     if (c->pose && c->body_of_part) {

@@ -55,6 +55,8 @@ typedef struct Patches {
 
 /* model: one that passes model_check. STATUS_NO_MEMORY is the only failure; then *out is zeroes. */
 Status patches_create(Patches *out, const Model *model);
+/* The same with another number wanted, of which there may be up to patches_most. */
+Status patches_create_of(Patches *out, const Model *model, int wanted);
 void   patches_destroy(Patches *patches); /* frees and zeroes; accepts zeroes */
 
 /* Temperature (or any value) at a point of a part's surface and its unit normal there, in the axes of the part's node,

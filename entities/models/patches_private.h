@@ -27,7 +27,7 @@ typedef struct Body {
 
 typedef struct Cutter {
     const Model *model;
-    int          bodies;
+    int          bodies, wanted;
     Body         body[patches_most];
     int         *body_of_part;    /* [part_count] */
     NodePose    *pose;            /* nodes at rest [node_count] */

@@ -103,19 +103,19 @@ static Status place_there(PlaceHeat *out, const void *user, double unix_s, const
     return present ? ground_there(out, v, unix_s, p_enu) : STATUS_OK;
 }
 
-Status world_vehicles_create(WorldVehicles **out, const World *world, double step_s, double window_us,
-                             const GivenHeat *given)
+Status world_vehicles_create(WorldVehicles **out, const World *world, const WorldVehiclesConfig *about)
 {
     WorldVehicles *v = calloc(1, sizeof *v);
     if (!v) return STATUS_NO_MEMORY;
     v->world = world;
     v->arena = arena_create();
     for (int k = 0; k < weather_kept; k++) v->kept[k].unix_s = NAN;
-    const VehicleHeatConfig config = {.first_step_s = fmin(1, step_s), .step_s = step_s, .window_us = window_us,
+    const VehicleHeatConfig config = {.first_step_s = fmin(1, about->step_s), .step_s = about->step_s,
+                                      .window_us = about->window_us, .past_parts = about->past_parts,
                                       .unix_s = world->drive->exercise_s, .capacity = vehicle_capacity, .place = place_there, .user = v};
-    const VehicleHeatWorld  about = {world->catalog, &world->materials, &world->parts, &world->frame, world->tracer, world->patches,
-                                     given};
-    const Status            status = v->arena ? vehicle_heat_create(&v->heat, &config, &about) : STATUS_NO_MEMORY;
+    const VehicleHeatWorld  of = {world->catalog, &world->materials, &world->parts, &world->frame, world->tracer, world->patches,
+                                  about->given};
+    const Status            status = v->arena ? vehicle_heat_create(&v->heat, &config, &of) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) *out = v;
     else world_vehicles_destroy(v);
     return status;
@@ -142,7 +142,7 @@ Status world_warm_snapshot(Snapshot *snapshot, const World *world, Arena *arena)
 {
     WorldVehicles *v = NULL;
     if (!world->heat) return STATUS_OK;
-    Status status = world_vehicles_create(&v, world, 1, INFINITY, NULL);
+    Status status = world_vehicles_create(&v, world, &(WorldVehiclesConfig){.step_s = 1, .window_us = INFINITY});
     if (status == STATUS_OK) status = world_vehicles_tick(v, snapshot);
     if (status == STATUS_OK) status = world_vehicles_show(v, snapshot, arena);
     world_vehicles_destroy(v);

@@ -11,10 +11,15 @@ typedef struct WorldVehicles WorldVehicles;
 /* Of a node: VehicleHeatConfig.window_us. At ten frames a second or more no frame pays for more. */
 static const double vehicle_window_us = 3500;
 
-/* The world must be warm, and outlive it. step_s: of entities whose drives do not change. window_us: VehicleHeatConfig;
- * given: VehicleHeatWorld. */
-Status world_vehicles_create(WorldVehicles **out, const World *world, double step_s, double window_us,
-                             const GivenHeat *given);
+typedef struct WorldVehiclesConfig {
+    double step_s;            /* of entities whose drives do not change */
+    double window_us;         /* VehicleHeatConfig */
+    int    past_parts;        /* VehicleHeatConfig; 0: 1 */
+    const GivenHeat *given;   /* VehicleHeatWorld */
+} WorldVehiclesConfig;
+
+/* The world must be warm, and outlive it. */
+Status world_vehicles_create(WorldVehicles **out, const World *world, const WorldVehiclesConfig *config);
 void   world_vehicles_destroy(WorldVehicles *vehicles); /* accepts NULL */
 /* Of VehicleHeat: ticks in order of time; the frame's snapshot after those up to its time. */
 Status world_vehicles_tick(WorldVehicles *vehicles, const Snapshot *snapshot);

@@ -29,6 +29,7 @@ typedef struct VehicleState {
     PatchView   *view;            /* [patches] */
     double       view_above_m;
     int          looked, lived;   /* patches whose view is of that pose; steps of its past that are done */
+    bool         lives;           /* a step of its past is done */
     bool         shown, changed;  /* its past is over; its drives are others than those of t_s */
     double       seen_s, waits_s; /* first seen; since when work waits, INFINITY: none does */
     NetworkLoad *load;            /* [nodes] at t_s */
@@ -468,30 +469,46 @@ static bool take(VehicleHeat *h, double us)
     return true;
 }
 
-/* One step of its past. */
+/* Drives d for span_s, from loads of the middle of that. */
+static Status live_through(VehicleHeat *h, VehicleState *s, Moment *m, const EntityDrives *d, double middle_s, double span_s)
+{
+    double      *scratch = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *scratch);
+    const Status status = scratch ? find_place(m, h, h->config.unix_s + middle_s, false) : STATUS_NO_MEMORY;
+    const size_t octets = (size_t)m->shape->nodes * sizeof *scratch;
+    if (status != STATUS_OK) return status;
+    if (!s->lives)
+        for (int n = 0; n < m->shape->nodes; n++) s->temp_k[n] = m->place.air_k;
+    s->lives = true;
+    load_nodes(s->load, m, s, d);
+    if (h->config.past_parts > 1) {
+        step(h, s, s->temp_k, NULL, d, s->load, s->load, span_s, scratch);
+        return STATUS_OK;
+    }
+    set_links(m->shape, d);
+    h->counters.steps++;
+    memcpy(scratch, s->temp_k, octets);
+    if (network_leap(scratch, m->shape->network, s->load, span_s) == STATUS_OK && is_sound(scratch, m->shape->nodes))
+        memcpy(s->temp_k, scratch, octets);
+    else
+        step(h, s, s->temp_k, NULL, d, s->load, s->load, span_s, scratch);
+    return STATUS_OK;
+}
+
+/* One span of its past. */
 static Status live_on(VehicleHeat *h, VehicleState *s, Moment *m)
 {
     static const double now_s = 3600;
-    double             *scratch = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *scratch), before_s = 0;
+    const int           parts = h->config.past_parts > 1 ? h->config.past_parts : 1;
     EntityDrives        d = {.alive = s->drives.alive, .flying = s->drives.flying};
-    if (!scratch) return STATUS_NO_MEMORY;
+    Status              status = STATUS_OK;
+    double              before_s = 0;
     for (int k = s->lived; k < past_steps; k++) before_s += past_span_s[k];
-    const double span_s = past_span_s[s->lived];
+    const double span_s = past_span_s[s->lived] / parts;
     if (before_s <= now_s) d = s->drives;
-    const Status status = find_place(m, h, h->config.unix_s + s->seen_s - before_s + 0.5 * span_s, false);
-    if (status != STATUS_OK) return status;
-    if (s->lived == 0)
-        for (int n = 0; n < m->shape->nodes; n++) s->temp_k[n] = m->place.air_k;
-    load_nodes(s->load, m, s, &d);
-    set_links(m->shape, &d);
-    h->counters.steps++;
-    memcpy(scratch, s->temp_k, (size_t)m->shape->nodes * sizeof *scratch);
-    if (network_leap(scratch, m->shape->network, s->load, span_s) == STATUS_OK && is_sound(scratch, m->shape->nodes))
-        memcpy(s->temp_k, scratch, (size_t)m->shape->nodes * sizeof *scratch);
-    else
-        step(h, s, s->temp_k, NULL, &d, s->load, s->load, span_s, scratch);
+    for (int k = 0; k < parts && status == STATUS_OK; k++)
+        status = live_through(h, s, m, &d, s->seen_s - before_s + (k + 0.5) * span_s, span_s);
     s->lived++;
-    return STATUS_OK;
+    return status;
 }
 
 /* The past is over: it is shown from now on. */

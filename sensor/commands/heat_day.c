@@ -206,7 +206,8 @@ Status heat_day_run(HeatDay *day, HeatImages *images, ModelStage *stage, const H
 {
     Course c = {.config = config, .stage = stage};
     day->model = catalog_model(stage->catalog, stage->model)->name;
-    Status status = world_vehicles_create(&c.vehicles, &stage->world, config->step_s, INFINITY, NULL);
+    Status status = world_vehicles_create(&c.vehicles, &stage->world,
+                                          &(WorldVehiclesConfig){.step_s = config->step_s, .window_us = INFINITY});
     if (status == STATUS_OK) status = march(day, images, &c);
     if (status == STATUS_OK) {
         const uint64_t failed = vehicle_heat_counters(world_vehicles_heat(c.vehicles))->failed;

@@ -206,7 +206,9 @@ static Status open_vehicles(Session *s)
     const char  *given = shared->config->heat.given;
     const Status status = *given ? given_heat_open(&s->given, given) : STATUS_OK;
     if (status != STATUS_OK) return status;
-    return world_vehicles_create(&s->vehicles, shared->world, shared->config->heat.vehicle_step_s, vehicle_window_us, s->given);
+    return world_vehicles_create(&s->vehicles, shared->world,
+                                 &(WorldVehiclesConfig){.step_s = shared->config->heat.vehicle_step_s,
+                                                        .window_us = vehicle_window_us, .given = s->given});
 }
 
 static Status open_session(Session *s)

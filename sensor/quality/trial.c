@@ -136,10 +136,10 @@ static Status targets(TrialFrame *f)
 
 Status trial_warm(TrialScene *scene, Snapshot *snapshot, Arena *arena)
 {
-    static const double step_s = 30;
-    Status              status = STATUS_OK;
+    const WorldVehiclesConfig config = {.step_s = 30, .window_us = INFINITY, .past_parts = scene->past_parts};
+    Status                    status = STATUS_OK;
     if (!scene->world.heat) return STATUS_OK;
-    if (!scene->vehicles) status = world_vehicles_create(&scene->vehicles, &scene->world, step_s, INFINITY, NULL);
+    if (!scene->vehicles) status = world_vehicles_create(&scene->vehicles, &scene->world, &config);
     if (status == STATUS_OK) status = world_vehicles_tick(scene->vehicles, snapshot);
     return status == STATUS_OK ? world_vehicles_show(scene->vehicles, snapshot, arena) : status;
 }

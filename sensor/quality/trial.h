@@ -14,6 +14,7 @@ typedef struct TrialScene {
     World            world;
     EntityTable     *table;
     WorldVehicles   *vehicles;    /* of trial_warm */
+    int              past_parts;  /* WorldVehiclesConfig */
     double           unix_s, sun_now_s;
 } TrialScene;
 

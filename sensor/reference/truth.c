@@ -152,8 +152,8 @@ static const ReferenceField fields[] = {
      "models"},
     {"error.BAND.table", "number", "", "share of the band's mean", "", "interpolation in tables of the atmosphere and "
      "Planck's law"},
-    {"error.BAND.heat", "number", "", "share of the band's mean", "", "steps, elements and facets of the ground's heat; 0 "
-     "in optical and radar"},
+    {"error.BAND.heat", "number", "", "share of the band's mean", "", "steps, elements and facets of the heat of ground and "
+     "parts; 0 in optical and radar"},
     {"error.BAND.dead_reckoning", "number", "", "share of the band's mean", "", "position errors of dead-reckoned "
      "entities"},
     {"error.BAND.total", "number", "", "share of the band's mean", "", "total of these"},

@@ -4,6 +4,7 @@
 
 #include "dis/enumerations.h"
 #include "render/frame/error_budget.h"
+#include "render/heat/vehicle_heat.h"
 
 /* Rows of a target are subsampled to about this many pixels at most. */
 enum { most_px = 4096 };
@@ -104,15 +105,21 @@ static double ground_way_m(const World *world, const SnapshotEntity *e, const Mo
     return hypot(mean_m, lean_m);
 }
 
-/* Squared error of temperature that ground and plants have by the steps, elements and facets of their heat: mean over all
- * pixels, K2. */
-static double heat_k2(const Picture *p, double air_k)
+/* Squared error of temperature that ground, plants and parts have by the steps, elements and facets of their heat: mean over
+ * all pixels, K2. Targets smaller than a pixel count with the share that they cover. */
+static double heat_k2(const Picture *p, const Snapshot *snapshot, double air_k)
 {
     const size_t pixels = (size_t)p->width * (size_t)p->height;
     double       sum = 0;
     if (!p->temp_k || !isfinite(air_k)) return 0;
-    for (size_t i = 0; i < pixels; i++)
-        if (p->entity[i] == 0 && isfinite(p->temp_k[i])) sum += square(0.03 + 0.005 * fabs((double)p->temp_k[i] - air_k));
+    for (size_t i = 0; i < pixels; i++) {
+        const double temp_k = (double)p->temp_k[i];
+        const int    entity = (int)p->entity[i] - 1;
+        if (!isfinite(temp_k)) continue;
+        if (entity < 0) sum += square(0.03 + 0.005 * fabs(temp_k - air_k));
+        else if (entity < snapshot->count && snapshot->entity[entity].first_patch >= 0)
+            sum += square((p->covered && p->covered[i] > 0 ? (double)p->covered[i] : 1) * vehicle_heat_error_k(temp_k, air_k));
+    }
     return sum / (double)pixels;
 }
 
@@ -146,7 +153,7 @@ bool frame_error(FrameError *out, const Picture *picture, const World *world, co
         const double square_of_mean = square(budget->mean[k]);
         const PlanckTable *planck = b == BAND_MWIR ? world->planck_mwir : b == BAND_LWIR ? world->planck_lwir : NULL;
         const double       kelvin = planck ? error_budget_kelvin(planck, budget->mean[k], 1) : NAN; /* for 1 W/(m2 sr) */
-        const double       heat = kelvin > 0 ? heat_k2(picture, air_k) / square(kelvin) : 0;
+        const double       heat = kelvin > 0 ? heat_k2(picture, snapshot, air_k) / square(kelvin) : 0;
         const double       squares[ERROR_TOTAL] = {square(budget->sampling[k]),
                                                    square(budget->level_of_detail[k]) + facets / pixels,
                                                    square(budget->tables[k]), heat, drift / pixels};

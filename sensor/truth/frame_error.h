@@ -11,7 +11,8 @@
  * error of the ground (render/frame/error_budget.h).
  *
  * Heat. Temperatures of the ground are off by what its elements, its steps of time and its facets leave out: 0.03 K and
- * 0.5 % of how far a place is from the air (tests/sensor/test_error_budget.c: within a factor of 2). What its materials and the weather
+ * 0.5 % of how far a place is from the air (tests/sensor/test_error_budget.c: within a factor of 2); those of parts by their steps
+ * and their past (vehicle_heat_error_k). What materials, weather and tables
  * leave out, 0.6 to 1.6 K on measured days, is not included. */
 #ifndef SENSOR_TRUTH_FRAME_ERROR_H
 #define SENSOR_TRUTH_FRAME_ERROR_H

@@ -230,6 +230,7 @@ static inline void judge_heat(Tally *tally, const ErrorScene *of)
     HeatConfig heat = heat_default_config();
     heat.step_s = 150, heat.facets = heat_most_facets, heat.grid = (GroundGrid){0.0012, 1.17, 3, 0.002};
     CHECK(trial_scene_warm(&fine, &heat) == STATUS_OK);
+    fine.past_parts = 8;
     RenderRequest    request = request_of(&scene, of);
     TrialFrame       frame = frame_of(&scene, &request, 0);
     const FrameError error = error_of(&frame);

@@ -72,7 +72,7 @@ for knob in "Earth to local frame" "latitude. longitude. height" "geoid between 
             "radiance of the sky" "light of the sky on a plane" "range to the ground" "range to a part" "rays a pixel" \
             "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
             "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "a small target's place" "electrons of a radiance" \
-            "steps of the ground's heat" "elements of the ground's heat" "slopes of the ground's heat" "steps of a vehicle's heat" \
+            "steps of the ground's heat" "elements of the ground's heat" "slopes of the ground's heat" "steps of a vehicle's heat" "patches of a vehicle" \
             "cells of past shade" "display" "converter" \
             "display's curve"; do
     check "precision has one default of: $knob" \

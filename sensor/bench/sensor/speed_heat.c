@@ -213,7 +213,9 @@ static Status time_vehicle_minute(double out_s[3], size_t *bytes, const TrialSce
 {
     WorldVehicles *v = NULL;
     const Snapshot none = {0};
-    Status         status = world_vehicles_create(&v, &scene->world, config_default().heat.vehicle_step_s, vehicle_window_us, NULL);
+    Status         status = world_vehicles_create(&v, &scene->world,
+                                                  &(WorldVehiclesConfig){.step_s = config_default().heat.vehicle_step_s,
+                                                                         .window_us = vehicle_window_us});
     if (status == STATUS_OK) status = world_vehicles_tick(v, &none);
     double spent_s = 0;
     out_s[0] = out_s[2] = 0;

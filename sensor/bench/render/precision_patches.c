@@ -1,0 +1,172 @@
+/* sensor/bench/render/precision_patches.c: the number of patches of a vehicle: temperatures over its surface, as a picture blends
+ * them, against those of the most patches. */
+#include "sensor/bench/render/rows.h"
+
+#include "render/heat/surface_flux.h"
+#include "render/heat/vehicle_heat.h"
+#include "render/parts/parts.h"
+#include "sensor/bench/turn.h"
+
+#include <stdlib.h>
+
+enum { settings = 3, ticks = 60 };
+static const double tick_s = 30;
+
+typedef struct Stage {
+    Catalog   *catalog;
+    Materials  materials;
+    PartTable  table;
+    Tracer    *tracer;
+    LocalFrame frame;
+    Arena     *arena;
+    int        model;
+} Stage;
+
+/* A clear morning, the sun in the east; exercise time 0 is 8 o'clock. */
+static Status morning(PlaceHeat *out, const void *user, double unix_s, const double p_enu[3], bool present)
+{
+    (void)user, (void)p_enu, (void)present;
+    const double hour = 8 + unix_s / 3600, turn = (hour - 12) * pi_rad / 12, up = 0.7 * cos(turn) + 0.15;
+    *out = (PlaceHeat){.air_k = 288, .air_density = 1, .wind_enu_mps = {2, 0, 0}, .longwave_w_m2 = 300, .ground_k = 292, .under_k = 288,
+                       .ground_rho = 0.2, .sun_d_enu = {-sqrt(fmax(1 - up * up, 0)) * sin(turn) / fmax(fabs(sin(turn)), 1e-9), 0, up}};
+    if (up > 0) out->direct_w_m2 = 800, out->diffuse_w_m2 = 80;
+    return STATUS_OK;
+}
+
+/* A tank that idles, nose north, its last half hour in view. */
+typedef struct Morning {
+    const Stage *stage;
+    PatchSet     patches;
+    Snapshot     snapshot;
+    SnapshotEntity entity;
+    SnapshotJoints joints;
+    Status       status;
+} Morning;
+
+static void live(void *user)
+{
+    Morning                *m = user;
+    const Stage            *s = m->stage;
+    VehicleHeat            *heat = NULL;
+    const VehicleHeatConfig config = {.first_step_s = 1, .step_s = tick_s, .window_us = INFINITY, .capacity = 1, .place = morning};
+    const VehicleHeatWorld  world = {s->catalog, &s->materials, &s->table, &s->frame, s->tracer, &m->patches, NULL};
+    arena_reset(s->arena);
+    m->status = vehicle_heat_create(&heat, &config, &world);
+    for (int t = 0; t < ticks && m->status == STATUS_OK; t++) {
+        m->snapshot.t_s = t * tick_s;
+        m->status = vehicle_heat_tick(heat, &m->snapshot);
+    }
+    if (m->status == STATUS_OK) m->status = vehicle_heat_show(heat, &m->snapshot, s->arena);
+    if (m->status == STATUS_OK && m->entity.first_patch < 0) m->status = STATUS_BAD_VALUE;
+    vehicle_heat_destroy(heat);
+}
+
+static Status begin(Morning *m, const Stage *s, int wanted)
+{
+    static const double p_enu[3] = {0, 0, 0}, r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
+    *m = (Morning){.stage = s, .entity = {.id = {1, 1, 1}, .type = {1, 1, 222, 1, 1, 1, 0}, .model = s->model,
+                                          .drives = {.engine = 0.6f}, .first_patch = -1}};
+    ecef_from_enu(m->entity.p_ecef, &s->frame, p_enu);
+    m3_mul(m->entity.r_ecef_from_body, s->frame.r_ecef_from_enu, r_enu_from_body);
+    m->snapshot = (Snapshot){.count = 1, .entity = &m->entity, .joints = &m->joints};
+    Status status = patch_set_create(&m->patches, catalog_model_count(s->catalog));
+    if (status == STATUS_OK) status = patches_create_of(&m->patches.of[s->model], tracer_model(s->tracer, s->model), wanted);
+    if (status == STATUS_OK) m->patches.cut[s->model] = true;
+    return status;
+}
+
+/* Temperatures of the middles of all triangles, by area. k[triangle_count]. */
+static void read_all(float *k, const Morning *m)
+{
+    const Model *model = tracer_model(m->stage->tracer, m->stage->model);
+    for (int p = 0; p < model->part_count; p++)
+        for (int t = 0; t < model->part[p].triangle_count; t++) {
+            const int     at = model->part[p].first_triangle + t;
+            const double *a = model->vertex[model->triangle[at][0]], *b = model->vertex[model->triangle[at][1]],
+                         *c = model->vertex[model->triangle[at][2]];
+            double        ab[3], ac[3], n[3], middle[3];
+            v3_sub(ab, b, a), v3_sub(ac, c, a);
+            v3_cross(n, ab, ac);
+            k[at] = NAN;
+            if (!v3_normalize(n, n)) continue;
+            for (int i = 0; i < 3; i++) middle[i] = (a[i] + b[i] + c[i]) / 3;
+            k[at] = (float)patch_set_temp_k(&m->patches, &m->snapshot, 0, p, middle, n);
+        }
+}
+
+static void compare(BenchSetting *out, const Model *model, const float *k, const float *fine)
+{
+    double sum = 0, m2 = 0;
+    for (int at = 0; at < model->triangle_count; at++) {
+        double        ab[3], ac[3], n[3];
+        const double *a = model->vertex[model->triangle[at][0]];
+        if (!isfinite(k[at]) || !isfinite(fine[at])) continue;
+        v3_sub(ab, model->vertex[model->triangle[at][1]], a), v3_sub(ac, model->vertex[model->triangle[at][2]], a);
+        v3_cross(n, ab, ac);
+        const double area = v3_length(n), off_k = (double)(k[at] - fine[at]);
+        sum += area * off_k * off_k, m2 += area;
+    }
+    out->error = m2 > 0 ? sqrt(sum / m2) : INFINITY;
+}
+
+static Status open_stage(Stage *s)
+{
+    char path[512], materials[512], surfaces[512], machines[512];
+    if (!etc_path(path, sizeof path, "catalog.csv") || !etc_path(materials, sizeof materials, "materials.csv") ||
+        !etc_path(surfaces, sizeof surfaces, "surfaces.csv"))
+        return STATUS_BAD_VALUE;
+    Status status = catalog_open(&s->catalog, path, 0.01);
+    if (status == STATUS_OK) status = materials_open(&s->materials, materials, surfaces, s->catalog);
+    if (status == STATUS_OK && !(etc_path(path, sizeof path, "heat.csv") && etc_path(machines, sizeof machines, "heat_machines.csv")))
+        status = STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = part_table_open(&s->table, path, machines);
+    if (status == STATUS_OK) status = tracer_create(&s->tracer, s->catalog, "avx2");
+    if (status == STATUS_OK) status = local_frame_at(&s->frame, &(Geodetic){0.7, 0.2, 0});
+    if (status == STATUS_OK && !(s->arena = arena_create())) status = STATUS_NO_MEMORY;
+    if (status != STATUS_OK) return status;
+    s->model = catalog_find(s->catalog, (DisEntityType){1, 1, 222, 1, 1, 1, 0}, NULL, NULL);
+    return tracer_need(s->tracer, s->model);
+}
+
+static Status knob_patches(Bench *bench, const Stage *s)
+{
+    static const int         wanted[settings] = {30, 60, patches_wanted};
+    static const char *const name[settings] = {"30", "60", "110"};
+    const Model *model = tracer_model(s->tracer, s->model);
+    Morning      set[settings], fine;
+    BenchWork    work[settings];
+    BenchSetting point[settings] = {0};
+    float       *k = calloc(2 * (size_t)model->triangle_count, sizeof *k), *fine_k = k ? k + model->triangle_count : NULL;
+    Status       status = k ? begin(&fine, s, patches_most) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) live(&fine), status = fine.status;
+    if (status == STATUS_OK) read_all(fine_k, &fine);
+    for (int i = 0; i < settings; i++) {
+        set[i] = (Morning){0};
+        if (status == STATUS_OK) status = begin(&set[i], s, wanted[i]);
+        if (status == STATUS_OK) live(&set[i]), status = set[i].status;
+        if (status == STATUS_OK) read_all(k, &set[i]);
+        work[i] = (BenchWork){live, &set[i], 1};
+        point[i] = (BenchSetting){.setting = name[i], .is_default = wanted[i] == patches_wanted};
+        if (status == STATUS_OK) compare(&point[i], model, k, fine_k);
+    }
+    if (status == STATUS_OK)
+        bench_tunable(bench, &(BenchTunable){"patches of a vehicle", "entities/models/patches.h", "half an hour of a tank, with its past",
+                                             "K", "rms over its surface, the most patches", 4}, work, point, settings);
+    patch_set_destroy(&fine.patches);
+    for (int i = 0; i < settings; i++) patch_set_destroy(&set[i].patches);
+    free(k);
+    return status;
+}
+
+Status bench_precision_patches(Bench *bench)
+{
+    Stage  s = {0};
+    Status status = open_stage(&s);
+    if (status == STATUS_OK) status = knob_patches(bench, &s);
+    if (status != STATUS_OK) log_error("bench: precision: patches: %s", status_name(status));
+    arena_destroy(s.arena);
+    tracer_destroy(s.tracer);
+    materials_close(&s.materials);
+    catalog_close(s.catalog);
+    return status;
+}
