@@ -114,7 +114,7 @@ Status world_vehicles_create(WorldVehicles **out, const World *world, const Worl
                                       .window_us = about->window_us, .past_parts = about->past_parts,
                                       .unix_s = world->drive->exercise_s, .capacity = vehicle_capacity, .place = place_there, .user = v};
     const VehicleHeatWorld  of = {world->catalog, &world->materials, &world->parts, &world->frame, world->tracer, world->patches,
-                                  about->given};
+                                  about->given, about->kept};
     const Status            status = v->arena ? vehicle_heat_create(&v->heat, &config, &of) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) *out = v;
     else world_vehicles_destroy(v);

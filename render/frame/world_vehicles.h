@@ -15,7 +15,8 @@ typedef struct WorldVehiclesConfig {
     double step_s;            /* of entities whose drives do not change */
     double window_us;         /* VehicleHeatConfig */
     int    past_parts;        /* VehicleHeatConfig; 0: 1 */
-    const GivenHeat *given;   /* VehicleHeatWorld */
+    const GivenHeat *given;   /* VehicleHeatWorld; so is: */
+    const KeptHeat  *kept;
 } WorldVehiclesConfig;
 
 /* The world must be warm, and outlive it. */

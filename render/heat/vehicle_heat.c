@@ -494,6 +494,27 @@ static Status live_through(VehicleHeat *h, VehicleState *s, Moment *m, const Ent
     return STATUS_OK;
 }
 
+/* Those of a run before, if they are recent; NULL: there are none. */
+static const KeptNodes *kept_of(const VehicleHeat *h, const VehicleState *s)
+{
+    static const double longest_s = 10800;
+    if (!h->world.kept) return NULL;
+    const KeptNodes *k = kept_heat_find(h->world.kept, s->id, tracer_model(h->world.tracer, s->model)->name, h->shape[s->model].nodes);
+    const double     gap_s = k ? h->config.unix_s + s->seen_s - k->unix_s : 0;
+    return k && gap_s >= 0 && gap_s <= longest_s ? k : NULL;
+}
+
+/* From kept temperatures until now, in as many steps as a past has. */
+static Status live_since(VehicleHeat *h, VehicleState *s, Moment *m, const KeptNodes *kept)
+{
+    const double since_s = kept->unix_s - h->config.unix_s, span_s = (s->seen_s - since_s) / past_steps;
+    if (!s->lives) memcpy(s->temp_k, kept->temp_k, (size_t)kept->nodes * sizeof *s->temp_k);
+    s->lives = true;
+    const Status status = span_s > 0 ? live_through(h, s, m, &s->drives, since_s + (s->lived + 0.5) * span_s, span_s) : STATUS_OK;
+    s->lived++;
+    return status;
+}
+
 /* One span of its past. */
 static Status live_on(VehicleHeat *h, VehicleState *s, Moment *m)
 {
@@ -502,6 +523,8 @@ static Status live_on(VehicleHeat *h, VehicleState *s, Moment *m)
     EntityDrives        d = {.alive = s->drives.alive, .flying = s->drives.flying};
     Status              status = STATUS_OK;
     double              before_s = 0;
+    const KeptNodes    *kept = kept_of(h, s);
+    if (kept) return live_since(h, s, m, kept);
     for (int k = s->lived; k < past_steps; k++) before_s += past_span_s[k];
     const double span_s = past_span_s[s->lived] / parts;
     if (before_s <= now_s) d = s->drives;
@@ -767,4 +790,20 @@ bool vehicle_heat_nodes(VehicleNodes *out, const VehicleHeat *h, DisEntityId id)
     if (!s || !s->shown) return false;
     *out = (VehicleNodes){&h->shape[s->model], s->temp_k, s->heat_in_j, s->t_s};
     return true;
+}
+
+Status vehicle_heat_keep(const VehicleHeat *h, const char *path)
+{
+    KeptNodes *nodes = calloc((size_t)h->count + 1, sizeof *nodes);
+    int        count = 0;
+    if (!nodes) return STATUS_NO_MEMORY;
+    for (int i = 0; i < h->count; i++) {
+        const VehicleState *s = h->state[i];
+        if (s->shown)
+            nodes[count++] = (KeptNodes){s->id, tracer_model(h->world.tracer, s->model)->name, h->config.unix_s + s->t_s,
+                                         h->shape[s->model].nodes, s->temp_k};
+    }
+    const Status status = kept_heat_save(nodes, count, path);
+    free(nodes);
+    return status;
 }

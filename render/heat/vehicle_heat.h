@@ -19,12 +19,14 @@
  * as warm as the air until its past is worked out.
  *
  * Before its first report an entity is taken to have stood there for a day with its engine stopped, and for its last hour
- * to have done what it then does: in single steps of the solver (tests/render/test_vehicle_heat_error.c). Munitions and expendables start as warm as the air that flows past them. */
+ * to have done what it then does: in single steps of the solver (tests/render/test_vehicle_heat_error.c). Munitions and expendables start as warm as the air that flows past them. One whose temperatures were kept less than three hours before
+ * (kept_heat.h) begins with those, and is taken to have done since then what it then does. */
 #ifndef RENDER_HEAT_VEHICLE_HEAT_H
 #define RENDER_HEAT_VEHICLE_HEAT_H
 
 #include "entities/table/snapshot.h"
 #include "render/heat/given_heat.h"
+#include "render/heat/kept_heat.h"
 #include "render/heat/patch_set.h"
 #include "render/heat/vehicle_shape.h"
 #include "render/parts/tracer.h"
@@ -64,6 +66,7 @@ typedef struct VehicleHeatWorld {
     Tracer           *tracer;
     PatchSet         *patches;
     const GivenHeat  *given;   /* shown instead, where it has a part; NULL: nothing is given */
+    const KeptHeat   *kept;    /* of a run before; NULL: none */
 } VehicleHeatWorld;
 
 typedef struct VehicleHeatCounters {
@@ -88,6 +91,9 @@ typedef struct VehicleNodes {
     const double       *temp_k;    /* [shape->nodes] */
     double              heat_in_j, t_s;
 } VehicleNodes;
+/* What kept_heat_open reads, of all that are shown. */
+Status vehicle_heat_keep(const VehicleHeat *heat, const char *path);
+
 /* Error that steps and the past's single steps leave in a patch's temperature, K, rms: within a factor of 2 of a solution in
  * small steps in nine of ten (tests/render/test_vehicle_heat_error.c). */
 static inline double vehicle_heat_error_k(double temp_k, double air_k) { return 0.048 + 0.006 * fabs(temp_k - air_k); }

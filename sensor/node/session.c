@@ -204,11 +204,13 @@ static Status open_vehicles(Session *s)
     s->vehicle_arena = arena_create();
     if (!s->vehicle_arena) return STATUS_NO_MEMORY;
     const char  *given = shared->config->heat.given;
-    const Status status = *given ? given_heat_open(&s->given, given) : STATUS_OK;
+    const char  *kept = shared->config->heat.vehicles;
+    Status       status = *given ? given_heat_open(&s->given, given) : STATUS_OK;
+    if (status == STATUS_OK && *kept && access(kept, F_OK) == 0) status = kept_heat_open(&s->kept, kept);
     if (status != STATUS_OK) return status;
     return world_vehicles_create(&s->vehicles, shared->world,
                                  &(WorldVehiclesConfig){.step_s = shared->config->heat.vehicle_step_s,
-                                                        .window_us = vehicle_window_us, .given = s->given});
+                                                        .window_us = vehicle_window_us, .given = s->given, .kept = s->kept});
 }
 
 static Status open_session(Session *s)
@@ -415,6 +417,8 @@ Status session_close(Session *s, SessionResult *result)
     if (status == STATUS_OK) status = s->listed;
     if (s->table && *s->shared->config->heat.marks && status == STATUS_OK)
         status = entity_table_marks_save(s->table, s->shared->unix_s, s->shared->config->heat.marks);
+    if (s->vehicles && *s->shared->config->heat.vehicles && status == STATUS_OK)
+        status = vehicle_heat_keep(world_vehicles_heat(s->vehicles), s->shared->config->heat.vehicles);
     s->result.frames         = s->published;
     s->result.files_failed   = s->written.failed + s->lines_failed;
     s->result.files_left_out = s->written.left_out;
@@ -428,6 +432,7 @@ Status session_close(Session *s, SessionResult *result)
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);
     world_vehicles_destroy(s->vehicles);
     given_heat_close(s->given);
+    kept_heat_close(s->kept);
     arena_destroy(s->vehicle_arena);
     entity_table_destroy(s->table);
     frame_pool_destroy(s->frames);

@@ -21,6 +21,7 @@ struct Session {
     EntityTable         *table;
     Player              *player;        /* the caller's */
     GivenHeat           *given;         /* of vehicles; NULL: none */
+    KeptHeat            *kept;          /* of a run before; NULL: none */
     WorldVehicles       *vehicles;      /* NULL: parts are as warm as the air */
     Arena               *vehicle_arena; /* of the snapshot of a tick */
     Status               vehicle_status; /* the first failure: frames fail with it */

@@ -222,6 +222,9 @@ static const Setting keys[] = {
     {"heat.given", SETTING_PATH, AT(heat.given), 0, 0, NULL, "",
      "file of temperatures of parts over exercise time (CSV: entity, part, t_s, temp_k) that are shown instead of those worked "
      "out; empty: none"},
+    {"heat.vehicles", SETTING_PATH, AT(heat.vehicles), 0, 0, NULL, "",
+     "file of the temperatures of vehicles, people and buildings (CSV), read at the start where it is there, written at the end, "
+     "for a node that starts again; empty: none"},
     {"heat.marks", SETTING_PATH, AT(heat.marks), 0, 0, NULL, "",
      "file of what stood, drove and burst (CSV): read at the start where it is there, written at the end, for a node that "
      "starts again; empty: none"},

@@ -103,6 +103,7 @@ typedef struct Config {
         int    facets;             /* normals of the ground, a side */
         double shadow_m;           /* cells of the shadow map; 0: none */
         char   given[1024];        /* file of temperatures of parts; empty: none */
+        char   vehicles[1024];     /* file of their temperatures over a restart; empty: none */
         char   marks[1024];        /* file of ground marks over a restart; empty: none */
     } heat;
     struct {

@@ -7,6 +7,7 @@
 #include "entities/catalog/catalog.h"
 #include "entities/effects/effects.h"
 #include "render/heat/given_heat.h"
+#include "render/heat/kept_heat.h"
 #include "render/heat/part_table.h"
 #include "render/materials/materials.h"
 #include "sensor/detector/sheet.h"
@@ -22,7 +23,9 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
                                        "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
-    switch (index % (names + 2)) {
+    switch (index % (names + 3)) {
+    case names + 2:
+        return fuzz_seed_text(out, "entity,model,unix_s,node_k\n1:1:7,tank,1782043200.5,290 300.5\n1:1:8,truck,5,1\n");
     case names + 1:
         return fuzz_seed_text(out, "entity,part,t_s,temp_k\n*,hull,0,290\ntank,hull,0,300\ntank,hull,60,310\n1:1:1,*,5,400\n");
     case names:
@@ -30,7 +33,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
     default:
         break;
     }
-    FILE *file = etc_path(path, sizeof path, name[index % (names + 2)]) ? fopen(path, "rb") : NULL;
+    FILE *file = etc_path(path, sizeof path, name[index % (names + 3)]) ? fopen(path, "rb") : NULL;
     if (!file) return 0;
     const size_t size = fread(out, 1, fuzz_seed_octets, file);
     fclose(file);
@@ -92,6 +95,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         SensorPreset preset;
         Materials    materials;
         GivenHeat   *given;
+        KeptHeat    *kept;
+        if (table_column(&table, "node_k") >= 0 && kept_heat_open(&kept, path) == STATUS_OK) {
+            const KeptNodes *nodes = kept_heat_find(kept, (DisEntityId){1, 1, 7}, "tank", 2);
+            if (nodes && !(nodes->temp_k[1] >= 0.5 && nodes->temp_k[1] <= 1e4)) abort();
+            kept_heat_close(kept);
+        }
         if (table_column(&table, "temp_k") >= 0 && given_heat_open(&given, path) == STATUS_OK) {
             static ModelPart part = {.name = "hull", .role = HEAT_HULL};
             const Model      model = {.name = "tank", .part = &part, .part_count = 1};

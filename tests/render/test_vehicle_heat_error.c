@@ -59,7 +59,7 @@ static VehicleHeat *start(double unix_s, double step_s, int past_parts)
     VehicleHeat            *heat;
     const VehicleHeatConfig config = {.first_step_s = 1, .step_s = step_s, .window_us = INFINITY, .past_parts = past_parts, .capacity = 8,
                                       .unix_s = unix_s, .place = everywhere};
-    const VehicleHeatWorld  world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches, NULL};
+    const VehicleHeatWorld  world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches, NULL, NULL};
     CHECK(vehicle_heat_create(&heat, &config, &world) == STATUS_OK);
     return heat;
 }

@@ -88,4 +88,15 @@ printf 'entity,part,t_s,temp_k\n*,engine_deck,0,9000\n' >"$tmp/given.csv"
 replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set heat.given="$tmp/given.csv"
 check "a temperature out of range: an error" [ "$code" != 0 ]
 check "that says where" complained 'given.csv:2'
+
+# Temperatures of vehicles over a restart: written, read, and refused with a line where they are broken.
+replay "$tmp/gone.pcap" "$tmp/first" "${look[@]}" --only 1 --set heat.vehicles="$tmp/kept_k.csv"
+check "temperatures of vehicles are kept" grep -q '^1:3001:1,' "$tmp/kept_k.csv"
+check "without a file before, the same bits" same_frame "$tmp/one" "$tmp/first" 1
+replay "$tmp/gone.pcap" "$tmp/again" "${look[@]}" --only 1 --set heat.vehicles="$tmp/kept_k.csv"
+check "and read: replayed" [ "$code" = 0 ]
+printf 'entity,model,unix_s,node_k\n1:3001:1,tank,5,warm\n' >"$tmp/kept_k.csv"
+replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set heat.vehicles="$tmp/kept_k.csv"
+check "a broken file of them: an error" [ "$code" != 0 ]
+check "that says where" complained 'kept_k.csv:2'
 finish

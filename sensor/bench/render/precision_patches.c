@@ -49,7 +49,7 @@ static void live(void *user)
     const Stage            *s = m->stage;
     VehicleHeat            *heat = NULL;
     const VehicleHeatConfig config = {.first_step_s = 1, .step_s = tick_s, .window_us = INFINITY, .capacity = 1, .place = morning};
-    const VehicleHeatWorld  world = {s->catalog, &s->materials, &s->table, &s->frame, s->tracer, &m->patches, NULL};
+    const VehicleHeatWorld  world = {s->catalog, &s->materials, &s->table, &s->frame, s->tracer, &m->patches, NULL, NULL};
     arena_reset(s->arena);
     m->status = vehicle_heat_create(&heat, &config, &world);
     for (int t = 0; t < ticks && m->status == STATUS_OK; t++) {
