@@ -7,8 +7,9 @@ enum { by_any = 0, by_kind, by_name };
 
 /* Rows of one entity and part: [first, last) of GivenHeat's. */
 typedef struct GivenPart {
-    int         entity_by, part_by; /* kind: of a model; of a role */
+    int         entity_by;          /* kind: of a model */
     DisEntityId id;
+    bool        any_part, has_role; /* part is *; a role is called part */
     HeatRole    role;
     const char *model, *part;       /* the table's */
     int         first, last;
@@ -25,12 +26,15 @@ struct GivenHeat {
 typedef struct GivenRow {
     const char *entity, *part;
     int         row;
+    char        id[dis_id_text_size]; /* entity, where it is an id, in one way */
 } GivenRow;
+
+static const char *entity_of(const GivenRow *row) { return *row->id ? row->id : row->entity; }
 
 static int by_part(const void *a, const void *b)
 {
     const GivenRow *p = a, *q = b;
-    int             order = strcmp(p->entity, q->entity);
+    int             order = strcmp(entity_of(p), entity_of(q));
     if (order == 0) order = strcmp(p->part, q->part);
     return order != 0 ? order : (p->row > q->row) - (p->row < q->row);
 }
@@ -46,18 +50,22 @@ static Status begin_part(GivenPart *out, const Table *table, const GivenRow *row
     *out = (GivenPart){.model = row->entity, .part = row->part, .first = at, .last = at};
     if (!*row->entity || !*row->part) return complain(table, row->row, "entity or part is empty; * stands for all of them");
     out->entity_by = strcmp(row->entity, "*") == 0 ? by_any : dis_entity_id_parse(&out->id, row->entity) ? by_name : by_kind;
-    out->part_by = strcmp(row->part, "*") == 0 ? by_any : heat_role_find(&out->role, row->part) ? by_kind : by_name;
+    out->any_part = strcmp(row->part, "*") == 0;
+    out->has_role = heat_role_find(&out->role, row->part);
     return STATUS_OK;
 }
 
 static Status take_rows(GivenHeat *g, GivenRow *row, const int column[4])
 {
     Status status = STATUS_OK;
-    for (int i = 0; i < g->table.rows; i++)
-        row[i] = (GivenRow){table_text(&g->table, i, column[0]), table_text(&g->table, i, column[1]), i};
+    for (int i = 0; i < g->table.rows; i++) {
+        DisEntityId id;
+        row[i] = (GivenRow){.entity = table_text(&g->table, i, column[0]), .part = table_text(&g->table, i, column[1]), .row = i};
+        if (dis_entity_id_parse(&id, row[i].entity)) dis_entity_id_text(row[i].id, id);
+    }
     qsort(row, (size_t)g->table.rows, sizeof *row, by_part);
     for (int i = 0; i < g->table.rows && status == STATUS_OK; i++) {
-        const bool same = i > 0 && strcmp(row[i].entity, row[i - 1].entity) == 0 && strcmp(row[i].part, row[i - 1].part) == 0;
+        const bool same = i > 0 && strcmp(entity_of(&row[i]), entity_of(&row[i - 1])) == 0 && strcmp(row[i].part, row[i - 1].part) == 0;
         if (!same) status = begin_part(&g->part[g->count++], &g->table, &row[i], i);
         if (status == STATUS_OK) status = table_number(&g->t_s[i], &g->table, row[i].row, column[2], -1e9, 1e9);
         if (status == STATUS_OK) status = table_number(&g->temp_k[i], &g->table, row[i].row, column[3], 1, 4000);
@@ -109,9 +117,12 @@ static bool is_entity(const GivenPart *p, DisEntityId id, const Model *model)
     return p->entity_by == by_any || (p->entity_by == by_name ? dis_entity_id_compare(p->id, id) == 0 : strcmp(p->model, model->name) == 0);
 }
 
-static bool is_part(const GivenPart *p, const ModelPart *part)
+/* by_any, by_kind, by_name; -1: another part. */
+static int part_by(const GivenPart *p, const ModelPart *part)
 {
-    return p->part_by == by_any || (p->part_by == by_kind ? p->role == part->role : strcmp(p->part, part->name) == 0);
+    if (p->any_part) return by_any;
+    if (strcmp(p->part, part->name) == 0) return by_name;
+    return p->has_role && p->role == part->role ? by_kind : -1;
 }
 
 int given_heat_find(int *rank, const GivenHeat *g, DisEntityId id, const Model *model, int part)
@@ -120,9 +131,8 @@ int given_heat_find(int *rank, const GivenHeat *g, DisEntityId id, const Model *
     *rank = -1;
     for (int i = 0; i < g->count; i++) {
         const GivenPart *p = &g->part[i];
-        const int        closer = 3 * (p->entity_by == by_any ? 0 : p->entity_by == by_kind ? 1 : 2) +
-                                  (p->part_by == by_any ? 0 : p->part_by == by_kind ? 1 : 2);
-        if (closer > *rank && is_entity(p, id, model) && is_part(p, &model->part[part])) *rank = closer, found = i;
+        const int        by = part_by(p, &model->part[part]), closer = 3 * p->entity_by + by;
+        if (by >= 0 && closer > *rank && is_entity(p, id, model)) *rank = closer, found = i;
     }
     return found;
 }

@@ -644,20 +644,20 @@ static int by_wait(const void *a, const void *b)
     return dis_entity_id_compare(p->id, q->id);
 }
 
-/* Of all parts of a patch's body, what names one the closest. */
+/* Of all parts of a body, what names one the closest. */
 static void find_given(VehicleState *s, const VehicleHeat *h)
 {
     const Patches *patches = h->shape[s->model].patches;
     const Model   *model = tracer_model(h->world.tracer, s->model);
-    for (int i = 0; i < patches->count; i++) {
-        int best = -1;
-        s->given[i] = -1;
-        for (int part = 0; h->world.given && part < model->part_count; part++) {
-            int rank;
-            if (patches->body_of_part[part] != patches->body_of_part[patches->patch[i].part]) continue;
-            const int found = given_heat_find(&rank, h->world.given, s->id, model, part);
-            if (rank > best) best = rank, s->given[i] = found;
-        }
+    int            best[patches_most];
+    for (int i = 0; i < patches->count; i++) s->given[i] = best[i] = -1;
+    for (int part = 0; h->world.given && part < model->part_count; part++) {
+        const int body = patches->body_of_part[part], first = patches->first_of_body[body], end = patches->first_of_body[body + 1];
+        int       rank;
+        const int found = given_heat_find(&rank, h->world.given, s->id, model, part);
+        if (first == end || rank <= best[first]) continue;
+        best[first] = rank;
+        for (int i = first; i < end; i++) s->given[i] = found;
     }
 }
 

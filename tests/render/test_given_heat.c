@@ -4,8 +4,9 @@
 #include "render/heat/given_heat.h"
 
 static ModelPart part[] = {{.name = "hull", .role = HEAT_HULL}, {.name = "deck", .role = HEAT_ENGINE_DECK},
-                           {.name = "grille", .role = HEAT_ENGINE_DECK}};
-static Model     tank = {.name = "tank", .part = part, .part_count = 3}, truck = {.name = "truck", .part = part, .part_count = 3};
+                           {.name = "grille", .role = HEAT_ENGINE_DECK},
+                           {.name = "exhaust", .role = HEAT_PASSIVE}};
+static Model     tank = {.name = "tank", .part = part, .part_count = 4}, truck = {.name = "truck", .part = part, .part_count = 4};
 static const DisEntityId first = {1, 1, 1}, second = {1, 1, 2};
 
 static Status open_text(GivenHeat **out, const char *text)
@@ -51,6 +52,18 @@ static void the_closest_name_wins(void **state)
     given_heat_close(g);
 }
 
+/* A part may be called as a role is, and have another; ids are numbers, however they are written. */
+static void names_that_are_roles(void **state)
+{
+    (void)state;
+    GivenHeat *g;
+    CHECK(open_text(&g, "entity,part,t_s,temp_k\n*,exhaust,0,500\n01:1:1,hull,0,300\n1:1:1,hull,10,310\n") == STATUS_OK);
+    CHECK(k_of(g, first, &tank, 3, 0) == 500);
+    CHECK_NEAR(k_of(g, first, &tank, 0, 5), 305, 1e-9);
+    given_heat_close(g);
+    CHECK(open_text(&g, "entity,part,t_s,temp_k\n01:1:1,hull,0,300\n1:1:1,hull,0,350\n") == STATUS_BAD_VALUE);
+}
+
 static void what_is_refused(void **state)
 {
     (void)state;
@@ -88,6 +101,6 @@ static void what_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(lines_between_rows), cmocka_unit_test(the_closest_name_wins),
-                                       cmocka_unit_test(what_is_refused)};
+                                       cmocka_unit_test(names_that_are_roles), cmocka_unit_test(what_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
