@@ -125,7 +125,7 @@ static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *m
     *out = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind),
                         .seed = (uint32_t)(int64_t)floor_at, .throw_s = 1, .scale = across_scale, .along_m = 0.5 * length,
                         .mass_kg = table->law[kind].mass_kg * across_scale * across_scale * length};
-    tail_body[0] = model->box_low[0] - 0.5 * length;
+    tail_body[0] = model->box_low[0] - 0.36 * length; /* a seventh of it inside: at its very end it is thin */
     tail_body[2] = -0.5 * model->height_m;
     m3_mul_v3(tail_ecef, e->r_ecef_from_body, tail_body);
     v3_add(out->p_ecef, e->p_ecef, tail_ecef);

@@ -87,6 +87,9 @@ check "and there are others" [ "$(paste "$tmp/one.k" "$tmp/given.k" | awk '$1 ==
 check "run.json names the file" grep -q '"heat/given.csv"' "$tmp/given/run.json"
 replay "$tmp/gone.pcap" "$tmp/given2" "${look[@]}" --only 1 --threads 1 --from +1 --set heat.given="$tmp/given.csv"
 check "the same bits with one thread and --from" same_frame "$tmp/given" "$tmp/given2" 1
+replay "$tmp/gone.pcap" "$tmp/given3" "${look[@]}" --only 1 --set heat.given="$tmp/given.csv" --save-frame 1
+rm "$tmp/given.csv"
+check "a frame file needs the table no more" "$pitviper" frame "$tmp/given3/frame_000001.pvf"
 printf 'entity,part,t_s,temp_k\n*,engine_deck,0,9000\n' >"$tmp/given.csv"
 replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set heat.given="$tmp/given.csv"
 check "a temperature out of range: an error" [ "$code" != 0 ]
