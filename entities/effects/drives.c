@@ -7,6 +7,9 @@ static const double moving_mps = 0.3;       /* above the jitter of reports of a 
 static const double engine_after_stop_s = 120; /* crews halt with the engine on; estimate */
 static const double full_speed_mps = 10;    /* estimate: a vehicle's usual off-road speed */
 static const double idle_engine = 0.6;      /* estimate, of what it is at that speed */
+/* Estimates: full power is some 1.2 W a newton of weight (600 kW for 50 t), which would lift it at 1.2 m/s; a turn of 1 rad/s takes
+ * all of it in a tracked vehicle. */
+static const double full_climb_mps = 1.2, full_turn_rps = 1;
 static const double burn_s = 2;             /* a TOW's launch and flight motors together: under 2 s */
 static const double flare_s = 4;            /* decoy flares of the MJU class burn for 3 .. 5 s; estimate */
 static const double wreck_s = 600;          /* fuel, rubber and ammunition of a vehicle burn out; estimate */
@@ -19,6 +22,13 @@ static bool is_destroyed(const DriveEvidence *evidence)
     const int kind = evidence->type.kind;
     return (kind == dis_kind_platform || kind == dis_kind_life_form || kind == dis_kind_cultural_feature) &&
            (evidence->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
+}
+
+/* 0 .. 1 of what is between idling and full power. */
+static double load_of(const DriveEvidence *e, double speed_mps)
+{
+    const double climb_mps = isfinite(e->climb_mps) ? e->climb_mps : 0, turn_rps = isfinite(e->turn_rps) ? fabs(e->turn_rps) : 0;
+    return clamp(speed_mps / full_speed_mps + climb_mps / full_climb_mps + turn_rps / full_turn_rps, 0, 1);
 }
 
 static void take(DriveState *state, const DriveEvidence *evidence, double t_s)
@@ -36,7 +46,7 @@ static void take(DriveState *state, const DriveEvidence *evidence, double t_s)
     if (!works) state->engine.value = 0;
     else if (air) state->engine.value = 1;
     else if (state->moving)
-        state->engine.value = idle_engine + (1 - idle_engine) * clamp(state->speed_mps / full_speed_mps, 0, 1);
+        state->engine.value = idle_engine + (1 - idle_engine) * load_of(evidence, state->speed_mps);
     else if (platform && evidence->appearance >> dis_appearance_power_plant_bit & 1) state->engine.value = idle_engine;
     else if (platform && t_s < state->moved_s + engine_after_stop_s)
         state->engine = (DriveUntil){idle_engine, state->moved_s + engine_after_stop_s};

@@ -11,7 +11,8 @@
 /* At an instant. */
 typedef struct EntityDrives {
     double since_s;      /* exercise time of its first report */
-    float  engine;       /* share of full power: 0.6 idling, 1 at 10 m/s; air platforms 1; 0: stopped */
+    float  engine;       /* share of full power: 0.6 idling, 1 at 10 m/s on level ground, or at less uphill and in turns; air
+                          * platforms 1; 0: stopped */
     float  speed_mps;    /* as reported; 0 when frozen */
     float  flying;       /* 1: an air platform that is not destroyed */
     float  alive;        /* 1: a life form alive; a building not destroyed */
@@ -40,6 +41,8 @@ typedef struct DriveEvidence {
     DisEntityType type;
     uint32_t      appearance;
     double        speed_mps; /* as reported; 0 when frozen */
+    double        climb_mps;    /* upwards */
+    double        turn_rps;     /* about its own vertical axis */
 } DriveEvidence;
 
 /* Of the first report. A wreck without flames does not burn. Munitions and expendables start with their motor or grain

@@ -106,6 +106,15 @@ static void take_place(EntityTable *table, EntitySlot *slot, const double p_ecef
     if (!sanitize(slot->reported.v_mps, v_mps, largest_speed_mps)) table->counters.motion_refused++;
 }
 
+/* Upwards, of its velocity. */
+static double climb_mps(const Kinematics *k)
+{
+    double v_ecef_mps[3], up[3];
+    memcpy(v_ecef_mps, k->v_mps, sizeof v_ecef_mps);
+    if (dead_reckoning_in_body_axes(k->algorithm)) m3_mul_v3(v_ecef_mps, k->r_ecef_from_body, k->v_mps);
+    return v3_normalize(up, k->p_ecef) ? v3_dot(v_ecef_mps, up) : 0;
+}
+
 /* Appearance, heat, articulation and times: the end of both kinds of report. */
 static void take_state(EntityTable *table, EntitySlot *slot, uint8_t version, uint32_t appearance,
                        const DisVariableParameter *record, int record_count, bool is_first, double t_s)
@@ -118,8 +127,11 @@ static void take_state(EntityTable *table, EntitySlot *slot, uint8_t version, ui
     slot->timeout_s = timeout_of(table, slot, version);
     slot->hold_s = table->config.extrapolation_limit_s * (slot->timeout_s / table->config.timeout_s);
 
+    const Kinematics   *k = &slot->reported;
+    const bool          frozen = entity_slot_frozen(slot), turns = !frozen && dead_reckoning_turns(k->algorithm);
     const DriveEvidence evidence = {.type = slot->type, .appearance = appearance,
-                                   .speed_mps = entity_slot_frozen(slot) ? 0 : v3_length(slot->reported.v_mps)};
+                                   .speed_mps = frozen ? 0 : v3_length(k->v_mps), .climb_mps = frozen ? 0 : climb_mps(k),
+                                   .turn_rps = turns ? k->w_body_rps[2] : 0};
     const bool was_destroyed = slot->drives.destroyed;
     if (is_first) drives_begin(&slot->drives, &evidence, t_s);
     else drives_report(&slot->drives, &evidence, t_s);

@@ -50,6 +50,20 @@ static void speed_is_power(void **state)
     CHECK_NEAR(before, 1, 1e-6);
 }
 
+/* Uphill and in turns the engine gives more, downhill less, never less than idling or more than all; nonsense counts as nothing. */
+static void slopes_and_turns_are_power(void **state)
+{
+    (void)state;
+    static const struct { double speed_mps, climb_mps, turn_rps, want; } c[] = {
+        {5, 0, 0, 0.8}, {5, 0.3, 0, 0.9}, {5, -0.3, 0, 0.7}, {5, -9, 0, 0.6}, {5, 9, 0, 1}, {5, 0, 0.25, 0.9}, {5, 0, -0.25, 0.9},
+        {5, NAN, 0, 0.8}, {5, 0, INFINITY, 0.8}, {5, -INFINITY, NAN, 0.8}};
+    for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
+        DriveState s;
+        drives_begin(&s, &(DriveEvidence){.type = tank_type, .speed_mps = c[i].speed_mps, .climb_mps = c[i].climb_mps, .turn_rps = c[i].turn_rps}, 0);
+        CHECK_NEAR(at(&s, 1).engine, c[i].want, 1e-6);
+    }
+}
+
 /* Helicopters of a sender that never sets the bit fly all the same; their wrecks do not. */
 static void flight_is_evidence(void **state)
 {
@@ -129,7 +143,8 @@ static void what_lives(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(engine_is_inferred), cmocka_unit_test(speed_is_power), cmocka_unit_test(flight_is_evidence),
+        cmocka_unit_test(engine_is_inferred), cmocka_unit_test(speed_is_power),
+        cmocka_unit_test(slopes_and_turns_are_power), cmocka_unit_test(flight_is_evidence),
         cmocka_unit_test(wrecks_burn_out),    cmocka_unit_test(shots_add_up),   cmocka_unit_test(short_lives),
         cmocka_unit_test(what_lives),
     };
