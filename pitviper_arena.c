@@ -1,4 +1,5 @@
-/* pitviper_arena.c: per-frame memory, in blocks that are reused. */
+/* pitviper_arena.c: per-frame memory, in blocks that are reused. What is larger than a block has one of its own, in steps of a
+ * quarter of a power of two, so that a request that grows from frame to frame finds the block of the frame before. */
 #include "pitviper.h"
 
 #include <pthread.h>
@@ -13,7 +14,8 @@ typedef struct ArenaBlock {
 } ArenaBlock;
 
 struct Arena {
-    ArenaBlock     *first, *current;
+    ArenaBlock     *first, *current; /* all of one size */
+    ArenaBlock     *large;           /* each for one request */
     pthread_mutex_t mutex; /* of arena_alloc */
 };
 
@@ -26,51 +28,90 @@ Arena *arena_create(void)
     return NULL;
 }
 
+static void free_block(ArenaBlock *block)
+{
+    free(block->data);
+    free(block);
+}
+
+static void free_blocks(ArenaBlock *block)
+{
+    for (ArenaBlock *next; block; block = next) {
+        next = block->next;
+        free_block(block);
+    }
+}
+
 void arena_destroy(Arena *arena)
 {
     if (!arena) return;
-    for (ArenaBlock *block = arena->first, *next; block; block = next) {
-        next = block->next;
-        free(block->data);
-        free(block);
-    }
+    free_blocks(arena->first);
+    free_blocks(arena->large);
     pthread_mutex_destroy(&arena->mutex);
     free(arena);
 }
 
+/* Large blocks that have not been used since the last reset go. */
 void arena_reset(Arena *arena)
 {
     for (ArenaBlock *block = arena->first; block; block = block->next) block->used = 0;
     arena->current = arena->first;
+    for (ArenaBlock **at = &arena->large; *at;) {
+        ArenaBlock *block = *at;
+        if (block->used == 0) {
+            *at = block->next;
+            free_block(block);
+        } else {
+            block->used = 0;
+            at = &block->next;
+        }
+    }
 }
 
-static ArenaBlock *add_block(Arena *arena, size_t octets)
+static ArenaBlock *new_block(size_t octets)
 {
     ArenaBlock *block = calloc(1, sizeof *block);
     if (!block) return NULL;
-    block->size = octets > arena_block_octets ? octets : arena_block_octets;
-    block->data = aligned_alloc(arena_alignment, block->size);
-    if (!block->data) {
-        free(block);
-        return NULL;
+    block->size = octets;
+    block->data = aligned_alloc(arena_alignment, octets);
+    if (block->data) return block;
+    free(block);
+    return NULL;
+}
+
+static size_t rounded(size_t octets)
+{
+    size_t step = arena_block_octets / 4;
+    while (step < octets / 8) step *= 2;
+    return octets > SIZE_MAX - step ? octets : (octets + step - 1) / step * step;
+}
+
+/* The smallest that is free. */
+static void *take_large(Arena *arena, size_t octets)
+{
+    ArenaBlock *best = NULL;
+    for (ArenaBlock *block = arena->large; block; block = block->next)
+        if (block->used == 0 && block->size >= octets && (!best || block->size < best->size)) best = block;
+    if (!best) {
+        best = new_block(rounded(octets));
+        if (!best) return NULL;
+        best->next   = arena->large;
+        arena->large = best;
     }
-    /* after the current one: the blocks after it are still empty and are used next */
-    if (arena->current) {
-        block->next          = arena->current->next;
-        arena->current->next = block;
-    } else {
-        arena->first = block;
-    }
-    return block;
+    best->used = octets;
+    return best->data;
 }
 
 static void *take(Arena *arena, size_t octets)
 {
+    if (octets > arena_block_octets) return take_large(arena, octets);
     while (arena->current && arena->current->size - arena->current->used < octets && arena->current->next)
         arena->current = arena->current->next;
     if (!arena->current || arena->current->size - arena->current->used < octets) {
-        ArenaBlock *block = add_block(arena, octets);
+        ArenaBlock *block = new_block(arena_block_octets);
         if (!block) return NULL;
+        if (arena->current) arena->current->next = block; /* it is the last */
+        else arena->first = block;
         arena->current = block;
     }
     void *memory = arena->current->data + arena->current->used;
@@ -96,5 +137,6 @@ size_t arena_bytes(const Arena *arena)
 {
     size_t octets = 0;
     for (const ArenaBlock *block = arena->first; block; block = block->next) octets += block->size;
+    for (const ArenaBlock *block = arena->large; block; block = block->next) octets += block->size;
     return octets;
 }
