@@ -60,9 +60,9 @@ void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* ---- arena: memory of one frame -------------------------------------------------------- */
 
-/* Blocks are kept over a reset, so a loop that needs the same amount each time calls malloc only at
- * first; blocks of requests beyond 1 MB that were not needed since the reset before are freed. arena_alloc may be called by several threads at once; no other function of the arena may run at the same
- * time. */
+/* Blocks are kept over a reset, so a loop that needs the same amount each time calls malloc only at first; those of
+ * requests beyond 1 MB that were not needed since the reset before are freed. arena_alloc may be called by several
+ * threads at once; no other function of the arena may run at the same time. */
 typedef struct Arena Arena;
 
 Arena *arena_create(void);
