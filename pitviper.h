@@ -118,6 +118,8 @@ typedef struct Table {
 Status table_open(Table *out, const char *path);
 void   table_close(Table *table);
 int    table_column(const Table *table, const char *name); /* -1: none */
+/* column[count] of these names; false, logged as the module's, where one is missing. */
+bool table_columns(int *column, const Table *table, const char *const *name, int count, const char *module);
 const char *table_text(const Table *table, int row, int column); /* row 0 .. rows - 1 */
 /* Finite numbers in [low, high] only; logs file, line, column, value and range otherwise. */
 Status table_number(double *out, const Table *table, int row, int column, double low, double high);
@@ -140,6 +142,9 @@ void text_show(char *out, size_t out_size, const char *text, bool lines);
 void text_print(FILE *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_vprint(FILE *to, const char *format, va_list arguments) __attribute__((format(printf, 2, 0)));
 
+/* A file of what put prints: written to PATH.part and renamed, so that nobody reads half of it. Failures are logged as the
+ * module's: STATUS_BAD_VALUE (a name too long), STATUS_IO. */
+Status text_write_file(const char *module, const char *path, void (*put)(FILE *to, const void *user), const void *user);
 /* A whole file of at most `most` octets and a 0 behind them; the caller frees it. Failures are logged as the
  * module's. */
 Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most);

@@ -289,6 +289,17 @@ const char *table_text(const Table *table, int row, int column)
     return table->cell[(size_t)(row + 1) * (size_t)table->columns + (size_t)column];
 }
 
+bool table_columns(int *column, const Table *table, const char *const *name, int count, const char *module)
+{
+    for (int c = 0; c < count; c++) {
+        column[c] = table_column(table, name[c]);
+        if (column[c] >= 0) continue;
+        log_error("%s: %s has no column %s", module, table->path, name[c]);
+        return false;
+    }
+    return true;
+}
+
 Status table_number(double *out, const Table *table, int row, int column, double low, double high)
 {
     const char *text = table_text(table, row, column);
@@ -325,4 +336,24 @@ bool text_to_unix_s(double *unix_s, const char *text)
         return false;
     *unix_s = (double)days_from_date(year, month, day) * 86400 + hour * 3600 + minute * 60 + second;
     return true;
+}
+
+Status text_write_file(const char *module, const char *path, void (*put)(FILE *to, const void *user), const void *user)
+{
+    char part[4096];
+    if (snprintf(part, sizeof part, "%s.part", path) >= (int)sizeof part) {
+        log_error("%s: the name %s is too long", module, path);
+        return STATUS_BAD_VALUE;
+    }
+    FILE *to = fopen(part, "w");
+    if (!to) {
+        log_error("%s: cannot write %s: %s", module, part, strerror(errno));
+        return STATUS_IO;
+    }
+    put(to, user);
+    const bool whole = !ferror(to);
+    if (fclose(to) == 0 && whole && rename(part, path) == 0) return STATUS_OK;
+    log_error("%s: cannot write %s: %s", module, path, strerror(errno));
+    remove(part);
+    return STATUS_IO;
 }

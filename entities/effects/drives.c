@@ -6,7 +6,6 @@
 static const double moving_mps = 0.3;       /* above the jitter of reports of a stationary vehicle */
 static const double engine_after_stop_s = 120; /* crews halt with the engine on; estimate */
 static const double full_speed_mps = 10;    /* estimate: a vehicle's usual off-road speed */
-static const double idle_engine = 0.6;      /* estimate, of what it is at that speed */
 /* Estimates: full power is some 1.2 W a newton of weight (600 kW for 50 t), which would lift it at 1.2 m/s; a turn of 1 rad/s takes
  * all of it in a tracked vehicle. */
 static const double full_climb_mps = 1.2, full_turn_rps = 1;
@@ -46,10 +45,10 @@ static void take(DriveState *state, const DriveEvidence *evidence, double t_s)
     if (!works) state->engine.value = 0;
     else if (air) state->engine.value = 1;
     else if (state->moving)
-        state->engine.value = idle_engine + (1 - idle_engine) * load_of(evidence, state->speed_mps);
-    else if (platform && evidence->appearance >> dis_appearance_power_plant_bit & 1) state->engine.value = idle_engine;
+        state->engine.value = drives_idle + (1 - drives_idle) * load_of(evidence, state->speed_mps);
+    else if (platform && evidence->appearance >> dis_appearance_power_plant_bit & 1) state->engine.value = drives_idle;
     else if (platform && t_s < state->moved_s + engine_after_stop_s)
-        state->engine = (DriveUntil){idle_engine, state->moved_s + engine_after_stop_s};
+        state->engine = (DriveUntil){drives_idle, state->moved_s + engine_after_stop_s};
 
     state->flying = air && works;
     state->alive = lives && works;

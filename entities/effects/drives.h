@@ -22,6 +22,7 @@ typedef struct EntityDrives {
     double fired_kg[2];  /* propellant of all its shots: of small guns (below drives_large_kg a shot), of large ones */
 } EntityDrives;
 
+static const double drives_idle = 0.6;   /* engine of one that idles; estimate */
 static const double drives_large_kg = 1; /* of propellant, a shot */
 
 typedef struct DriveUntil {
@@ -41,8 +42,8 @@ typedef struct DriveEvidence {
     DisEntityType type;
     uint32_t      appearance;
     double        speed_mps; /* as reported; 0 when frozen */
-    double        climb_mps;    /* upwards */
-    double        turn_rps;     /* about its own vertical axis */
+    double        climb_mps; /* upwards */
+    double        turn_rps;  /* about its own vertical axis */
 } DriveEvidence;
 
 /* Of the first report. A wreck without flames does not burn. Munitions and expendables start with their motor or grain

@@ -1,10 +1,7 @@
 /* entities/marks/ground_file.c: ground marks as a CSV file, over a restart. */
 #include "entities/marks/ground_marks_private.h"
 
-#include <errno.h>
 #include <stdlib.h>
-
-enum { path_size = 4096 };
 
 /* Columns; numbers from column `from_unix_s` on. Empty where a kind does not have it. */
 enum {
@@ -98,8 +95,15 @@ static void put_burn(FILE *to, const GroundBurn *b, double unix_s)
     end_row(to, column);
 }
 
-static void put_all(FILE *to, const GroundHistory *h, double unix_s)
+typedef struct Saved {
+    const GroundHistory *history;
+    double               unix_s;
+} Saved;
+
+static void put_all(FILE *to, const void *user)
 {
+    const GroundHistory *h = ((const Saved *)user)->history;
+    const double         unix_s = ((const Saved *)user)->unix_s;
     fputs("# Ground marks of Pitviper: where entities stood, tracks of vehicles, burnt ground. Times: Unix time, s; an "
           "empty to_unix_s:\n# without a known end. Places: WGS 84 geocentric, m. Written and read again by the program.\n", to);
     for (int c = 0; c < column_count; c++) fprintf(to, "%s%c", column_name[c], c < column_count - 1 ? ',' : '\n');
@@ -113,23 +117,7 @@ static void put_all(FILE *to, const GroundHistory *h, double unix_s)
 
 Status ground_marks_save(const GroundHistory *h, double unix_s, const char *path)
 {
-    char part[path_size];
-    if (!isfinite(unix_s)) return STATUS_BAD_VALUE;
-    if (snprintf(part, sizeof part, "%s.part", path) >= (int)sizeof part) {
-        log_error("marks: the name %s is too long", path);
-        return STATUS_BAD_VALUE;
-    }
-    FILE *to = fopen(part, "w");
-    if (!to) {
-        log_error("marks: cannot write %s: %s", part, strerror(errno));
-        return STATUS_IO;
-    }
-    put_all(to, h, unix_s);
-    const bool whole = !ferror(to);
-    if (fclose(to) == 0 && whole && rename(part, path) == 0) return STATUS_OK;
-    log_error("marks: cannot write %s: %s", path, strerror(errno));
-    remove(part);
-    return STATUS_IO;
+    return isfinite(unix_s) ? text_write_file("marks", path, put_all, &(Saved){h, unix_s}) : STATUS_BAD_VALUE;
 }
 
 /* ---- loaded --------------------------------------------------------------------------------- */
@@ -270,6 +258,17 @@ static Status take_rows(GroundHistory *h, const Table *table, const int column[c
     return r.status;
 }
 
+/* A file may be without exhaust: those columns are -1 then. */
+static bool find_columns(int column[column_count], const Table *table)
+{
+    bool blows = false;
+    for (int c = at_blow; c < column_count; c++) {
+        column[c] = table_column(table, column_name[c]);
+        blows |= column[c] >= 0;
+    }
+    return table_columns(column, table, column_name, blows ? column_count : at_blow, "marks");
+}
+
 Status ground_marks_load(GroundHistory *h, double unix_s, const char *path)
 {
     Table          table = {0};
@@ -281,17 +280,7 @@ Status ground_marks_load(GroundHistory *h, double unix_s, const char *path)
         return STATUS_UNSUPPORTED;
     }
     Status status = table_open(&table, path);
-    for (int c = 0; c < column_count && status == STATUS_OK; c++) {
-        column[c] = table_column(&table, column_name[c]);
-        if (column[c] >= 0 || c >= at_blow) continue; /* a file may be without exhaust */
-        log_error("marks: %s has no column %s", path, column_name[c]);
-        status = STATUS_BAD_VALUE;
-    }
-    for (int c = at_blow; c < column_count && status == STATUS_OK; c++) {
-        if ((column[c] >= 0) == (column[at_blow] >= 0)) continue;
-        log_error("marks: %s has some of the columns outlet_x_m to blow_to_unix_s only", path);
-        status = STATUS_BAD_VALUE;
-    }
+    if (status == STATUS_OK && !find_columns(column, &table)) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = ground_history_create(&loaded);
     if (status == STATUS_OK) status = take_rows(loaded, &table, column, unix_s);
     if (status == STATUS_OK) *h = *loaded;

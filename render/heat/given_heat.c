@@ -83,12 +83,7 @@ Status given_heat_open(GivenHeat **out, const char *path)
     GivenHeat *g = calloc(1, sizeof *g);
     if (!g) return STATUS_NO_MEMORY;
     Status status = table_open(&g->table, path);
-    for (int c = 0; c < 4 && status == STATUS_OK; c++) {
-        column[c] = table_column(&g->table, name[c]);
-        if (column[c] >= 0) continue;
-        log_error("heat.given: %s has no column %s; its columns are entity, part, t_s, temp_k", path, name[c]);
-        status = STATUS_BAD_VALUE;
-    }
+    if (status == STATUS_OK && !table_columns(column, &g->table, name, 4, "heat.given")) status = STATUS_BAD_VALUE;
     const size_t rows = status == STATUS_OK ? (size_t)g->table.rows : 0;
     GivenRow    *row = calloc(rows + 1, sizeof *row);
     g->part   = calloc(rows + 1, sizeof *g->part);

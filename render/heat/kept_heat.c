@@ -1,7 +1,6 @@
 /* render/heat/kept_heat.c: see kept_heat.h. */
 #include "render/heat/kept_heat.h"
 
-#include <errno.h>
 #include <stdlib.h>
 
 enum { most_nodes = 4096 };
@@ -76,12 +75,7 @@ Status kept_heat_open(KeptHeat **out, const char *path)
     KeptHeat *k = calloc(1, sizeof *k);
     if (!k) return STATUS_NO_MEMORY;
     Status status = table_open(&k->table, path);
-    for (int c = 0; c < 4 && status == STATUS_OK; c++) {
-        column[c] = table_column(&k->table, name[c]);
-        if (column[c] >= 0) continue;
-        log_error("heat.vehicles: %s has no column %s", path, name[c]);
-        status = STATUS_BAD_VALUE;
-    }
+    if (status == STATUS_OK && !table_columns(column, &k->table, name, 4, "heat.vehicles")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = take_rows(k, column);
     if (status == STATUS_OK) *out = k;
     else kept_heat_close(k);
@@ -109,28 +103,26 @@ const KeptNodes *kept_heat_find(const KeptHeat *k, DisEntityId id, const char *m
     return k->entity[low].nodes == nodes && strcmp(k->entity[low].model, model) == 0 ? &k->entity[low] : NULL;
 }
 
-Status kept_heat_save(const KeptNodes *nodes, int count, const char *path)
+typedef struct Kept {
+    const KeptNodes *nodes;
+    int              count;
+} Kept;
+
+static void put_all(FILE *to, const void *user)
 {
-    char part[4096], id[dis_id_text_size];
-    if (snprintf(part, sizeof part, "%s.part", path) >= (int)sizeof part) {
-        log_error("heat.vehicles: the name %s is too long", path);
-        return STATUS_BAD_VALUE;
-    }
-    FILE *to = fopen(part, "w");
-    if (!to) {
-        log_error("heat.vehicles: cannot write %s: %s", part, strerror(errno));
-        return STATUS_IO;
-    }
+    const Kept *kept = user;
+    char        id[dis_id_text_size];
     fputs("# Temperatures of entities' thermal networks, K. Written and read again by Pitviper.\nentity,model,unix_s,node_k\n", to);
-    for (int i = 0; i < count; i++) {
-        dis_entity_id_text(id, nodes[i].id);
-        fprintf(to, "%s,\"%s\",%.17g,", id, nodes[i].model, nodes[i].unix_s);
-        for (int n = 0; n < nodes[i].nodes; n++) fprintf(to, "%s%.9g", n ? " " : "", nodes[i].temp_k[n]);
+    for (int i = 0; i < kept->count; i++) {
+        const KeptNodes *e = &kept->nodes[i];
+        dis_entity_id_text(id, e->id);
+        fprintf(to, "%s,\"%s\",%.17g,", id, e->model, e->unix_s);
+        for (int n = 0; n < e->nodes; n++) fprintf(to, "%s%.9g", n ? " " : "", e->temp_k[n]);
         fputc('\n', to);
     }
-    const bool whole = !ferror(to);
-    if (fclose(to) == 0 && whole && rename(part, path) == 0) return STATUS_OK;
-    log_error("heat.vehicles: cannot write %s: %s", path, strerror(errno));
-    remove(part);
-    return STATUS_IO;
+}
+
+Status kept_heat_save(const KeptNodes *nodes, int count, const char *path)
+{
+    return text_write_file("heat.vehicles", path, put_all, &(Kept){nodes, count});
 }

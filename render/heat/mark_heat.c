@@ -96,10 +96,12 @@ static Status blow_of(Stand *out, const GroundBlow *b, double air_k, double exer
         v3_add_scaled(d_enu, d_enu, (double)b->d[a], out->axis[a]);
     }
     if (!v3_normalize(d_enu, d_enu)) return STATUS_OK;
+    JetPath  found;
+    jet_path(&found, &jet, at_enu, d_enu, still, air_k);
+    if (found.count < 2 || found.low_m[2] > out->p_enu[2] + touches_m) return STATUS_OK;
     JetPath *path = arena_alloc(arena, 1, sizeof *path);
     if (!path) return STATUS_NO_MEMORY;
-    jet_path(path, &jet, at_enu, d_enu, still, air_k);
-    if (path->count < 2 || path->low_m[2] > out->p_enu[2] + touches_m) return STATUS_OK;
+    *path = found;
     out->jet = path;
     out->blow_from_s = exercise_s + b->from_s, out->blow_to_s = exercise_s + b->to_s;
     for (int k = 0; k < 2; k++)

@@ -1,18 +1,9 @@
 /* render/heat/vehicle_heat.c: see vehicle_heat.h. */
 #include "render/heat/vehicle_heat.h"
 
-#include "render/heat/jet_path.h"
-#include "render/heat/patch_view.h"
-#include "render/heat/surface_flux.h"
-
 #include <stdlib.h>
 
 enum { window_ticks = 10 }; /* of 10 ms */
-
-static const double recovery = 0.85, cp_air_j_kgk = 1005;
-static const double leak_s = 25000;        /* engine that has stopped, and a cabin: to the air through its bay; estimate */
-static const double flame_w_m2 = 20e3;     /* into the skin of what burns: fires of fuel and rubber inside; estimate */
-static const double idle_engine = 0.6;     /* entities/effects/drives.h */
 
 typedef struct VehicleState {
     DisEntityId  id;
@@ -22,14 +13,13 @@ typedef struct VehicleState {
     EntityDrives drives;
     double       up_body[3], ahead_enu[3];
     double       heat_in_j;
-    double      *temp_k;          /* [nodes] at t_s */
+    double      *temp_k;          /* [nodes] at t_s; zeroes: its past has not begun */
     float       *now_k, *next_k;  /* [patches] at t_s, next_s */
     double      *joint;           /* [model nodes]: as view saw them */
     double       view_up_body[3];
     PatchView   *view;            /* [patches] */
     double       view_above_m;
     int          looked, lived;   /* patches whose view is of that pose; steps of its past that are done */
-    bool         lives;           /* a step of its past is done */
     bool         shown, changed;  /* its past is over; its drives are others than those of t_s */
     double       seen_s, waits_s; /* first seen; since when work waits, INFINITY: none does */
     NetworkLoad *load;            /* [nodes] at t_s */
@@ -140,27 +130,12 @@ const VehicleHeatCounters *vehicle_heat_counters(const VehicleHeat *h) { return 
 
 /* ---- an entity now ------------------------------------------------------------------------ */
 
-/* What a step needs of an entity. */
-typedef struct Moment {
-    const SnapshotEntity *entity;
-    const Model          *model;
-    const VehicleShape   *shape;
-    PosedEntity           posed;
-    PatchPose             pose;
-    NodePose             *node;
-    double               *joint;
-    double                p_enu[3], v_enu_mps[3];
-    float                *lit;      /* [patches] */
-    float                *gas_k, *gas_mps; /* [patches]: of its own exhaust that flows past, over the air; 0: none */
-    PlaceHeat             place;
-} Moment;
-
-static Status catch_moment(Moment *m, VehicleHeat *h, const Snapshot *snapshot, int index)
+static Status catch_moment(VehicleMoment *m, VehicleHeat *h, const Snapshot *snapshot, int index)
 {
     const SnapshotEntity *e = &snapshot->entity[index];
     const LocalFrame     *frame = h->world.frame;
     static const double   origin[3] = {0, 0, 0};
-    *m = (Moment){.entity = e, .model = tracer_model(h->world.tracer, e->model), .shape = &h->shape[e->model]};
+    *m = (VehicleMoment){.entity = e, .model = tracer_model(h->world.tracer, e->model), .shape = &h->shape[e->model]};
     m->node  = arena_alloc(h->arena, (size_t)m->model->node_count, sizeof *m->node);
     m->joint = arena_alloc(h->arena, (size_t)m->model->node_count, sizeof *m->joint);
     m->lit   = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->lit);
@@ -179,7 +154,7 @@ static Status catch_moment(Moment *m, VehicleHeat *h, const Snapshot *snapshot, 
 }
 
 /* Without its sun. */
-static Status find_ground(Moment *m, const VehicleHeat *h, double unix_s, bool present)
+static Status find_ground(VehicleMoment *m, const VehicleHeat *h, double unix_s, bool present)
 {
     const Status status = h->config.place(&m->place, h->config.user, unix_s, m->p_enu, present);
     m->pose.posed   = &m->posed;
@@ -187,134 +162,14 @@ static Status find_ground(Moment *m, const VehicleHeat *h, double unix_s, bool p
     return status;
 }
 
-static Status find_place(Moment *m, const VehicleHeat *h, double unix_s, bool present)
+static Status find_place(VehicleMoment *m, const VehicleHeat *h, double unix_s, bool present)
 {
     const Status status = find_ground(m, h, unix_s, present);
     if (status == STATUS_OK) patch_view_sun(m->lit, &m->pose, m->place.sun_d_enu);
     return status;
 }
 
-/* ---- loads -------------------------------------------------------------------------------- */
-
-static double film_at(double speed_mps, double air_density) { return plate_film_w_m2k(speed_mps) * pow(air_density, 0.8); }
-
-/* Speed of the air past a patch: of the entity, and of blades that turn. */
-static double air_speed(const Moment *m, const Patch *patch, const EntityDrives *drives)
-{
-    const ModelNode *node = &m->model->node[patch->node];
-    double           flow[3], speed_mps;
-    v3_sub(flow, m->place.wind_enu_mps, m->v_enu_mps);
-    speed_mps = v3_length(flow);
-    if (node->spin_rps_moving == 0 || !(drives->engine > 0)) return speed_mps;
-    const double along = v3_dot(patch->p_node, node->axis);
-    const double radius_m = sqrt(fmax(v3_dot(patch->p_node, patch->p_node) - along * along, 0)) + patch->reach_m;
-    return speed_mps + 0.7 * fabs(node->spin_rps_moving) * radius_m; /* most of a blade's area and heat is there */
-}
-
-/* A second film of a node: both to one fluid between. */
-static void add_film(NetworkLoad *load, double w_k, double fluid_k)
-{
-    if (!(w_k > 0)) return;
-    load->fluid_k = (load->film_w_k * load->fluid_k + w_k * fluid_k) / (load->film_w_k + w_k);
-    load->film_w_k += w_k;
-}
-
-/* What is behind a skin, where that is no node of the network. */
-static void add_inside(NetworkLoad *load, const PartRow *row, const MachineRow *machine, const EntityDrives *d, double area_m2,
-                       double air_k)
-{
-    const double engine = (double)d->engine, alive = (double)d->alive, film = row->inside_w_m2k, running = row->running_w_m2k;
-    const double idle = 0.5, gas_k = air_k + (machine->exhaust_k - air_k) *
-                                                 (idle + (1 - idle) * clamp((engine - idle_engine) / (1 - idle_engine), 0, 1));
-    switch (row->inside) {
-    case INSIDE_EXHAUST: case INSIDE_TURBINE:
-        add_film(load, area_m2 * (film + (running - film) * engine), engine > 0 ? gas_k : air_k);
-        break;
-    case INSIDE_MOTOR: add_film(load, area_m2 * running * (double)d->motor, 2500); break;
-    case INSIDE_BODY: add_film(load, area_m2 * film * alive, 310); break;
-    case INSIDE_ROOM: add_film(load, area_m2 * film * alive, 293); break;
-    case INSIDE_FLUE: add_film(load, area_m2 * film * alive, 400); break;
-    case INSIDE_GRAIN: add_film(load, area_m2 * film * (double)d->flare, 1900); break;
-    default: break;
-    }
-}
-
-static void load_patch(NetworkLoad *load, const Moment *m, const VehicleState *s, int i, const EntityDrives *d)
-{
-    const Patch     *patch = &m->shape->patches->patch[i];
-    const SkinNode  *skin = &m->shape->skin[i];
-    const PatchView *view = &s->view[i];
-    const PlaceHeat *p = &m->place;
-    const double     area = patch->area_m2, e = skin->emissivity, speed_mps = air_speed(m, patch, d);
-    NetworkLoad     *at = &load[skin->surface];
-
-    const double level_w_m2 = p->direct_w_m2 * fmax(p->sun_d_enu[2], 0) + p->diffuse_w_m2;
-    const double sun_w_m2 = p->direct_w_m2 * (double)m->lit[i] + p->diffuse_w_m2 * (double)view->sky +
-                            p->ground_rho * level_w_m2 * (double)view->ground;
-    double around_w_m2 = p->longwave_w_m2 * (double)view->sky + stefan_w_m2k4 * pow(p->ground_k, 4) * (double)view->ground +
-                         stefan_w_m2k4 * pow(p->under_k, 4) * (double)view->under;
-    for (int k = 0; k < view->partners; k++)
-        around_w_m2 += (double)view->share[k] * stefan_w_m2k4 * pow(s->temp_k[m->shape->skin[view->partner[k]].surface], 4);
-    at->heat_w += area * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame_w_m2 * (double)d->burning);
-    at->emits_m2 = e * area;
-    add_film(at, area * film_at(fmax(speed_mps, (double)m->gas_mps[i]), p->air_density),
-             p->air_k + recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk) + (double)m->gas_k[i]);
-    if (skin->row.drive == PART_DRIVE_MOTION && !(d->flying > 0)) {
-        const double w = area * skin->friction * skin->row.drive_value * clamp((double)d->speed_mps / 10, 0, 2);
-        at->heat_w += 0.5 * w;
-        load[skin->inner].heat_w += 0.5 * w;
-    }
-    /* a grain burns at its surface */
-    add_inside(&load[skin->row.inside == INSIDE_GRAIN ? skin->surface : skin->inner], &skin->row, &m->shape->machine, d, area, p->air_k);
-}
-
-/* Its own exhaust past its patches. */
-static void find_gas(Moment *m, const EntityDrives *d)
-{
-    const SnapshotEntity *e = m->entity;
-    const int             patches = m->shape->patches->count;
-    double                at_enu[3], d_enu[3], flow[3];
-    JetPath               path;
-    memset(m->gas_k, 0, (size_t)patches * sizeof *m->gas_k);
-    memset(m->gas_mps, 0, (size_t)patches * sizeof *m->gas_mps);
-    if (!e->exhaust || !(d->engine > 0)) return;
-    m3_mul_v3(at_enu, m->pose.r_enu_from_body, e->exhaust->at_body);
-    m3_mul_v3(d_enu, m->pose.r_enu_from_body, e->exhaust->d_body);
-    v3_sub(flow, m->place.wind_enu_mps, m->v_enu_mps);
-    jet_path(&path, e->exhaust, at_enu, d_enu, flow, m->place.air_k);
-    for (int i = 0; i < patches; i++) patch_view_gas(&m->gas_k[i], &m->gas_mps[i], &m->pose, i, &path);
-}
-
-static void load_nodes(NetworkLoad *load, Moment *m, const VehicleState *s, const EntityDrives *d)
-{
-    const VehicleShape *shape = m->shape;
-    const MachineRow   *machine = &shape->machine;
-    find_gas(m, d);
-    for (int n = 0; n < shape->nodes; n++) load[n] = (NetworkLoad){.fluid_k = m->place.air_k};
-    for (int i = 0; i < shape->patches->count; i++) load_patch(load, m, s, i, d);
-    if (shape->engine >= 0) { /* the thermostat's radiator takes what the engine gives at its temperature */
-        const double w = machine->engine_w * (double)d->engine, over_k = fmax(machine->engine_k - m->place.air_k, 5);
-        load[shape->engine].heat_w += w;
-        add_film(&load[shape->engine], w / over_k + machine->engine_j_k / leak_s, m->place.air_k);
-    }
-    if (shape->cabin >= 0) {
-        load[shape->cabin].heat_w += d->engine > 0 ? machine->cabin_w : 0;
-        add_film(&load[shape->cabin], machine->cabin_j_k / leak_s, m->place.air_k);
-    }
-}
-
-/* The moment's conductances to engine and cabin. */
-static void set_links(const VehicleShape *shape, const EntityDrives *d)
-{
-    for (int k = 0; k < shape->links; k++) shape->conductance_w_k[k] = shape->link[k].conductance_w_k;
-    for (int i = 0; i < shape->patches->count; i++) {
-        const SkinNode *skin = &shape->skin[i];
-        if (skin->inside_link < 0) continue;
-        const double w_m2k = skin->row.inside_w_m2k + (skin->row.running_w_m2k - skin->row.inside_w_m2k) * (double)d->engine;
-        shape->conductance_w_k[skin->inside_link] = w_m2k * shape->patches->patch[i].area_m2;
-    }
-    network_conductances(shape->network, shape->conductance_w_k);
-}
+/* ---- steps -------------------------------------------------------------------------------- */
 
 static bool is_sound(const double *temp_k, int nodes)
 {
@@ -331,7 +186,7 @@ static void step(VehicleHeat *h, VehicleState *s, double *temp_k, double *heat_i
     const size_t        octets = (size_t)shape->nodes * sizeof *temp_k;
     double              in_j = 0;
     if (!(dt_s > 0)) return;
-    set_links(shape, d);
+    vehicle_links(shape, d);
     memcpy(scratch, temp_k, octets);
     h->counters.steps++;
     if (network_step(scratch, &in_j, shape->network, from, to, dt_s) != STATUS_OK || !is_sound(scratch, shape->nodes)) {
@@ -368,7 +223,7 @@ static void take_shots(VehicleHeat *h, VehicleState *s, const EntityDrives *d)
 
 static const double turned_cos = 0.985; /* 10 degrees */
 
-static bool joints_moved(const Moment *m, const VehicleState *s)
+static bool joints_moved(const VehicleMoment *m, const VehicleState *s)
 {
     static const double moved = 0.17; /* rad, m */
     for (int n = 0; n < m->model->node_count; n++) {
@@ -390,7 +245,7 @@ static void ahead_in_enu(double ahead_enu[3], const double r_enu_from_body[9])
 }
 
 /* Whether the views of an entity are of this pose. */
-static bool sees_as(const VehicleState *s, const Moment *m)
+static bool sees_as(const VehicleState *s, const VehicleMoment *m)
 {
     static const double near_m = 0.3, high_m = 1.5; /* above it nothing is under it: patch_view.c */
     double              up_body[3];
@@ -399,7 +254,7 @@ static bool sees_as(const VehicleState *s, const Moment *m)
     return v3_dot(up_body, s->view_up_body) >= turned_cos && fabs(above_m - viewed_m) <= near_m && !joints_moved(m, s);
 }
 
-static void stay(VehicleState *s, const Moment *m, double t_s)
+static void stay(VehicleState *s, const VehicleMoment *m, double t_s)
 {
     s->t_s    = t_s;
     s->drives = m->entity->drives;
@@ -419,7 +274,7 @@ static bool drives_changed(const EntityDrives *a, const EntityDrives *b)
 }
 
 /* Where its present loads lead it until its next own time. */
-static Status predict(VehicleHeat *h, VehicleState *s, const Moment *m)
+static Status predict(VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
 {
     double *temp_k = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *temp_k);
     double *scratch = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *scratch);
@@ -470,21 +325,20 @@ static bool take(VehicleHeat *h, double us)
 }
 
 /* Drives d for span_s, from loads of the middle of that. */
-static Status live_through(VehicleHeat *h, VehicleState *s, Moment *m, const EntityDrives *d, double middle_s, double span_s)
+static Status live_through(VehicleHeat *h, VehicleState *s, VehicleMoment *m, const EntityDrives *d, double middle_s, double span_s)
 {
     double      *scratch = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *scratch);
     const Status status = scratch ? find_place(m, h, h->config.unix_s + middle_s, false) : STATUS_NO_MEMORY;
     const size_t octets = (size_t)m->shape->nodes * sizeof *scratch;
     if (status != STATUS_OK) return status;
-    if (!s->lives)
+    if (!(s->temp_k[0] > 0))
         for (int n = 0; n < m->shape->nodes; n++) s->temp_k[n] = m->place.air_k;
-    s->lives = true;
-    load_nodes(s->load, m, s, d);
+    vehicle_loads(s->load, m, s->view, s->temp_k, d);
     if (h->config.past_parts > 1) {
         step(h, s, s->temp_k, NULL, d, s->load, s->load, span_s, scratch);
         return STATUS_OK;
     }
-    set_links(m->shape, d);
+    vehicle_links(m->shape, d);
     h->counters.steps++;
     memcpy(scratch, s->temp_k, octets);
     if (network_leap(scratch, m->shape->network, s->load, span_s) == STATUS_OK && is_sound(scratch, m->shape->nodes))
@@ -505,18 +359,17 @@ static const KeptNodes *kept_of(const VehicleHeat *h, const VehicleState *s)
 }
 
 /* From kept temperatures until now, in as many steps as a past has. */
-static Status live_since(VehicleHeat *h, VehicleState *s, Moment *m, const KeptNodes *kept)
+static Status live_since(VehicleHeat *h, VehicleState *s, VehicleMoment *m, const KeptNodes *kept)
 {
     const double since_s = kept->unix_s - h->config.unix_s, span_s = (s->seen_s - since_s) / past_steps;
-    if (!s->lives) memcpy(s->temp_k, kept->temp_k, (size_t)kept->nodes * sizeof *s->temp_k);
-    s->lives = true;
+    if (!(s->temp_k[0] > 0)) memcpy(s->temp_k, kept->temp_k, (size_t)kept->nodes * sizeof *s->temp_k);
     const Status status = span_s > 0 ? live_through(h, s, m, &s->drives, since_s + (s->lived + 0.5) * span_s, span_s) : STATUS_OK;
     s->lived++;
     return status;
 }
 
 /* One span of its past. */
-static Status live_on(VehicleHeat *h, VehicleState *s, Moment *m)
+static Status live_on(VehicleHeat *h, VehicleState *s, VehicleMoment *m)
 {
     static const double now_s = 3600;
     const int           parts = h->config.past_parts > 1 ? h->config.past_parts : 1;
@@ -535,17 +388,17 @@ static Status live_on(VehicleHeat *h, VehicleState *s, Moment *m)
 }
 
 /* The past is over: it is shown from now on. */
-static Status appear(VehicleHeat *h, VehicleState *s, Moment *m, double t_s)
+static Status appear(VehicleHeat *h, VehicleState *s, VehicleMoment *m, double t_s)
 {
     const Status status = find_place(m, h, h->config.unix_s + t_s, true);
     if (status != STATUS_OK) return status;
     if (snapshot_is_short_lived(m->entity)) {
         const double speed_mps = v3_length(m->v_enu_mps);
         for (int n = 0; n < m->shape->nodes; n++)
-            s->temp_k[n] = m->place.air_k + recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk);
+            s->temp_k[n] = m->place.air_k + vehicle_recovery_k(speed_mps);
     }
     stay(s, m, t_s);
-    load_nodes(s->load, m, s, &s->drives);
+    vehicle_loads(s->load, m, s->view, s->temp_k, &s->drives);
     s->span_s = h->config.first_step_s;
     s->shown  = true;
     h->counters.begun++;
@@ -553,7 +406,7 @@ static Status appear(VehicleHeat *h, VehicleState *s, Moment *m, double t_s)
 }
 
 /* Its views are to be of this pose: those of another entity of its model that is posed alike, or none yet. */
-static void start_looking(VehicleState *s, const Moment *m, const VehicleHeat *h)
+static void start_looking(VehicleState *s, const VehicleMoment *m, const VehicleHeat *h)
 {
     const int patches = m->shape->patches->count;
     s->looked = 0;
@@ -569,7 +422,7 @@ static void start_looking(VehicleState *s, const Moment *m, const VehicleHeat *h
     }
 }
 
-static Status advance(VehicleHeat *h, VehicleState *s, Moment *m, double t_s)
+static Status advance(VehicleHeat *h, VehicleState *s, VehicleMoment *m, double t_s)
 {
     const EntityDrives *d = &m->entity->drives;
     const int           nodes = m->shape->nodes;
@@ -577,11 +430,11 @@ static Status advance(VehicleHeat *h, VehicleState *s, Moment *m, double t_s)
     double             *scratch = arena_alloc(h->arena, (size_t)nodes, sizeof *scratch);
     const Status        status = load && scratch ? find_place(m, h, h->config.unix_s + t_s, true) : STATUS_NO_MEMORY;
     if (status != STATUS_OK) return status;
-    if (!s->changed) load_nodes(load, m, s, d);
+    if (!s->changed) vehicle_loads(load, m, s->view, s->temp_k, d);
     step(h, s, s->temp_k, &s->heat_in_j, &s->drives, s->load, s->changed ? s->load : load, t_s - s->t_s, scratch);
     take_shots(h, s, d);
     stay(s, m, t_s);
-    load_nodes(s->load, m, s, d);
+    vehicle_loads(s->load, m, s->view, s->temp_k, d);
     s->span_s = s->changed ? h->config.first_step_s : fmin(2 * s->span_s, h->config.step_s);
     s->changed = false;
     if (!sees_as(s, m)) start_looking(s, m, h);
@@ -594,7 +447,7 @@ static Status work_on(VehicleHeat *h, VehicleState *s, const Snapshot *snapshot,
     const double        t_s = snapshot->t_s;
     const VehicleShape *shape = &h->shape[s->model];
     const int           patches = shape->patches->count;
-    Moment              m;
+    VehicleMoment              m;
     arena_reset(h->arena);
     Status status = catch_moment(&m, h, snapshot, index);
     if (status == STATUS_BAD_VALUE) s->waits_s = INFINITY; /* not drawable */

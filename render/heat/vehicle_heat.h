@@ -6,13 +6,7 @@
  * step_s. Between two times of its own its patches lie on straight lines to what its present drives lead to. So temperatures
  * are a function of the log, the settings and the time.
  *
- * At a patch: sun by rays past its own parts, with the ground's shade; sky and ground light; longwave of sky, of ground (in
- * the open, and in its own shade below it) and of its other patches, at their temperatures of the step's beginning;
- * convection by wind and its own speed, to the air's recovery temperature, and where its own exhaust flows past it, to that
- * (jet_path.h); what is behind it (etc/heat.csv).
- *
- *     film plate_film_w_m2k (surface_flux.h), with air density^0.8 above
- *     recovery 0.85 v^2 / (2 cp): between the laminar sqrt(Pr) = 0.84 and the turbulent Pr^(1/3) = 0.89
+ * What a patch takes and gives: vehicle_load.h.
  *
  * Work is done in pieces, those that have waited longest first, and no more of it in any 0.1 s of exercise time than
  * window_us; the first tick, before any frame, has no limit. So no frame pays for a crowd that appears at once: an entity is
@@ -28,19 +22,8 @@
 #include "render/heat/given_heat.h"
 #include "render/heat/kept_heat.h"
 #include "render/heat/patch_set.h"
-#include "render/heat/vehicle_shape.h"
+#include "render/heat/vehicle_load.h"
 #include "render/parts/tracer.h"
-
-/* Weather and ground about a place. */
-typedef struct PlaceHeat {
-    double air_k, air_density;         /* at its height; over that at sea level */
-    double wind_enu_mps[3];
-    double direct_w_m2, diffuse_w_m2, longwave_w_m2; /* facing the sun; on level ground; down on level ground */
-    double sun_d_enu[3];
-    double ground_k, under_k;          /* in the open; in the shade of the entity */
-    double ground_rho;                 /* reflectance for sunlight */
-    double above_m;                    /* of the place over the ground */
-} PlaceHeat;
 
 /* present: the time of the tick; else earlier, when a ground as warm as the air will do. */
 typedef Status VehiclePlace(PlaceHeat *out, const void *user, double unix_s, const double p_enu[3], bool present);

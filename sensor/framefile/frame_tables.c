@@ -11,19 +11,9 @@ static Status add_own(TablesUsed *out, const char *name, const char *path)
     return status;
 }
 
-/* Temperatures that are given are in the file, as those of patches: the table is not asked for again. */
-static void leave_out_given(TablesUsed *tables)
-{
-    int kept = 0;
-    for (int i = 0; i < tables->count; i++)
-        if (strncmp(tables->table[i].name, "heat/", 5) != 0) tables->table[kept++] = tables->table[i];
-    tables->count = kept;
-}
-
 Status frame_tables(TablesUsed *out, const Config *config, const char *catalog)
 {
     Status status = tables_used(out, config, catalog);
-    leave_out_given(out);
     if (status == STATUS_OK) status = add_own(out, "models.catalog", config->models.catalog);
     if (status == STATUS_OK) status = add_own(out, "models.materials", config->models.materials);
     return status;

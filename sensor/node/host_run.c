@@ -63,6 +63,7 @@ Status run_survey(Run *run, const DisLog *heard)
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     status = catalog_open(&run->catalog, path, o->config.models.sag_m);
     if (status == STATUS_OK) status = tables_used(&run->tables, &o->config, path);
+    if (status == STATUS_OK) status = tables_given(&run->tables, &o->config);
     if (status == STATUS_OK) status = pool_create(&run->pool, o->threads);
     return status;
 }

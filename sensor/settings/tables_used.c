@@ -120,6 +120,15 @@ static Status add_models(TablesUsed *out, const char *catalog)
     return status;
 }
 
+/* A file of the user's, by its name in this folder. */
+static Status add_in(TablesUsed *out, const char *folder, const char *path)
+{
+    char        name[table_used_name_size];
+    const char *slash = strrchr(path, '/');
+    snprintf(name, sizeof name, "%s%.150s", folder, slash ? slash + 1 : path);
+    return add(out, name, path);
+}
+
 Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
 {
     char   folder[path_size], name[table_used_name_size];
@@ -132,20 +141,12 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
     }
     snprintf(name, sizeof name, "atmosphere/%.100s", config->weather.atmosphere);
     if (status == STATUS_OK) status = add_folder(out, name);
-    if (*config->sensor.table && status == STATUS_OK) {
-        const char *slash = strrchr(config->sensor.table, '/');
-        snprintf(name, sizeof name, "%.150s", slash ? slash + 1 : config->sensor.table);
-        status = add(out, name, config->sensor.table);
-    }
-    if (strpbrk(config->weather.day, "/.") && status == STATUS_OK) {
-        const char *slash = strrchr(config->weather.day, '/');
-        snprintf(name, sizeof name, "weather/%.150s", slash ? slash + 1 : config->weather.day);
-        status = add(out, name, config->weather.day);
-    }
-    if (*config->heat.given && status == STATUS_OK) {
-        const char *slash = strrchr(config->heat.given, '/');
-        snprintf(name, sizeof name, "heat/%.150s", slash ? slash + 1 : config->heat.given);
-        status = add(out, name, config->heat.given);
-    }
+    if (*config->sensor.table && status == STATUS_OK) status = add_in(out, "", config->sensor.table);
+    if (strpbrk(config->weather.day, "/.") && status == STATUS_OK) status = add_in(out, "weather/", config->weather.day);
     return status == STATUS_OK ? add_models(out, catalog) : status;
+}
+
+Status tables_given(TablesUsed *out, const Config *config)
+{
+    return *config->heat.given ? add_in(out, "heat/", config->heat.given) : STATUS_OK;
 }

@@ -23,5 +23,7 @@ typedef struct TablesUsed {
  * catalog with its sidecar. 4 MB and some 10 ms. A file that cannot be read is left out: its reader reports it.
  * STATUS_NO_MEMORY, or the status of table_open for the catalog. */
 Status tables_used(TablesUsed *out, const Config *config, const char *catalog);
+/* And heat.given, which a frame file does not need again: its temperatures are in it. */
+Status tables_given(TablesUsed *out, const Config *config);
 
 #endif

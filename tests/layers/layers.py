@@ -21,7 +21,8 @@ MAY = {
     'terrain': (),
     'entities': ('dis/*', 'terrain/*'),
     # a Snapshot and the terrain, never a PDU or the table; pdu.h for its ids alone
-    'render': ('terrain/*', 'entities/models/model.h', 'entities/models/patches.h', 'entities/effects/exhaust_jet.h', 'entities/import/model_import.h', 'entities/catalog/catalog.h',
+    'render': ('terrain/*', 'entities/models/model.h', 'entities/models/patches.h', 'entities/effects/exhaust_jet.h',
+               'entities/import/model_import.h', 'entities/catalog/catalog.h',
                'entities/table/snapshot.h', 'dis/pdu.h'),
     'sensor': ('dis/*', 'terrain/*', 'entities/*', 'render/*'),
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),

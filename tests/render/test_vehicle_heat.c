@@ -1,20 +1,8 @@
 /* tests/render/test_vehicle_heat.c: entities' temperatures over time, on weather from paper: nothing comes from nothing, the
  * sun's side is warm, engines, guns, exhausts, speed and bodies are what balances on paper give, and the past decides. */
-#include "tests/check.h"
-#include "render/heat/vehicle_heat.h"
-#include "render/heat/surface_flux.h"
-#include "render/parts/parts.h"
+#include "tests/render/vehicle_stage.h"
 
-typedef struct Stage {
-    Catalog   *catalog;
-    Materials  materials;
-    PartTable  table;
-    Tracer    *tracer;
-    PatchSet   patches;
-    LocalFrame frame;
-    Arena     *arena;
-} Stage;
-static Stage stage;
+#include "render/heat/surface_flux.h"
 
 static PlaceHeat weather; /* at all times and places */
 static double    sun_up_s; /* exercise time from which its sun shines; Unix time of exercise time 0 is 0 */
@@ -35,63 +23,14 @@ static void enclose(double temp_k)
                           .under_k = temp_k, .ground_rho = 0.2, .sun_d_enu = {0, 0, 1}};
 }
 
-static int open_stage(void **state)
-{
-    (void)state;
-    char path[512], materials[512], surfaces[512], machines[512];
-    CHECK(etc_path(path, sizeof path, "catalog.csv") && catalog_open(&stage.catalog, path, 0.01) == STATUS_OK);
-    CHECK(etc_path(materials, sizeof materials, "materials.csv") && etc_path(surfaces, sizeof surfaces, "surfaces.csv"));
-    CHECK(materials_open(&stage.materials, materials, surfaces, stage.catalog) == STATUS_OK);
-    CHECK(etc_path(path, sizeof path, "heat.csv") && etc_path(machines, sizeof machines, "heat_machines.csv"));
-    CHECK(part_table_open(&stage.table, path, machines) == STATUS_OK);
-    CHECK(tracer_create(&stage.tracer, stage.catalog, "avx2") == STATUS_OK);
-    CHECK(patch_set_create(&stage.patches, catalog_model_count(stage.catalog)) == STATUS_OK);
-    CHECK(local_frame_at(&stage.frame, &(Geodetic){0.7, 0.2, 0}) == STATUS_OK);
-    return (stage.arena = arena_create()) == NULL;
-}
-
-static int close_stage(void **state)
-{
-    (void)state;
-    arena_destroy(stage.arena);
-    patch_set_destroy(&stage.patches);
-    tracer_destroy(stage.tracer);
-    materials_close(&stage.materials);
-    catalog_close(stage.catalog);
-    return 0;
-}
-
 static const KeptHeat *last_run; /* NULL: none */
 
 static VehicleHeat *start_limited(double step_s, double window_us)
 {
-    VehicleHeat            *heat;
-    const VehicleHeatConfig config = {.first_step_s = 1, .step_s = step_s, .window_us = window_us, .capacity = 8,
-                                      .place = everywhere};
-    const VehicleHeatWorld  world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches, NULL, last_run};
-    CHECK(vehicle_heat_create(&heat, &config, &world) == STATUS_OK);
-    return heat;
+    return stage_start(&(VehicleHeatConfig){.step_s = step_s, .window_us = window_us, .place = everywhere}, last_run);
 }
 
 static VehicleHeat *start(double step_s) { return start_limited(step_s, INFINITY); }
-
-/* One entity: where it stands, facing north; its drives. */
-typedef struct Scene {
-    Snapshot       snapshot;
-    SnapshotEntity entity;
-    SnapshotJoints joints;
-} Scene;
-
-static void place(Scene *s, DisEntityType type, EntityDrives drives)
-{
-    const double p_enu[3] = {0, 0, 0}, r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
-    memset(s, 0, sizeof *s);
-    s->entity = (SnapshotEntity){.id = {1, 1, 1}, .type = type, .model = catalog_find(stage.catalog, type, NULL, NULL),
-                                 .drives = drives, .first_patch = -1};
-    ecef_from_enu(s->entity.p_ecef, &stage.frame, p_enu);
-    m3_mul(s->entity.r_ecef_from_body, stage.frame.r_ecef_from_enu, r_enu_from_body);
-    s->snapshot = (Snapshot){.count = 1, .entity = &s->entity, .joints = &s->joints};
-}
 
 static void fly(Scene *s, double speed_mps)
 {

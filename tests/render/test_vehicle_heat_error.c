@@ -1,20 +1,6 @@
 /* tests/render/test_vehicle_heat_error.c: the estimate of what steps and the past's single steps leave out of entities' temperatures, against
  * steps of a second and a past of eight times as many, with error control. */
-#include "tests/check.h"
-#include "render/heat/vehicle_heat.h"
-#include "render/heat/surface_flux.h"
-#include "render/parts/parts.h"
-
-typedef struct Stage {
-    Catalog   *catalog;
-    Materials  materials;
-    PartTable  table;
-    Tracer    *tracer;
-    PatchSet   patches;
-    LocalFrame frame;
-    Arena     *arena;
-} Stage;
-static Stage stage;
+#include "tests/render/vehicle_stage.h"
 
 /* A clear day about the equinox at 45 degrees north; Unix time 0 is noon. */
 static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const double p_enu[3], bool present)
@@ -28,60 +14,11 @@ static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const 
     return STATUS_OK;
 }
 
-static int open_stage(void **state)
-{
-    (void)state;
-    char path[512], materials[512], surfaces[512], machines[512];
-    CHECK(etc_path(path, sizeof path, "catalog.csv") && catalog_open(&stage.catalog, path, 0.01) == STATUS_OK);
-    CHECK(etc_path(materials, sizeof materials, "materials.csv") && etc_path(surfaces, sizeof surfaces, "surfaces.csv"));
-    CHECK(materials_open(&stage.materials, materials, surfaces, stage.catalog) == STATUS_OK);
-    CHECK(etc_path(path, sizeof path, "heat.csv") && etc_path(machines, sizeof machines, "heat_machines.csv"));
-    CHECK(part_table_open(&stage.table, path, machines) == STATUS_OK);
-    CHECK(tracer_create(&stage.tracer, stage.catalog, "avx2") == STATUS_OK);
-    CHECK(patch_set_create(&stage.patches, catalog_model_count(stage.catalog)) == STATUS_OK);
-    CHECK(local_frame_at(&stage.frame, &(Geodetic){0.7, 0.2, 0}) == STATUS_OK);
-    return (stage.arena = arena_create()) == NULL;
-}
-
-static int close_stage(void **state)
-{
-    (void)state;
-    arena_destroy(stage.arena);
-    patch_set_destroy(&stage.patches);
-    tracer_destroy(stage.tracer);
-    materials_close(&stage.materials);
-    catalog_close(stage.catalog);
-    return 0;
-}
-
 static VehicleHeat *start(double unix_s, double step_s, int past_parts)
 {
-    VehicleHeat            *heat;
-    const VehicleHeatConfig config = {.first_step_s = 1, .step_s = step_s, .window_us = INFINITY, .past_parts = past_parts, .capacity = 8,
-                                      .unix_s = unix_s, .place = everywhere};
-    const VehicleHeatWorld  world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches, NULL, NULL};
-    CHECK(vehicle_heat_create(&heat, &config, &world) == STATUS_OK);
-    return heat;
+    return stage_start(&(VehicleHeatConfig){.step_s = step_s, .window_us = INFINITY, .past_parts = past_parts, .unix_s = unix_s,
+                                            .place = everywhere}, NULL);
 }
-
-/* One entity: where it stands, facing north; its drives. */
-typedef struct Scene {
-    Snapshot       snapshot;
-    SnapshotEntity entity;
-    SnapshotJoints joints;
-} Scene;
-
-static void place(Scene *s, DisEntityType type, EntityDrives drives)
-{
-    const double p_enu[3] = {0, 0, 0}, r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
-    memset(s, 0, sizeof *s);
-    s->entity = (SnapshotEntity){.id = {1, 1, 1}, .type = type, .model = catalog_find(stage.catalog, type, NULL, NULL),
-                                 .drives = drives, .first_patch = -1};
-    ecef_from_enu(s->entity.p_ecef, &stage.frame, p_enu);
-    m3_mul(s->entity.r_ecef_from_body, stage.frame.r_ecef_from_enu, r_enu_from_body);
-    s->snapshot = (Snapshot){.count = 1, .entity = &s->entity, .joints = &s->joints};
-}
-
 
 static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0}, truck = {1, 1, 222, 7, 1, 0, 0}, person = {3, 1, 225, 1, 0, 0, 0},
                            helicopter = {1, 2, 225, 20, 1, 0, 0}, house = {5, 1, 225, 1, 0, 0, 0};

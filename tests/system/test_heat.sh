@@ -58,6 +58,12 @@ replay "$tmp/gone.pcap" "$tmp/shaded" "${look[@]}" "${hills[@]}"
 replay "$tmp/gone.pcap" "$tmp/unshaded" "${look[@]}" "${hills[@]}" --set heat.shadow_m=0
 check "shadows of hills change the frame" not same_frame "$tmp/shaded" "$tmp/unshaded" 0
 
+broken() { # WHAT SETTING FILE WHERE
+    replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set "$2=$3"
+    check "$1: an error" [ "$code" != 0 ]
+    check "that says where" complained "$4"
+}
+
 # Over a restart: what stood before is read, and shows.
 replay "$tmp/gone.pcap" "$tmp/first" "${look[@]}" --only 0,2 --set heat.marks="$tmp/marks.csv"
 check "marks are written" grep -q '^stand,' "$tmp/marks.csv"
@@ -66,9 +72,7 @@ cp "$tmp/marks.csv" "$tmp/kept.csv"
 replay "$tmp/gone.pcap" "$tmp/again" "${look[@]}" --only 2 --set heat.marks="$tmp/kept.csv"
 check "and read: replayed" [ "$code" = 0 ]
 printf 'stand,what is this\n' >"$tmp/kept.csv"
-replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 2 --set heat.marks="$tmp/kept.csv"
-check "a broken file of marks: an error" [ "$code" != 0 ]
-check "that says where" complained 'kept.csv'
+broken "a broken file of marks" heat.marks "$tmp/kept.csv" 'kept.csv'
 
 # Temperatures of parts that are given: those are shown, others stay.
 patches_of() { grep "\"frame\":$2," "$1/truth.jsonl" | grep -o '"patch_temp_k":\[[^]]*\]' | head -1 | grep -o '[0-9.]\+'; }
@@ -91,9 +95,7 @@ replay "$tmp/gone.pcap" "$tmp/given3" "${look[@]}" --only 1 --set heat.given="$t
 rm "$tmp/given.csv"
 check "a frame file needs the table no more" "$pitviper" frame "$tmp/given3/frame_000001.pvf"
 printf 'entity,part,t_s,temp_k\n*,engine_deck,0,9000\n' >"$tmp/given.csv"
-replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set heat.given="$tmp/given.csv"
-check "a temperature out of range: an error" [ "$code" != 0 ]
-check "that says where" complained 'given.csv:2'
+broken "a temperature out of range" heat.given "$tmp/given.csv" 'given.csv:2'
 
 # Temperatures of vehicles over a restart: written, read, and refused with a line where they are broken.
 replay "$tmp/gone.pcap" "$tmp/first" "${look[@]}" --only 1 --set heat.vehicles="$tmp/kept_k.csv"
@@ -102,7 +104,5 @@ check "without a file before, the same bits" same_frame "$tmp/one" "$tmp/first" 
 replay "$tmp/gone.pcap" "$tmp/again" "${look[@]}" --only 1 --set heat.vehicles="$tmp/kept_k.csv"
 check "and read: replayed" [ "$code" = 0 ]
 printf 'entity,model,unix_s,node_k\n1:3001:1,tank,5,warm\n' >"$tmp/kept_k.csv"
-replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set heat.vehicles="$tmp/kept_k.csv"
-check "a broken file of them: an error" [ "$code" != 0 ]
-check "that says where" complained 'kept_k.csv:2'
+broken "a broken file of them" heat.vehicles "$tmp/kept_k.csv" 'kept_k.csv:2'
 finish

@@ -75,35 +75,39 @@ static Status begin(Morning *m, const Stage *s, int wanted)
     return status;
 }
 
-/* Temperatures of the middles of all triangles, by area. k[triangle_count]. */
+/* Twice the area of a triangle, its unit normal and its middle; 0: it has none. */
+static double facet(double n[3], double middle[3], const Model *model, int triangle)
+{
+    const double *a = model->vertex[model->triangle[triangle][0]], *b = model->vertex[model->triangle[triangle][1]],
+                 *c = model->vertex[model->triangle[triangle][2]];
+    double        ab[3], ac[3];
+    v3_sub(ab, b, a), v3_sub(ac, c, a);
+    v3_cross(n, ab, ac);
+    for (int i = 0; i < 3; i++) middle[i] = (a[i] + b[i] + c[i]) / 3;
+    const double area = v3_length(n);
+    return v3_normalize(n, n) ? area : 0;
+}
+
+/* Temperatures of the middles of all triangles. k[triangle_count]; NAN: no area. */
 static void read_all(float *k, const Morning *m)
 {
     const Model *model = tracer_model(m->stage->tracer, m->stage->model);
     for (int p = 0; p < model->part_count; p++)
         for (int t = 0; t < model->part[p].triangle_count; t++) {
-            const int     at = model->part[p].first_triangle + t;
-            const double *a = model->vertex[model->triangle[at][0]], *b = model->vertex[model->triangle[at][1]],
-                         *c = model->vertex[model->triangle[at][2]];
-            double        ab[3], ac[3], n[3], middle[3];
-            v3_sub(ab, b, a), v3_sub(ac, c, a);
-            v3_cross(n, ab, ac);
-            k[at] = NAN;
-            if (!v3_normalize(n, n)) continue;
-            for (int i = 0; i < 3; i++) middle[i] = (a[i] + b[i] + c[i]) / 3;
-            k[at] = (float)patch_set_temp_k(&m->patches, &m->snapshot, 0, p, middle, n);
+            const int at = model->part[p].first_triangle + t;
+            double    n[3], middle[3];
+            k[at] = facet(n, middle, model, at) > 0 ? (float)patch_set_temp_k(&m->patches, &m->snapshot, 0, p, middle, n) : NAN;
         }
 }
 
+/* By area. */
 static void compare(BenchSetting *out, const Model *model, const float *k, const float *fine)
 {
     double sum = 0, m2 = 0;
     for (int at = 0; at < model->triangle_count; at++) {
-        double        ab[3], ac[3], n[3];
-        const double *a = model->vertex[model->triangle[at][0]];
-        if (!isfinite(k[at]) || !isfinite(fine[at])) continue;
-        v3_sub(ab, model->vertex[model->triangle[at][1]], a), v3_sub(ac, model->vertex[model->triangle[at][2]], a);
-        v3_cross(n, ab, ac);
-        const double area = v3_length(n), off_k = (double)(k[at] - fine[at]);
+        double       n[3], middle[3];
+        const double off_k = (double)(k[at] - fine[at]), area = facet(n, middle, model, at);
+        if (!isfinite(off_k)) continue;
         sum += area * off_k * off_k, m2 += area;
     }
     out->error = m2 > 0 ? sqrt(sum / m2) : INFINITY;

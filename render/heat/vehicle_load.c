@@ -1,0 +1,132 @@
+/* render/heat/vehicle_load.c: see vehicle_load.h. */
+#include "render/heat/vehicle_load.h"
+
+#include "render/heat/jet_path.h"
+#include "render/heat/surface_flux.h"
+
+static const double leak_s = 25000;        /* engine that has stopped, and a cabin: to the air through its bay; estimate */
+static const double flame_w_m2 = 20e3;     /* into the skin of what burns: fires of fuel and rubber inside; estimate */
+
+double vehicle_recovery_k(double speed_mps)
+{
+    static const double recovery = 0.85, cp_air_j_kgk = 1005;
+    return recovery * speed_mps * speed_mps / (2 * cp_air_j_kgk);
+}
+
+static double film_at(double speed_mps, double air_density) { return plate_film_w_m2k(speed_mps) * pow(air_density, 0.8); }
+
+/* Speed of the air past a patch: of the entity, and of blades that turn. */
+static double air_speed(const VehicleMoment *m, const Patch *patch, const EntityDrives *drives)
+{
+    const ModelNode *node = &m->model->node[patch->node];
+    double           flow[3], speed_mps;
+    v3_sub(flow, m->place.wind_enu_mps, m->v_enu_mps);
+    speed_mps = v3_length(flow);
+    if (node->spin_rps_moving == 0 || !(drives->engine > 0)) return speed_mps;
+    const double along = v3_dot(patch->p_node, node->axis);
+    const double radius_m = sqrt(fmax(v3_dot(patch->p_node, patch->p_node) - along * along, 0)) + patch->reach_m;
+    return speed_mps + 0.7 * fabs(node->spin_rps_moving) * radius_m; /* most of a blade's area and heat is there */
+}
+
+/* A second film of a node: both to one fluid between. */
+static void add_film(NetworkLoad *load, double w_k, double fluid_k)
+{
+    if (!(w_k > 0)) return;
+    load->fluid_k = (load->film_w_k * load->fluid_k + w_k * fluid_k) / (load->film_w_k + w_k);
+    load->film_w_k += w_k;
+}
+
+/* What is behind a skin, where that is no node of the network. */
+static void add_inside(NetworkLoad *load, const PartRow *row, const MachineRow *machine, const EntityDrives *d, double area_m2,
+                       double air_k)
+{
+    const double engine = (double)d->engine, alive = (double)d->alive, film = row->inside_w_m2k, running = row->running_w_m2k;
+    const double idle = 0.5, gas_k = air_k + (machine->exhaust_k - air_k) *
+                                                 (idle + (1 - idle) * clamp((engine - drives_idle) / (1 - drives_idle), 0, 1));
+    switch (row->inside) {
+    case INSIDE_EXHAUST: case INSIDE_TURBINE:
+        add_film(load, area_m2 * (film + (running - film) * engine), engine > 0 ? gas_k : air_k);
+        break;
+    case INSIDE_MOTOR: add_film(load, area_m2 * running * (double)d->motor, 2500); break;
+    case INSIDE_BODY: add_film(load, area_m2 * film * alive, 310); break;
+    case INSIDE_ROOM: add_film(load, area_m2 * film * alive, 293); break;
+    case INSIDE_FLUE: add_film(load, area_m2 * film * alive, 400); break;
+    case INSIDE_GRAIN: add_film(load, area_m2 * film * (double)d->flare, 1900); break;
+    default: break;
+    }
+}
+
+static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchView *view, const double *temp_k, int i, const EntityDrives *d)
+{
+    const Patch     *patch = &m->shape->patches->patch[i];
+    const SkinNode  *skin = &m->shape->skin[i];
+    const PlaceHeat *p = &m->place;
+    const double     area = patch->area_m2, e = skin->emissivity, speed_mps = air_speed(m, patch, d);
+    NetworkLoad     *at = &load[skin->surface];
+
+    const double level_w_m2 = p->direct_w_m2 * fmax(p->sun_d_enu[2], 0) + p->diffuse_w_m2;
+    const double sun_w_m2 = p->direct_w_m2 * (double)m->lit[i] + p->diffuse_w_m2 * (double)view->sky +
+                            p->ground_rho * level_w_m2 * (double)view->ground;
+    double around_w_m2 = p->longwave_w_m2 * (double)view->sky + stefan_w_m2k4 * pow(p->ground_k, 4) * (double)view->ground +
+                         stefan_w_m2k4 * pow(p->under_k, 4) * (double)view->under;
+    for (int k = 0; k < view->partners; k++)
+        around_w_m2 += (double)view->share[k] * stefan_w_m2k4 * pow(temp_k[m->shape->skin[view->partner[k]].surface], 4);
+    at->heat_w += area * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame_w_m2 * (double)d->burning);
+    at->emits_m2 = e * area;
+    add_film(at, area * film_at(fmax(speed_mps, (double)m->gas_mps[i]), p->air_density),
+             p->air_k + vehicle_recovery_k(speed_mps) + (double)m->gas_k[i]);
+    if (skin->row.drive == PART_DRIVE_MOTION && !(d->flying > 0)) {
+        const double w = area * skin->friction * skin->row.drive_value * clamp((double)d->speed_mps / 10, 0, 2);
+        at->heat_w += 0.5 * w;
+        load[skin->inner].heat_w += 0.5 * w;
+    }
+    /* a grain burns at its surface */
+    add_inside(&load[skin->row.inside == INSIDE_GRAIN ? skin->surface : skin->inner], &skin->row, &m->shape->machine, d, area, p->air_k);
+}
+
+/* Its own exhaust past its patches. */
+static void find_gas(VehicleMoment *m, const EntityDrives *d)
+{
+    const SnapshotEntity *e = m->entity;
+    const int             patches = m->shape->patches->count;
+    double                at_enu[3], d_enu[3], flow[3];
+    JetPath               path;
+    memset(m->gas_k, 0, (size_t)patches * sizeof *m->gas_k);
+    memset(m->gas_mps, 0, (size_t)patches * sizeof *m->gas_mps);
+    if (!e->exhaust || !(d->engine > 0)) return;
+    m3_mul_v3(at_enu, m->pose.r_enu_from_body, e->exhaust->at_body);
+    m3_mul_v3(d_enu, m->pose.r_enu_from_body, e->exhaust->d_body);
+    v3_sub(flow, m->place.wind_enu_mps, m->v_enu_mps);
+    jet_path(&path, e->exhaust, at_enu, d_enu, flow, m->place.air_k);
+    for (int i = 0; i < patches; i++) patch_view_gas(&m->gas_k[i], &m->gas_mps[i], &m->pose, i, &path);
+}
+
+void vehicle_loads(NetworkLoad *load, VehicleMoment *m, const PatchView *view, const double *temp_k, const EntityDrives *d)
+{
+    const VehicleShape *shape = m->shape;
+    const MachineRow   *machine = &shape->machine;
+    find_gas(m, d);
+    for (int n = 0; n < shape->nodes; n++) load[n] = (NetworkLoad){.fluid_k = m->place.air_k};
+    for (int i = 0; i < shape->patches->count; i++) load_patch(load, m, &view[i], temp_k, i, d);
+    if (shape->engine >= 0) { /* the thermostat's radiator takes what the engine gives at its temperature */
+        const double w = machine->engine_w * (double)d->engine, over_k = fmax(machine->engine_k - m->place.air_k, 5);
+        load[shape->engine].heat_w += w;
+        add_film(&load[shape->engine], w / over_k + machine->engine_j_k / leak_s, m->place.air_k);
+    }
+    if (shape->cabin >= 0) {
+        load[shape->cabin].heat_w += d->engine > 0 ? machine->cabin_w : 0;
+        add_film(&load[shape->cabin], machine->cabin_j_k / leak_s, m->place.air_k);
+    }
+}
+
+void vehicle_links(const VehicleShape *shape, const EntityDrives *d)
+{
+    for (int k = 0; k < shape->links; k++) shape->conductance_w_k[k] = shape->link[k].conductance_w_k;
+    for (int i = 0; i < shape->patches->count; i++) {
+        const SkinNode *skin = &shape->skin[i];
+        if (skin->inside_link < 0) continue;
+        const double w_m2k = skin->row.inside_w_m2k + (skin->row.running_w_m2k - skin->row.inside_w_m2k) * (double)d->engine;
+        shape->conductance_w_k[skin->inside_link] = w_m2k * shape->patches->patch[i].area_m2;
+    }
+    network_conductances(shape->network, shape->conductance_w_k);
+}

@@ -1,0 +1,50 @@
+/* render/heat/vehicle_load.h: what heats and cools the nodes of an entity at a moment.
+ *
+ * At a patch: sun by rays past its own parts, with the ground's shade; sky and ground light; longwave of sky, of ground (in
+ * the open, and in its own shade below it) and of its other patches, at their temperatures of the step's beginning;
+ * convection by wind and its own speed, to the air's recovery temperature, and where its own exhaust flows past it, to that
+ * (jet_path.h); what is behind it (etc/heat.csv).
+ *
+ *     film plate_film_w_m2k (surface_flux.h), with air density^0.8 above
+ *     recovery 0.85 v^2 / (2 cp): between the laminar sqrt(Pr) = 0.84 and the turbulent Pr^(1/3) = 0.89 */
+#ifndef RENDER_HEAT_VEHICLE_LOAD_H
+#define RENDER_HEAT_VEHICLE_LOAD_H
+
+#include "entities/table/snapshot.h"
+#include "render/heat/patch_view.h"
+#include "render/heat/vehicle_shape.h"
+
+/* Weather and ground about a place. */
+typedef struct PlaceHeat {
+    double air_k, air_density;         /* at its height; over that at sea level */
+    double wind_enu_mps[3];
+    double direct_w_m2, diffuse_w_m2, longwave_w_m2; /* facing the sun; on level ground; down on level ground */
+    double sun_d_enu[3];
+    double ground_k, under_k;          /* in the open; in the shade of the entity */
+    double ground_rho;                 /* reflectance for sunlight */
+    double above_m;                    /* of the place over the ground */
+} PlaceHeat;
+
+/* An entity as it is posed at a time, with what is about it. */
+typedef struct VehicleMoment {
+    const SnapshotEntity *entity;
+    const Model          *model;
+    const VehicleShape   *shape;
+    PosedEntity           posed;
+    PatchPose             pose;
+    NodePose             *node;
+    double               *joint;
+    double                p_enu[3], v_enu_mps[3];
+    float                *lit;      /* [patches]: patch_view_sun */
+    float                *gas_k, *gas_mps; /* [patches]: of its own exhaust that flows past, over the air; vehicle_loads fills them */
+    PlaceHeat             place;
+} VehicleMoment;
+
+/* load[shape->nodes]. view[patches]; temp_k[shape->nodes]: of the patches that others see. */
+void vehicle_loads(NetworkLoad *load, VehicleMoment *moment, const PatchView *view, const double *temp_k, const EntityDrives *drives);
+/* Sets the conductances of the shape's network to engine and cabin. */
+void vehicle_links(const VehicleShape *shape, const EntityDrives *drives);
+/* Of the air that is stopped at a surface, over the air. */
+double vehicle_recovery_k(double speed_mps);
+
+#endif
