@@ -9,7 +9,7 @@
 typedef struct WorldVehicles WorldVehicles;
 
 /* Of a node: VehicleHeatConfig.window_us. At ten frames a second or more no frame pays for more. */
-static const double vehicle_window_us = 3500;
+static const double vehicle_window_us = 3300;
 
 typedef struct WorldVehiclesConfig {
     double step_s;            /* of entities whose drives do not change */

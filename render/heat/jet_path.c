@@ -45,6 +45,41 @@ static JetState moved(const JetState *s, const JetState *slope, double way_m)
     return to;
 }
 
+static bool is_in(const JetBox *box, const double p[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (p[k] < box->low_m[k] || p[k] > box->high_m[k]) return false;
+    return true;
+}
+
+static double widest(double excess_k) { return fmax(0.5 * log(2 * excess_k / least_k), 0); } /* 2: before a wall */
+
+/* Nothing between two points is wider than the wider, or warmer than the warmer of them. */
+static void put_boxes(JetPath *path)
+{
+    static const JetBox nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    path->box = nothing;
+    for (int first = 0; first < path->count; first += jet_run) {
+        JetBox *box = &path->run[first / jet_run];
+        double  radius_m = 0, excess_k = 0;
+        *box = nothing;
+        for (int i = first; i <= first + jet_run && i < path->count; i++) {
+            const JetPoint *at = &path->point[i];
+            radius_m = fmax(radius_m, at->radius_m), excess_k = fmax(excess_k, at->excess_k);
+            for (int k = 0; k < 3; k++) {
+                box->low_m[k]  = fmin(box->low_m[k], at->p_enu[k]);
+                box->high_m[k] = fmax(box->high_m[k], at->p_enu[k]);
+            }
+        }
+        const double reach_m = radius_m * sqrt(widest(excess_k));
+        for (int k = 0; k < 3; k++) {
+            box->low_m[k] -= reach_m, box->high_m[k] += reach_m;
+            path->box.low_m[k]  = fmin(path->box.low_m[k], box->low_m[k]);
+            path->box.high_m[k] = fmax(path->box.high_m[k], box->high_m[k]);
+        }
+    }
+}
+
 void jet_path(JetPath *out, const ExhaustJet *jet, const double p_enu[3], const double d_enu[3], const double flow_enu_mps[3],
               double air_k)
 {
@@ -55,7 +90,6 @@ void jet_path(JetPath *out, const ExhaustJet *jet, const double p_enu[3], const 
     for (int k = 0; k < 3; k++) {
         s.p[k] = p_enu[k];
         s.momentum[k] = s.mass * jet->speed_mps * d_enu[k];
-        out->low_m[k] = out->high_m[k] = p_enu[k];
     }
     s.heat = s.mass * jet->excess_k;
     while (out->count < jet_points && s.mass > 0 && jet_now(&now, &s, air_k)) {
@@ -65,13 +99,7 @@ void jet_path(JetPath *out, const ExhaustJet *jet, const double p_enu[3], const 
         *at = (JetPoint){.radius_m = now.radius_m, .excess_k = fmin(2 * now.excess_k, jet->excess_k),
                          .speed_mps = fmin(2 * now.speed_mps, fmax(jet->speed_mps, now.speed_mps))};
         memcpy(at->p_enu, s.p, sizeof at->p_enu);
-        memcpy(at->d_enu, now.d, sizeof at->d_enu);
         if (!(at->excess_k >= least_k)) break;
-        const double reach_m = at->radius_m * sqrt(fmax(0.5 * log(2 * at->excess_k / least_k), 0)); /* 2: before a wall */
-        for (int k = 0; k < 3; k++) {
-            out->low_m[k]  = fmin(out->low_m[k], s.p[k] - reach_m);
-            out->high_m[k] = fmax(out->high_m[k], s.p[k] + reach_m);
-        }
         out->count++;
         const double way_m = 0.4 * now.radius_m;
         jet_slope(&slope, &now, fmin(s.way_m / developed_m, 1), flow_enu_mps, air_k);
@@ -80,6 +108,13 @@ void jet_path(JetPath *out, const ExhaustJet *jet, const double p_enu[3], const 
         jet_slope(&slope, &now, fmin(half.way_m / developed_m, 1), flow_enu_mps, air_k);
         s = moved(&s, &slope, way_m);
     }
+    out->widest = widest(jet->excess_k) + 1e-9;
+    for (int i = 0; i + 1 < out->count; i++) {
+        JetPoint *at = &out->point[i];
+        v3_sub(at->way_enu, out->point[i + 1].p_enu, at->p_enu);
+        at->per_m2 = 1 / v3_dot(at->way_enu, at->way_enu);
+    }
+    put_boxes(out);
 }
 
 static double away_m(const double a[3], const double b[3]) { return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]); }
@@ -88,20 +123,23 @@ bool jet_path_at(double *excess_k, double *speed_mps, double from_enu[3], const 
 {
     double best = 0;
     *excess_k = *speed_mps = 0;
-    for (int k = 0; k < 3; k++)
-        if (p_enu[k] < path->low_m[k] || p_enu[k] > path->high_m[k]) return false;
+    if (!is_in(&path->box, p_enu)) return false;
     for (int i = 0; i + 1 < path->count; i++) {
+        if (i % jet_run == 0 && !is_in(&path->run[i / jet_run], p_enu)) {
+            i += jet_run - 1;
+            continue;
+        }
         const JetPoint *a = &path->point[i], *b = &path->point[i + 1];
-        double          way[3], off[3], at[3];
-        v3_sub(way, b->p_enu, a->p_enu);
+        double          off[3], at[3];
         v3_sub(off, p_enu, a->p_enu);
-        const double along = v3_dot(off, way) / v3_dot(way, way);
+        const double along = v3_dot(off, a->way_enu) * a->per_m2;
         if (along < (i == 0 ? 0 : -0.3)) continue; /* of the piece before, or behind the outlet */
         const double share = clamp(along, 0, 1);
-        v3_add_scaled(at, a->p_enu, share, way);
+        v3_add_scaled(at, a->p_enu, share, a->way_enu);
         v3_sub(off, p_enu, at);
-        const double radius_m = a->radius_m + share * (b->radius_m - a->radius_m);
-        const double profile  = fmin((wall ? 2 : 1) * exp(-2 * v3_dot(off, off) / (radius_m * radius_m)), 1);
+        const double radius_m = a->radius_m + share * (b->radius_m - a->radius_m), off_m2 = v3_dot(off, off);
+        if (off_m2 > path->widest * radius_m * radius_m) continue;
+        const double profile  = fmin((wall ? 2 : 1) * exp(-2 * off_m2 / (radius_m * radius_m)), 1);
         const double here_k   = profile * (a->excess_k + share * (b->excess_k - a->excess_k));
         if (!(here_k > best)) continue;
         best = here_k;

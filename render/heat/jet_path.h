@@ -12,18 +12,25 @@
 
 #include "entities/effects/exhaust_jet.h"
 
-enum { jet_points = 64 };
+enum { jet_points = 64, jet_run = 8, jet_boxes = jet_points / jet_run };
 
 typedef struct JetPoint {
-    double p_enu[3], d_enu[3];       /* on the axis; along it */
+    double p_enu[3];                 /* on the axis */
+    double way_enu[3], per_m2;       /* to the next point; 1 over its square */
     double radius_m;                 /* where excess and speed are exp(-2) of those on the axis */
     double excess_k, speed_mps;      /* on the axis; excess: over the air */
 } JetPoint;
 
+/* About all of a jet, or a run of it, that is warmer than the air by 1 K or more. */
+typedef struct JetBox {
+    double low_m[3], high_m[3];
+} JetBox;
+
 typedef struct JetPath {
     int      count;
     JetPoint point[jet_points];
-    double   low_m[3], high_m[3];    /* a box about all of it that is warmer than the air by 1 K or more */
+    double   widest;                 /* squared radii from the axis, beyond which it is nowhere warmer by 1 K */
+    JetBox   box, run[jet_boxes];    /* run[k]: between points jet_run k and jet_run (k + 1) */
 } JetPath;
 
 /* From p_enu, leaving in direction d_enu, in air that flows at flow_enu_mps: in axes that move with the outlet. Ends where it

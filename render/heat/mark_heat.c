@@ -98,14 +98,14 @@ static Status blow_of(Stand *out, const GroundBlow *b, double air_k, double exer
     if (!v3_normalize(d_enu, d_enu)) return STATUS_OK;
     JetPath  found;
     jet_path(&found, &jet, at_enu, d_enu, still, air_k);
-    if (found.count < 2 || found.low_m[2] > out->p_enu[2] + touches_m) return STATUS_OK;
+    if (found.count < 2 || found.box.low_m[2] > out->p_enu[2] + touches_m) return STATUS_OK;
     JetPath *path = arena_alloc(arena, 1, sizeof *path);
     if (!path) return STATUS_NO_MEMORY;
     *path = found;
     out->jet = path;
     out->blow_from_s = exercise_s + b->from_s, out->blow_to_s = exercise_s + b->to_s;
     for (int k = 0; k < 2; k++)
-        out->reach_m = fmax(out->reach_m, fmax(path->high_m[k] - out->p_enu[k], out->p_enu[k] - path->low_m[k]));
+        out->reach_m = fmax(out->reach_m, fmax(path->box.high_m[k] - out->p_enu[k], out->p_enu[k] - path->box.low_m[k]));
     return STATUS_OK;
 }
 
