@@ -306,8 +306,13 @@ static bool record_hit(TubeHit *record, const Tube *tube, const TubeWork *work, 
             record->amplitude[4 * r + 2 * p + 1] = (float)(area_m2 * v3_dot(q[r], im));
         }
     }
-    for (int i = 0; i < 2; i++)
-        record->slope_m[i] = (float)(0.5 * (v3_dot(s, tube->side[i]) - v3_dot(tube->d, tube->side[i])));
+    const double against = v3_dot(facing->smooth, tube->d);
+    for (int i = 0; i < 2; i++) {
+        double side[3];
+        memcpy(side, tube->side[i], sizeof side);
+        if (against < -0.05) v3_add_scaled(side, side, -v3_dot(facing->smooth, side) / against, tube->d);
+        record->slope_m[i] = (float)(0.5 * (v3_dot(s, side) - v3_dot(tube->d, side)));
+    }
     record->path_m = tube->path_m + path_m;
     for (int c = 0; c < 3; c++) {
         record->first[c] = tube->first[c];
