@@ -12,4 +12,9 @@ Status      heat_node_probe_open(void **state, int argc, char **argv);
 const char *heat_node_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
 void        heat_node_probe_close(void *state);
 
+Status      propagation_probe_open(void **state, int argc, char **argv);
+const char *propagation_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
+void        propagation_probe_close(void *state);
+const char *radar_equation_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
+
 #endif

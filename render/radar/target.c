@@ -1,0 +1,124 @@
+/* render/radar/target.c: prepares a target for radar rays. */
+#include "render/radar/target.h"
+
+#include <stdlib.h>
+
+/* ---- how curved it is ------------------------------------------------------------------------------- */
+
+typedef struct Bend {
+    double per_m, area_m2;
+} Bend;
+
+static int by_bend(const void *a, const void *b)
+{
+    const Bend *p = a, *q = b;
+    return p->per_m < q->per_m ? 1 : p->per_m > q->per_m ? -1 : 0;
+}
+
+/* The largest change of the vertex normals over a side's length. */
+static Bend bend_of(const Model *model, int t)
+{
+    Bend   bend = {0};
+    double ab[3], ac[3], n[3];
+    for (int c = 0; c < 3; c++) {
+        const uint32_t i = model->triangle[t][c], j = model->triangle[t][(c + 1) % 3];
+        double         along[3], turn = 0;
+        v3_sub(along, model->vertex[j], model->vertex[i]);
+        for (int x = 0; x < 3; x++) {
+            const double d = (double)model->normal[j][x] - (double)model->normal[i][x];
+            turn += d * d;
+        }
+        const double side_m = v3_length(along);
+        if (side_m > 0) bend.per_m = fmax(bend.per_m, sqrt(turn) / side_m);
+    }
+    v3_sub(ab, model->vertex[model->triangle[t][1]], model->vertex[model->triangle[t][0]]);
+    v3_sub(ac, model->vertex[model->triangle[t][2]], model->vertex[model->triangle[t][0]]);
+    v3_cross(n, ab, ac);
+    bend.area_m2 = 0.5 * v3_length(n);
+    return bend;
+}
+
+static Status measure_curve(RadarTarget *target)
+{
+    const Model *model = target->model;
+    Bend        *bend = calloc((size_t)model->triangle_count + 1, sizeof *bend);
+    double       whole_m2 = 0, bent_m2 = 0;
+    if (!bend) return STATUS_NO_MEMORY;
+    for (int t = 0; t < model->triangle_count; t++) {
+        bend[t] = bend_of(model, t);
+        whole_m2 += bend[t].area_m2;
+    }
+    qsort(bend, (size_t)model->triangle_count, sizeof *bend, by_bend);
+    target->curve_m = INFINITY;
+    for (int t = 0; t < model->triangle_count && bend[t].per_m > 1e-6; t++) {
+        bent_m2 += bend[t].area_m2;
+        target->curve_m = 1 / bend[t].per_m;
+        if (bent_m2 > 0.05 * whole_m2) break;
+    }
+    free(bend);
+    return STATUS_OK;
+}
+
+/* ---- the target ------------------------------------------------------------------------------------- */
+
+Status radar_target_create(RadarTarget **out, const Model *model, const RadarMaterials *materials, const char *isa)
+{
+    RadarTarget *target = calloc(1, sizeof *target);
+    if (!target) return STATUS_NO_MEMORY;
+    target->model = model;
+    target->materials = materials;
+    Status status = tracer_create_models(&target->tracer, &model, 1, isa);
+    if (status != STATUS_OK) goto fail;
+    target->entity.node = calloc((size_t)parts_node_count(target->tracer, 0) + 1, sizeof *target->entity.node);
+    target->pose = calloc((size_t)model->node_count + 1, sizeof *target->pose);
+    target->material = calloc((size_t)model->part_count + 1, sizeof *target->material);
+    status = target->entity.node && target->pose && target->material ? measure_curve(target) : STATUS_NO_MEMORY;
+    if (status != STATUS_OK) goto fail;
+    for (int p = 0; p < model->part_count && materials; p++) {
+        target->material[p] = radar_materials_find(materials, model->part[p].material);
+        if (target->material[p] < 0) {
+            log_error("radar: no radar material of this name: model=%s part=%s material=%s", model->name, model->part[p].name,
+                      model->part[p].material);
+            status = STATUS_BAD_VALUE;
+            goto fail;
+        }
+    }
+    radar_target_pose(target, NULL, 0);
+    *out = target;
+    return STATUS_OK;
+
+fail:
+    radar_target_destroy(target);
+    return status;
+}
+
+void radar_target_destroy(RadarTarget *target)
+{
+    if (!target) return;
+    tracer_destroy(target->tracer);
+    free(target->entity.node);
+    free(target->pose);
+    free(target->material);
+    free(target);
+}
+
+void radar_target_pose(RadarTarget *target, const NodePose *pose, int damage)
+{
+    static const double origin[3] = {0, 0, 0};
+    double              attitude[9];
+    m3_identity(attitude);
+    if (pose) memcpy(target->pose, pose, (size_t)target->model->node_count * sizeof *pose);
+    else model_pose(target->pose, target->model, NULL);
+    parts_pose(&target->entity, target->tracer, 0, target->pose, origin, attitude, damage);
+}
+
+void radar_antenna(ScatterAntenna *out, const double p_antenna[3], const double p_target[3], const double r_from_body[9])
+{
+    double from[3];
+    v3_sub(from, p_antenna, p_target);
+    m3_tmul_v3(out->u, r_from_body, from);
+    out->range_m = v3_length(out->u);
+    v3_scale(out->u, 1 / out->range_m, out->u);
+}
+
+double radar_sag_m(double frequency_hz) { return clamp(light_mps / frequency_hz / 300, 1e-5, 0.1); }

@@ -1,0 +1,241 @@
+/* render/radar/tubes.c: lays the grid of tubes and gathers their hits into one list; the tubes' own way is in tubes_trace.c. */
+#include "render/radar/tubes_private.h"
+
+#include <stdlib.h>
+
+enum { round_tiles = 512 }; /* hits are gathered so often: bounds the memory of workers */
+
+TubeConfig tubes_default_config(double frequency_hz)
+{
+    return (TubeConfig){.frequency_hz = frequency_hz, .rays_per_wavelength = 1, .rays_per_radius = 128, .bounces = 8};
+}
+
+void tubes_free(TubeHits *hits)
+{
+    free(hits->path_m);
+    for (int i = 0; i < 2; i++) free(hits->slope_m[i]);
+    for (int i = 0; i < 8; i++) free(hits->amplitude[i]);
+    for (int c = 0; c < 3; c++) free(hits->first[c]), free(hits->last[c]);
+    free(hits->bounce);
+    free(hits->part);
+    *hits = (TubeHits){0};
+}
+
+/* ---- the grid --------------------------------------------------------------------------------------- */
+
+/* Of the look, the same for looks that differ by a rounding. */
+static uint64_t hash_look(const TubeConfig *config, const ScatterAntenna *tx)
+{
+    uint64_t hash = config->seed + 0x9E3779B97F4A7C15u;
+    for (int c = 0; c < 4; c++) {
+        const double  x = c < 3 ? tx->u[c] * 1e9 : isinf(tx->range_m) ? 0 : tx->range_m * 1e3;
+        const int64_t whole = llround(clamp(x, -9e18, 9e18));
+        hash = (hash ^ (uint64_t)whole) * 0xBF58476D1CE4E5B9u;
+        hash ^= hash >> 31;
+    }
+    return hash;
+}
+
+/* Where the line from the transmitter through a point meets the grid's plane, in its axes. False: behind the transmitter. */
+static bool on_grid(double at_m[2], const TubeGrid *grid, const double p[3])
+{
+    double from[3];
+    v3_sub(from, p, grid->centre);
+    double scale = 1;
+    if (!grid->plane) {
+        const double ahead = 1 + v3_dot(from, grid->axis) / grid->distance_m;
+        if (!(ahead > 1e-6)) return false;
+        scale = 1 / ahead;
+    }
+    for (int i = 0; i < 2; i++) at_m[i] = scale * v3_dot(from, grid->side[i]);
+    return true;
+}
+
+/* Sides turned by an angle about the axis. */
+static void turn_grid(TubeGrid *grid, double angle_rad)
+{
+    double x[3], y[3];
+    const double pole[3] = {0, fabs(grid->axis[2]) > 0.9, fabs(grid->axis[2]) <= 0.9};
+    v3_cross(x, pole, grid->axis);
+    v3_normalize(x, x);
+    v3_cross(y, grid->axis, x);
+    for (int c = 0; c < 3; c++) {
+        grid->side[0][c] = cos(angle_rad) * x[c] + sin(angle_rad) * y[c];
+        grid->side[1][c] = cos(angle_rad) * y[c] - sin(angle_rad) * x[c];
+    }
+}
+
+static Status lay_grid(TubeGrid *grid, const RadarTarget *target, const ScatterAntenna *tx, const TubeConfig *config)
+{
+    const PosedEntity *entity = &target->entity;
+    const double       wavelength_m = light_mps / config->frequency_hz;
+    const double       curve_m = config->curve_m > 0 ? config->curve_m : target->curve_m;
+    const double       widest_m = fmax(sqrt(wavelength_m * curve_m / 16), wavelength_m / 8);
+    const uint64_t     hash = hash_look(config, tx);
+    grid->spacing_m = fmin(fmin(wavelength_m / config->rays_per_wavelength, widest_m), entity->radius_m / config->rays_per_radius);
+    memcpy(grid->centre, entity->centre_enu, sizeof grid->centre);
+    grid->plane = isinf(tx->range_m);
+    if (grid->plane) {
+        v3_scale(grid->axis, -1, tx->u);
+    } else {
+        v3_scale(grid->antenna, tx->range_m, tx->u);
+        v3_sub(grid->axis, grid->centre, grid->antenna);
+        grid->distance_m = v3_length(grid->axis);
+        if (!(grid->distance_m > 0)) return STATUS_BAD_VALUE;
+        v3_scale(grid->axis, 1 / grid->distance_m, grid->axis);
+    }
+    turn_grid(grid, 2 * pi_rad * random_uniform(hash, 94, 0, 0));
+    grid->back_m = 2.5 * entity->radius_m + 1e-3;
+
+    double low_m[2] = {INFINITY, INFINITY}, high_m[2] = {-INFINITY, -INFINITY};
+    for (int corner = 0; corner < 8; corner++) {
+        double p[3], at_m[2];
+        for (int c = 0; c < 3; c++) p[c] = corner >> c & 1 ? entity->box_high[c] : entity->box_low[c];
+        if (!on_grid(at_m, grid, p)) return STATUS_BAD_VALUE;
+        for (int i = 0; i < 2; i++) {
+            low_m[i] = fmin(low_m[i], at_m[i]);
+            high_m[i] = fmax(high_m[i], at_m[i]);
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        const double count = ceil((high_m[i] - low_m[i]) / grid->spacing_m) + 1;
+        if (!(count < 1 << 24)) return STATUS_UNSUPPORTED;
+        grid->count[i] = (int)count;
+        grid->first_m[i] = low_m[i] - grid->spacing_m * random_uniform(hash, 94, 0, 1 + (uint64_t)i);
+        grid->tiles[i] = (grid->count[i] + tile_side - 1) / tile_side;
+    }
+    return (double)grid->count[0] * grid->count[1] < 0x1p31 ? STATUS_OK : STATUS_UNSUPPORTED;
+}
+
+/* ---- the list --------------------------------------------------------------------------------------- */
+
+static bool grow(void *array, size_t capacity, size_t octets)
+{
+    void **at = array, *larger = realloc(*at, capacity * octets);
+    if (larger) *at = larger;
+    return larger != NULL;
+}
+
+static Status reserve(TubeHits *hits, size_t more)
+{
+    if (hits->count + more <= hits->capacity) return STATUS_OK;
+    const size_t want = hits->count + more > 2 * hits->capacity ? hits->count + more : 2 * hits->capacity;
+    bool         good = grow(&hits->path_m, want, sizeof(double));
+    for (int i = 0; i < 2; i++) good &= grow(&hits->slope_m[i], want, sizeof(float));
+    for (int i = 0; i < 8; i++) good &= grow(&hits->amplitude[i], want, sizeof(float));
+    for (int c = 0; c < 3; c++)
+        good &= grow(&hits->first[c], want, sizeof(float)) && grow(&hits->last[c], want, sizeof(float));
+    good &= grow(&hits->bounce, want, sizeof(uint8_t)) && grow(&hits->part, want, sizeof(uint16_t));
+    if (!good) return STATUS_NO_MEMORY;
+    hits->capacity = want;
+    return STATUS_OK;
+}
+
+static void append(TubeHits *hits, const TubeHit *hit, size_t count)
+{
+    for (size_t k = 0; k < count; k++, hit++) {
+        const size_t at = hits->count++;
+        hits->path_m[at] = hit->path_m;
+        for (int i = 0; i < 2; i++) hits->slope_m[i][at] = hit->slope_m[i];
+        for (int i = 0; i < 8; i++) hits->amplitude[i][at] = hit->amplitude[i];
+        for (int c = 0; c < 3; c++) hits->first[c][at] = hit->first[c], hits->last[c][at] = hit->last[c];
+        hits->bounce[at] = hit->bounce;
+        hits->part[at] = hit->part;
+    }
+}
+
+/* ---- all of it -------------------------------------------------------------------------------------- */
+
+static Status open_work(TubeWork *work, int threads, const RadarTarget *target)
+{
+    work->worker = calloc((size_t)threads, sizeof *work->worker);
+    work->surface = calloc((size_t)target->model->part_count + 1, sizeof *work->surface);
+    work->piece = calloc(round_tiles, sizeof *work->piece);
+    if (!work->worker || !work->surface || !work->piece) return STATUS_NO_MEMORY;
+    for (int w = 0; w < threads; w++) {
+        work->worker[w].tile = calloc(1, tube_tile_octets());
+        if (!work->worker[w].tile) return STATUS_NO_MEMORY;
+    }
+    for (int p = 0; p < target->model->part_count && target->materials; p++)
+        radar_surface(&work->surface[p], &target->materials->material[target->material[p]], work->config.frequency_hz);
+    return STATUS_OK;
+}
+
+static void close_work(TubeWork *work, int threads)
+{
+    for (int w = 0; w < threads && work->worker; w++) {
+        free(work->worker[w].hit);
+        free(work->worker[w].tile);
+    }
+    free(work->worker);
+    free(work->surface);
+    free(work->piece);
+}
+
+static void run_tile(void *user, int worker, int task)
+{
+    TubeWork *work = user;
+    tube_tile(work, worker, work->first_tile + task, &work->piece[task]);
+}
+
+static Status gather(TubeHits *out, TubeWork *work, int threads, int count)
+{
+    size_t more = 0;
+    for (int t = 0; t < count; t++) {
+        if (work->piece[t].failed) return STATUS_NO_MEMORY;
+        more += work->piece[t].count;
+    }
+    const Status status = reserve(out, more);
+    if (status != STATUS_OK) return status;
+    for (int t = 0; t < count; t++)
+        if (work->piece[t].count)
+            append(out, work->worker[work->piece[t].worker].hit + work->piece[t].first, work->piece[t].count);
+    for (int w = 0; w < threads; w++) work->worker[w].count = 0;
+    return STATUS_OK;
+}
+
+static bool antenna_is_good(const ScatterAntenna *a)
+{
+    return v3_is_finite(a->u) && fabs(v3_dot(a->u, a->u) - 1) < 1e-9 && a->range_m > 0;
+}
+
+Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
+                   const TubeConfig *config, Pool *pool)
+{
+    const int threads = pool ? pool_threads(pool) : 1;
+    TubeWork  work = {.target = target, .tx = *tx, .rx = *rx, .config = *config,
+                      .k = 2 * pi_rad * config->frequency_hz / light_mps,
+                      .monostatic = memcmp(tx->u, rx->u, sizeof tx->u) == 0 && tx->range_m == rx->range_m};
+    if (!antenna_is_good(tx) || !antenna_is_good(rx) || !(config->frequency_hz > 0) || !(config->rays_per_wavelength > 0) || !(config->rays_per_radius >= 0) ||
+        isinf(config->frequency_hz) || config->bounces < 1 || config->bounces > 255) {
+        log_error("radar: an antenna or a number of the ray tubes is out of range: frequency_hz=%g rays_per_wavelength=%g "
+                  "bounces=%d", config->frequency_hz, config->rays_per_wavelength, config->bounces);
+        return STATUS_BAD_VALUE;
+    }
+    out->count = 0;
+    out->rays = 0;
+    out->tx = *tx, out->rx = *rx;
+    out->frequency_hz = config->frequency_hz;
+    if (target->entity.node_count == 0) return STATUS_OK;
+    Status status = lay_grid(&work.grid, target, tx, config);
+    if (status != STATUS_OK) {
+        log_error(status == STATUS_BAD_VALUE ? "radar: the transmitter is within the target: range_m=%g"
+                                             : "radar: more than 2^31 ray tubes: range_m=%g; take a lower frequency",
+                  tx->range_m);
+        return status;
+    }
+    out->spacing_m = work.grid.spacing_m;
+    out->rays = (long long)work.grid.count[0] * work.grid.count[1];
+    status = open_work(&work, threads, target);
+    const long long tiles = (long long)work.grid.tiles[0] * work.grid.tiles[1];
+    for (long long t = 0; t < tiles && status == STATUS_OK; t += round_tiles) {
+        const int count = (int)(tiles - t < round_tiles ? tiles - t : round_tiles);
+        work.first_tile = t;
+        if (pool) pool_run(pool, count, run_tile, &work);
+        else for (int k = 0; k < count; k++) run_tile(&work, 0, k);
+        status = gather(out, &work, threads, count);
+    }
+    if (status == STATUS_NO_MEMORY) log_error("radar: out of memory for the hits of ray tubes: rays=%lld", out->rays);
+    close_work(&work, threads);
+    return status;
+}
