@@ -1,4 +1,4 @@
-/* sensor/radar/interval.h: one coherent interval of a radar: pulses sampled over frequency in three channels, and its map of range
+/* sensor/radar/interval.h: one coherent interval of a radar: pulses sampled over frequency in four channels, and its map of range
  * and Doppler.
  *
  * Samples are in units of sqrt(W) at the antenna's port: a steady echo of received power p has |sample| = sqrt(p) everywhere. The
@@ -11,7 +11,8 @@
 
 #include <complex.h>
 
-enum { interval_channels = 3 }; /* sum, right, down */
+/* Of the sum beam, the two difference beams, and of the sum beam in the polarisation that is not transmitted. */
+enum { CHANNEL_SUM, CHANNEL_RIGHT, CHANNEL_DOWN, CHANNEL_CROSS, interval_channels };
 
 typedef struct Waveform {
     double centre_hz, bandwidth_hz; /* step between samples: bandwidth / samples */

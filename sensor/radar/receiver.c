@@ -1,15 +1,11 @@
 /* sensor/radar/receiver.c: see receiver.h. */
 #include "sensor/radar/receiver.h"
 
-double radar_echo_amplitude(double power_w, double loss, double wavelength_m, double range_m)
-{
-    return sqrt(power_w / loss) * wavelength_m / (4 * pi_rad * range_m * range_m);
-}
+#include "render/radar/radar_equation.h"
 
 double receiver_noise_w(const Receiver *receiver, const Waveform *wave)
 {
-    static const double boltzmann_j_k = 1.380649e-23, reference_k = 290;
-    return boltzmann_j_k * reference_k * receiver->noise_figure * wave->samples / wave->pulse_s;
+    return radar_noise_w(wave->samples / wave->pulse_s, receiver->noise_figure);
 }
 
 static void add_noise(Interval *interval, double sigma, uint64_t seed, uint32_t stream, uint32_t number)

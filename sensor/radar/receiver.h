@@ -3,7 +3,7 @@
  *
  * Noise power in a sample: k 290 K F samples / pulse length, so that a pulse compressed from all its samples has the signal to
  * noise of a matched filter, P pulse / (k 290 K F). The antenna is taken to look at 290 K.
- * Phase noise: one normal phase a pulse, common to the three channels (what stays of the oscillator's noise within a pulse's delay).
+ * Phase noise: one normal phase a pulse, common to all channels (what stays of the oscillator's noise within a pulse's delay).
  * The converter's gain puts the noise at noise_counts, or less where the interval's largest I or Q would pass nine tenths of its
  * range: a gain control that acts within the interval. Samples go back to sqrt(W) by that gain.
  * Draws are functions of seed, stream and interval number (pitviper_random). */
@@ -31,12 +31,5 @@ void receiver_apply(ReceiverReport *report, Interval *interval, const Receiver *
                     uint32_t number);
 /* Noise power of a sample, W. */
 double receiver_noise_w(const Receiver *receiver, const Waveform *wave);
-
-/* ---- the radar equation ---- */
-
-/* Amplitude of an echo, sqrt(W) over m: times |S| (render/radar/scatter.h), both voltage gains, and the one-way amplitude
- * transmittances of the air is the received sqrt(power): sqrt(P / L) wavelength / (4 pi r^2), which squared is
- * P G^2 wavelength^2 sigma / ((4 pi)^3 r^4 L) with sigma = 4 pi |S|^2. loss: of transmitter and receiver together, a factor. */
-double radar_echo_amplitude(double power_w, double loss, double wavelength_m, double range_m);
 
 #endif

@@ -2,6 +2,7 @@
  * speeds and directions of points, images of I/Q errors, noise of a converter. */
 #include "tests/check.h"
 
+#include "render/radar/radar_equation.h"
 #include "sensor/radar/detect.h"
 #include "sensor/radar/echo.h"
 #include "sensor/radar/receiver.h"
@@ -29,9 +30,9 @@ static void add_points(Interval *interval, const Point *point, int count)
         for (int i = 0; i < count; i++) {
             const Point      *p = &point[i];
             const AntennaGain g = antenna_gain(&dish, p->cos_right, p->cos_down);
-            const double      receive[] = {g.sum, g.right, g.down};
-            const double      a = radar_echo_amplitude(power_w, loss, dish.wavelength_m, reference_m + p->range_m) *
-                             sqrt(p->rcs_m2 / (4 * pi_rad));
+            const double      receive[] = {g.sum, g.right, g.down, 0};
+            const RadarLink   link = {power_w, 1, 1, dish.wavelength_m, reference_m + p->range_m, loss};
+            const double      a = sqrt(radar_received_w(&link, p->rcs_m2));
             for (int n = 0; n < pulses; n++) /* the middle of the interval is where ranges are meant */
                 echo_add(grid, n, 2 * (p->range_m + p->range_rate_mps * (n - 0.5 * (pulses - 1)) / wave.repeat_hz),
                          a * g.sum * receive[c] * cexp(I * p->phase_rad));
