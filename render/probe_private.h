@@ -12,4 +12,8 @@ Status      heat_node_probe_open(void **state, int argc, char **argv);
 const char *heat_node_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
 void        heat_node_probe_close(void *state);
 
+Status      rcs_probe_open(void **state, int argc, char **argv);
+const char *rcs_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
+void        rcs_probe_close(void *state);
+
 #endif

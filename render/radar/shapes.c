@@ -169,7 +169,7 @@ static bool build_dihedral(Builder *b, double a_m, double b_m)
 
 static bool build_trihedral(Builder *b, double a_m, bool square)
 {
-    const double o[3] = {0, 0, 0}, axis[3][3] = {{a_m, 0, 0}, {0, a_m, 0}, {0, 0, a_m}};
+    const double o[3] = {0, 0, 0}, axis[3][3] = {{a_m, 0, 0}, {0, 0, -a_m}, {0, a_m, 0}};
     if (!make_room(b, square ? 6 : 3)) return false;
     for (int c = 0; c < 3; c++) {
         if (square) add_plate(b, o, axis[c], axis[(c + 1) % 3]);
