@@ -213,5 +213,13 @@ const Probe render_probes[] = {
      .help = "power of an echo, thermal noise at 290 K and their ratio; loss: both ways, of the system and of the air together",
      .in = "power_w,gain_db,frequency_ghz,rcs_dbsm,range_m,bandwidth_hz,noise_figure_db,loss_db?",
      .out = "received_dbw,noise_dbw,snr_db", .row = radar_equation_probe_row},
+    {.name = "rcs",
+     .help = "scattered field and radar cross section of a target by ray tubes and physical optics, as received and transmitted "
+             "polarisation; target: a built-in model, a file, or sphere:R, plate:AxB, disc:R, cylinder:RxL, dihedral:AxB, "
+             "trihedral:A, corner:A in m, of metal; azimuth: clockwise from the nose; range: empty, far field; rx: the receiver's, "
+             "empty: at the transmitter; joints at rest",
+     .in = "target$,f_ghz,az_deg,el_deg,range_m?,rx_az_deg?,rx_el_deg?",
+     .out = "hh_dbsm,hv_dbsm,vh_dbsm,vv_dbsm,hh_re_m,hh_im_m,hv_re_m,hv_im_m,vh_re_m,vh_im_m,vv_re_m,vv_im_m",
+     .open = rcs_probe_open, .row = rcs_probe_row, .close = rcs_probe_close},
 };
 const int render_probe_count = sizeof render_probes / sizeof *render_probes;

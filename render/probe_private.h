@@ -16,5 +16,8 @@ Status      propagation_probe_open(void **state, int argc, char **argv);
 const char *propagation_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
 void        propagation_probe_close(void *state);
 const char *radar_equation_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
+Status      rcs_probe_open(void **state, int argc, char **argv);
+const char *rcs_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
+void        rcs_probe_close(void *state);
 
 #endif

@@ -16,7 +16,7 @@ static bool open_model(Builder *b, Model *model, const char *name)
     *model = (Model){.node_count = 1, .part_count = 1};
     *b = (Builder){.model = model};
     model->node = calloc(1, sizeof *model->node);
-    model->part = calloc(1, sizeof *model->part);
+    model->part = calloc(2, sizeof *model->part);
     if (!model->node || !model->part) return false;
     snprintf(model->name, sizeof model->name, "%s", name);
     snprintf(model->node->name, sizeof model->node->name, "body");
@@ -51,7 +51,17 @@ static void add_facet(Builder *b, const double p[3][3], const double n[3][3])
             m->normal[v][x] = (float)n[c][x];
         }
     }
-    m->part->triangle_count = m->triangle_count;
+    m->triangle_part[t] = (uint16_t)(m->part_count - 1);
+    m->part[m->part_count - 1].triangle_count++;
+}
+
+static void begin_part(Builder *b, const char *name)
+{
+    ModelPart *part = &b->model->part[b->model->part_count++];
+    *part = b->model->part[0];
+    snprintf(part->name, sizeof part->name, "%s", name);
+    part->first_triangle = b->model->triangle_count;
+    part->triangle_count = 0;
 }
 
 /* Flat: its own normal, right-handed about a, b, c. */
@@ -121,7 +131,7 @@ static bool build_sphere(Builder *b, double radius_m, double sag_m)
 static bool build_cylinder(Builder *b, double radius_m, double length_m, double sag_m)
 {
     const double sides = circle_sides(radius_m, sag_m);
-    if (2 * sides > most_facets || !make_room(b, 2 * (int)sides)) return false;
+    if (4 * sides > most_facets || !make_room(b, 4 * (int)sides)) return false;
     for (int i = 0; i < sides; i++)
         for (int half = 0; half < 2; half++) {
             static const int at[2][3][2] = {{{0, 0}, {1, 0}, {1, 1}}, {{0, 0}, {1, 1}, {0, 1}}};
@@ -133,6 +143,13 @@ static bool build_cylinder(Builder *b, double radius_m, double length_m, double 
             }
             add_facet(b, (const double (*)[3])p, (const double (*)[3])n);
         }
+    begin_part(b, "ends");
+    for (int i = 0; i < 2 * (int)sides; i++) {
+        const double z_m = length_m * (i < sides ? 0.5 : -0.5), way = i < sides ? 1 : -1, step = 2 * pi_rad / sides;
+        const double o[3] = {0, 0, z_m}, p[3] = {radius_m * cos(i * step), radius_m * sin(i * step), z_m};
+        const double q[3] = {radius_m * cos((i + way) * step), radius_m * sin((i + way) * step), z_m};
+        add_flat(b, o, p, q);
+    }
     return true;
 }
 
@@ -169,7 +186,7 @@ static bool build_dihedral(Builder *b, double a_m, double b_m)
 
 static bool build_trihedral(Builder *b, double a_m, bool square)
 {
-    const double o[3] = {0, 0, 0}, axis[3][3] = {{a_m, 0, 0}, {0, a_m, 0}, {0, 0, a_m}};
+    const double o[3] = {0, 0, 0}, axis[3][3] = {{a_m, 0, 0}, {0, 0, -a_m}, {0, a_m, 0}};
     if (!make_room(b, square ? 6 : 3)) return false;
     for (int c = 0; c < 3; c++) {
         if (square) add_plate(b, o, axis[c], axis[(c + 1) % 3]);

@@ -121,4 +121,13 @@ void radar_antenna(ScatterAntenna *out, const double p_antenna[3], const double 
     v3_scale(out->u, 1 / out->range_m, out->u);
 }
 
+void radar_look(ScatterAntenna *out, double azimuth_rad, double elevation_rad, double range_m)
+{
+    out->u[0] = cos(elevation_rad) * cos(azimuth_rad);
+    out->u[1] = cos(elevation_rad) * sin(azimuth_rad);
+    out->u[2] = -sin(elevation_rad);
+    v3_normalize(out->u, out->u);
+    out->range_m = range_m;
+}
+
 double radar_sag_m(double frequency_hz) { return clamp(light_mps / frequency_hz / 300, 1e-5, 0.1); }

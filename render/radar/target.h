@@ -29,6 +29,9 @@ void   radar_target_pose(RadarTarget *target, const NodePose *pose, int damage);
 /* An antenna at p_antenna, seen from a target whose origin is at p_target: any frame in which both are given, double, m. */
 void radar_antenna(ScatterAntenna *out, const double p_antenna[3], const double p_target[3], const double r_from_body[9]);
 
+/* The same from angles: azimuth clockwise from the nose as seen from above, elevation upwards (body axes have z down). */
+void radar_look(ScatterAntenna *out, double azimuth_rad, double elevation_rad, double range_m);
+
 /* Chord error that keeps the phase within 2.4 degrees: lambda / 300, 720 deg of phase over lambda of depth. */
 double radar_sag_m(double frequency_hz);
 

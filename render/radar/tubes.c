@@ -7,7 +7,7 @@ enum { round_tiles = 512 }; /* hits are gathered so often: bounds the memory of 
 
 TubeConfig tubes_default_config(double frequency_hz)
 {
-    return (TubeConfig){.frequency_hz = frequency_hz, .rays_per_wavelength = 1, .rays_per_radius = 128, .bounces = 8};
+    return (TubeConfig){.frequency_hz = frequency_hz, .rays_per_wavelength = 1.25, .rays_per_radius = 128, .bounces = 8};
 }
 
 void tubes_free(TubeHits *hits)

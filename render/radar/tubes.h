@@ -20,7 +20,7 @@
 
 typedef struct TubeConfig {
     double   frequency_hz;        /* of materials and spacing: the highest, or the centre, of those to come */
-    double   rays_per_wavelength; /* 1 */
+    double   rays_per_wavelength; /* 1.25: a sphere of ka 800 is within 0.1 dB; with 1 within 0.15 */
     double   rays_per_radius;     /* at least this many over the radius of the target's sphere: edges are cut in steps of a
                                    * tube, whose error is that of its share of the target; 128 */
     double   curve_m;             /* smallest radius of curvature to resolve, spacing <= sqrt(lambda curve / 16), though not

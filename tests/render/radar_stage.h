@@ -37,12 +37,10 @@ static inline void stage_close(RadarStage *s)
     model_destroy(&s->model);
 }
 
-/* Azimuth from x towards y, elevation towards z, of the target's frame. */
 static inline ScatterAntenna antenna_at(double az_deg, double el_deg, double range_m)
 {
-    const double az = az_deg * rad_per_deg, el = el_deg * rad_per_deg;
-    ScatterAntenna a = {{cos(el) * cos(az), cos(el) * sin(az), sin(el)}, range_m};
-    v3_normalize(a.u, a.u);
+    ScatterAntenna a;
+    radar_look(&a, az_deg * rad_per_deg, el_deg * rad_per_deg, range_m);
     return a;
 }
 
