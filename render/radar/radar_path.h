@@ -32,7 +32,7 @@ typedef struct RadarAir {
 /* Temperature: the model's, displaced by the difference at the ground (air_temp_k NaN: none), which fades with height as
  * exp(-h / 2 km). Pressure: hydrostatic, of moist air, from the weather's. Vapour: density falls as exp(-h / 2 km) (ITU-R
  * P.835, reference atmosphere; the model's tables have no vapour), at most saturated. Rain: the weather's, below the highest
- * level of 0 C and 360 m (P.839-4); where that is below the ground it is snow, and takes nothing. No fog, no cloud: the
+ * level of 0 C and 360 m more (P.839-4); where no level is as warm it is snow, and takes nothing. No fog, no cloud: the
  * weather says neither their height nor their water; give them in liquid[]. STATUS_BAD_VALUE for air beyond the ranges of
  * GasState, or rain beyond 300 mm/h. */
 Status radar_air_of(RadarAir *out, const Atmosphere *model, const Weather *weather);
