@@ -3,8 +3,9 @@
     propagation_judge.py rows | PROBE | propagation_judge.py judge
 
 rows: what to ask: frequencies 1 to 349 GHz in airs that no printed example has. judge: prints, to be read by
-test_propagation_judge.sh, `gas|rain|cloud WORST`, the worst relative difference per km at the near end; `space WORST`, that of the gases between the
-ground and space, straight up and 10 degrees above the horizon, through the mean global reference atmosphere; `rows COUNT`.
+test_propagation_judge.sh, `gas|rain|cloud WORST`, the worst relative difference per km at the near end; `space WORST`,
+that of the gases between the ground and space, straight up and 10 degrees above the horizon, through the mean global
+reference atmosphere; `rows COUNT`.
 Of gases it asks for P.676-12, whose lines and formulae of Annex 1 are those of P.676-13."""
 import csv
 import sys
@@ -24,8 +25,8 @@ UP, EARTH_M = [90, 10], 6371e3
 AIRS = [(250, 980, 0.9), (273.15, 1013.25, 0.3), (288.15, 900, 0.6), (308, 1030, 0.8)]
 
 if sys.argv[1] == 'rows':
-    print('frequency_ghz,from_m,to_m,range_m,air_temp_k,pressure_mbar,humidity,rain_mm_h,tilt_deg,cloud_low_m,cloud_high_m,'
-          'cloud_g_m3')
+    print('frequency_ghz,from_m,to_m,range_m,air_temp_k,pressure_mbar,humidity,rain_mm_h,tilt_deg,cloud_low_m,'
+          'cloud_high_m,cloud_g_m3')
     for f in FREQUENCIES:
         for n, (t, p, h) in enumerate(AIRS):
             cloud = '0,50,0.25' if f <= 200 else ',,'
