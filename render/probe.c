@@ -200,17 +200,18 @@ const Probe render_probes[] = {
      .in = "unix_s,model$,part$?,heading_deg?,engine?,speed_mps?", .out = "temp_k,low_k,high_k,air_k,ground_k",
      .open = heat_node_probe_open, .row = heat_node_probe_row, .close = heat_node_probe_close},
     {.name = "propagation", .arguments = "[MODEL]",
-     .help = "what air, rain, fog and cloud take from a radio wave on a straight path, one way (ITU-R P.676-13, P.838-3, P.840-9), "
-             "and its two-way factor; MODEL: of etc/atmosphere (us1976), for temperatures; heights above its ground; tilt: of the "
-             "polarisation, 0 horizontal, 90 vertical, 45 circular too; visibility: fog from 1000 m down, below fog_top_m (empty: "
-             "everywhere); the figures per km are those at from_m",
-     .in = "frequency_ghz,from_m,to_m,range_m,air_temp_k?,pressure_mbar?,humidity?,rain_mm_h?,tilt_deg?,visibility_m?,fog_top_m?,"
-           "cloud_low_m?,cloud_high_m?,cloud_g_m3?",
-     .out = "gas_db,rain_db,cloud_db,two_way_db,amplitude,phase_rad,dry_db_km,wet_db_km,rain_db_km,cloud_db_km,rain_top_m,"
-            "vapour_g_m3,fog_g_m3",
+     .help = "what air, rain, fog and cloud take from a radio wave on a straight path, one way (ITU-R P.676-13, P.838-3, "
+             "P.840-9), and its two-way factor; MODEL: of etc/atmosphere (us1976), for temperatures; heights above its "
+             "ground; tilt: of the polarisation, 0 horizontal, 90 vertical, 45 circular too; visibility: fog from 1000 m "
+             "down, below fog_top_m (empty: everywhere); the figures per km are those at from_m",
+     .in = "frequency_ghz,from_m,to_m,range_m,air_temp_k?,pressure_mbar?,humidity?,rain_mm_h?,tilt_deg?,visibility_m?,"
+           "fog_top_m?,cloud_low_m?,cloud_high_m?,cloud_g_m3?",
+     .out = "gas_db,rain_db,cloud_db,two_way_db,amplitude,phase_rad,dry_db_km,wet_db_km,rain_db_km,cloud_db_km,"
+            "rain_top_m,vapour_g_m3,fog_g_m3",
      .open = propagation_probe_open, .row = propagation_probe_row, .close = propagation_probe_close},
     {.name = "radar-equation",
-     .help = "power of an echo, thermal noise at 290 K and their ratio; loss: both ways, of the system and of the air together",
+     .help = "power of an echo, thermal noise at 290 K and their ratio; loss: both ways, of the system and of the "
+             "air together",
      .in = "power_w,gain_db,frequency_ghz,rcs_dbsm,range_m,bandwidth_hz,noise_figure_db,loss_db?",
      .out = "received_dbw,noise_dbw,snr_db", .row = radar_equation_probe_row},
     {.name = "rcs",

@@ -1,5 +1,5 @@
-/* render/radar/cloud_attenuation.h: what the droplets of cloud and fog take from a radio wave: Recommendation ITU-R P.840-9
- * (08/2023), Rayleigh absorption by liquid water with its double-Debye permittivity. */
+/* render/radar/cloud_attenuation.h: what the droplets of cloud and fog take from a radio wave: Recommendation ITU-R
+ * P.840-9 (08/2023), Rayleigh absorption by liquid water with its double-Debye permittivity. */
 #ifndef RENDER_RADAR_CLOUD_ATTENUATION_H
 #define RENDER_RADAR_CLOUD_ATTENUATION_H
 
@@ -13,9 +13,10 @@
  * tests/render/test_radar_propagation.c). */
 double cloud_attenuation(double f_ghz, double temp_k);
 
-/* Liquid water of fog, g/m3, from the visibility (2 % contrast, as weather.visibility_m): Kunkel, J. Climate Appl. Meteor. 23
- * (1984) 34: extinction = 144.7 W^0.88 per km, of measured advection fogs. Fog is what leaves 1000 m or less: 0 above, which steps
- * from 0.017 g/m3. NaN below 10 m. Fogs of one visibility differ by a factor of two and more, as their droplets do. */
+/* Liquid water of fog, g/m3, from the visibility (2 % contrast, as weather.visibility_m): Kunkel, J. Climate Appl.
+ * Meteor. 23 (1984) 34: extinction = 144.7 W^0.88 per km, of measured advection fogs. Fog is what leaves 1000 m or
+ * less: 0 above, which steps from 0.017 g/m3. NaN below 10 m. Fogs of one visibility differ by a factor of two and
+ * more, as their droplets do. */
 double fog_liquid_g_m3(double visibility_m);
 
 #endif

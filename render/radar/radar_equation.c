@@ -3,8 +3,8 @@
 
 static bool valid(const RadarLink *l)
 {
-    return l->transmitted_w > 0 && l->transmit_gain > 0 && l->receive_gain > 0 && l->wavelength_m > 0 && l->range_m > 0 &&
-           l->loss >= 1;
+    return l->transmitted_w > 0 && l->transmit_gain > 0 && l->receive_gain > 0 && l->wavelength_m > 0 &&
+           l->range_m > 0 && l->loss >= 1;
 }
 
 double radar_received_w(const RadarLink *link, double rcs_m2)
@@ -20,8 +20,8 @@ double complex radar_voltage(const RadarLink *link, double complex scattering_m,
     if (!valid(link)) return CMPLX(NAN, NAN);
     const double waves = 2 * link->range_m / link->wavelength_m;
     const double phase = -2 * pi_rad * (waves - floor(waves)); /* whole waves first: R is a million of them */
-    const double size = sqrt(link->transmitted_w * link->transmit_gain * link->receive_gain / link->loss) * link->wavelength_m /
-                        (4 * pi_rad * link->range_m * link->range_m);
+    const double size = sqrt(link->transmitted_w * link->transmit_gain * link->receive_gain / link->loss) *
+                        link->wavelength_m / (4 * pi_rad * link->range_m * link->range_m);
     return size * CMPLX(cos(phase), sin(phase)) * scattering_m * path;
 }
 

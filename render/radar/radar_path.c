@@ -19,7 +19,7 @@ static double vapour_hpa(double vapour_g_m3, double height_m, double temp_k)
 void radar_air_at(GasState *out, const RadarAir *air, double height_m)
 {
     const double h_m = clamp(height_m, 0, top_m), at = h_m / level_m;
-    const int    i = at < radar_air_levels - 2 ? (int)at : radar_air_levels - 2;
+    const int i = at < radar_air_levels - 2 ? (int)at : radar_air_levels - 2;
     const double w = at - i;
     out->temp_k = air->temp_k[i] + w * (air->temp_k[i + 1] - air->temp_k[i]);
     out->vapour_hpa = vapour_hpa(air->vapour_g_m3, h_m, out->temp_k);
@@ -30,7 +30,7 @@ void radar_air_at(GasState *out, const RadarAir *air, double height_m)
 static double pressure_slope(double hpa, double vapour_g_m3, double height_m, double temp_k)
 {
     static const double g_mps2 = 9.80665, gas_j_kgk = 287.05;
-    const double        r = earth_m / (earth_m + height_m);
+    const double r = earth_m / (earth_m + height_m);
     return -g_mps2 * r * r * (1 - 0.378 * vapour_hpa(vapour_g_m3, height_m, temp_k) / hpa) / (gas_j_kgk * temp_k);
 }
 
@@ -46,11 +46,12 @@ static double zero_celsius_m(const RadarAir *air)
 
 Status radar_air_of(RadarAir *out, const Atmosphere *model, const Weather *weather)
 {
-    RadarAir     air = {0};
-    const double model_k = atmosphere_temp_k(model, 0), ground_k = isnan(weather->air_temp_k) ? model_k : weather->air_temp_k;
+    RadarAir air = {0};
+    const double model_k = atmosphere_temp_k(model, 0),
+                 ground_k = isnan(weather->air_temp_k) ? model_k : weather->air_temp_k;
     const double p_hpa = weather->pressure_mbar;
-    if (!(ground_k >= 150 && ground_k <= 350 && p_hpa > 0 && p_hpa <= 1200 && weather->humidity >= 0 && weather->humidity <= 1 &&
-          weather->rain_mm_h >= 0 && weather->rain_mm_h <= 300))
+    if (!(ground_k >= 150 && ground_k <= 350 && p_hpa > 0 && p_hpa <= 1200 && weather->humidity >= 0 &&
+          weather->humidity <= 1 && weather->rain_mm_h >= 0 && weather->rain_mm_h <= 300))
         return STATUS_BAD_VALUE;
     const double e_hpa = weather->humidity * 0.01 * weather_saturation_pa(ground_k);
     if (!(e_hpa <= 150 && e_hpa <= 0.5 * p_hpa)) return STATUS_BAD_VALUE;
@@ -84,7 +85,8 @@ typedef struct Line {
 
 static Line line_of(const RadarPath *path)
 {
-    Line line = {.length_m = fmax(path->range_m, fabs(path->a_m - path->b_m)), .low_m2 = path->a_m * (2 * earth_m + path->a_m)};
+    Line line = {.length_m = fmax(path->range_m, fabs(path->a_m - path->b_m)),
+                 .low_m2 = path->a_m * (2 * earth_m + path->a_m)};
     if (line.length_m > 0)
         line.slope_m = (path->b_m - path->a_m) * (2 * earth_m + path->a_m + path->b_m) / line.length_m - line.length_m;
     return line;
@@ -112,10 +114,10 @@ static Span below(const Line *line, double height_m)
 
 typedef struct Walk {
     const RadarPath *path;
-    const GasLines  *lines;
-    const RadarAir  *air;
-    Line             line;
-    int              fine;
+    const GasLines *lines;
+    const RadarAir *air;
+    Line line;
+    int fine;
 } Walk;
 
 /* Gauss-Legendre, three points, over [-1, 1]. */
@@ -127,20 +129,22 @@ static int panels(const Walk *walk, Span span)
 {
     static const double panel_height_m = 250, panel_length_m = 10000;
     const double mid_m = 0.5 * (span.from_m + span.to_m), middle = line_height_m(&walk->line, mid_m);
-    const double change_m = fabs(line_height_m(&walk->line, span.from_m) - middle) + fabs(line_height_m(&walk->line, span.to_m) - middle);
+    const double change_m =
+        fabs(line_height_m(&walk->line, span.from_m) - middle) + fabs(line_height_m(&walk->line, span.to_m) - middle);
     return walk->fine * (int)(1 + fmax(change_m / panel_height_m, (span.to_m - span.from_m) / panel_length_m));
 }
 
 static void add_gas(RadarLoss *out, const Walk *walk, Span span)
 {
-    const int    count = panels(walk, span);
+    const int count = panels(walk, span);
     const double half_m = 0.5 * (span.to_m - span.from_m) / count;
-    double       ppm_m = 0;
+    double ppm_m = 0;
     for (int i = 0; i < count; i++)
         for (int g = 0; g < 3; g++) {
-            GasState       state;
+            GasState state;
             GasAttenuation gas;
-            radar_air_at(&state, walk->air, line_height_m(&walk->line, span.from_m + half_m * (2 * i + 1 + gauss_x[g])));
+            radar_air_at(&state, walk->air,
+                         line_height_m(&walk->line, span.from_m + half_m * (2 * i + 1 + gauss_x[g])));
             gas_attenuation(&gas, walk->lines, walk->path->f_ghz, &state);
             out->dry_db += gauss_w[g] * half_m * 1e-3 * gas.dry_db_km;
             out->wet_db += gauss_w[g] * half_m * 1e-3 * gas.wet_db_km;
@@ -152,13 +156,14 @@ static void add_gas(RadarLoss *out, const Walk *walk, Span span)
 static double liquid_db(const Walk *walk, Span span, double g_m3)
 {
     if (!(span.to_m > span.from_m)) return 0;
-    const int    count = panels(walk, span);
+    const int count = panels(walk, span);
     const double half_m = 0.5 * (span.to_m - span.from_m) / count;
-    double       db = 0;
+    double db = 0;
     for (int i = 0; i < count; i++)
         for (int g = 0; g < 3; g++) {
             GasState state;
-            radar_air_at(&state, walk->air, line_height_m(&walk->line, span.from_m + half_m * (2 * i + 1 + gauss_x[g])));
+            radar_air_at(&state, walk->air,
+                         line_height_m(&walk->line, span.from_m + half_m * (2 * i + 1 + gauss_x[g])));
             if (state.temp_k < radar_frozen_k) continue;
             db += gauss_w[g] * half_m * 1e-3 * g_m3 * cloud_attenuation(walk->path->f_ghz, state.temp_k);
         }
@@ -177,11 +182,11 @@ void radar_path_loss_fine(RadarLoss *out, const RadarPath *path, const GasLines 
     if (!(line->length_m > 0)) return;
     add_gas(out, &walk, (Span){0, line->length_m});
 
-    const Span   wet = below(line, air->rain_top_m);
+    const Span wet = below(line, air->rain_top_m);
     const double elevation_rad = asin(clamp((path->b_m - path->a_m) / line->length_m, -1, 1));
     if (air->rain_mm_h > 0 && wet.to_m > wet.from_m)
-        out->rain_db =
-            1e-3 * (wet.to_m - wet.from_m) * rain_attenuation(path->f_ghz, air->rain_mm_h, elevation_rad, path->tilt_rad);
+        out->rain_db = 1e-3 * (wet.to_m - wet.from_m) *
+                       rain_attenuation(path->f_ghz, air->rain_mm_h, elevation_rad, path->tilt_rad);
 
     for (int i = 0; i < radar_air_liquids; i++) {
         const RadarLiquid *layer = &air->liquid[i];
