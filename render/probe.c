@@ -1,4 +1,6 @@
 /* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere, heat and radar for rows of CSV. */
+/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere, heat and radar clutter for rows of
+ * CSV. */
 #include "render/probe.h"
 
 #include "entities/import/model_import.h"
@@ -222,5 +224,19 @@ const Probe render_probes[] = {
      .in = "target$,f_ghz,az_deg,el_deg,range_m?,rx_az_deg?,rx_el_deg?",
      .out = "hh_dbsm,hv_dbsm,vh_dbsm,vv_dbsm,hh_re_m,hh_im_m,hv_re_m,hv_im_m,vh_re_m,vh_im_m,vv_re_m,vv_im_m",
      .open = rcs_probe_open, .row = rcs_probe_row, .close = rcs_probe_close},
+    {.name = "clutter",
+     .help = "what ground sends back to a radar, by etc/radar/clutter.csv: backscatter by area, shape of the texture (0: "
+             "Rayleigh), internal motion in wind (share of the power that is still, spread of the exponential spectrum, rms "
+             "Doppler width of the moving part), loss of a path through foliage (1 m), one way, and its backscatter by volume",
+     .in = "surface$,frequency_ghz,grazing_deg,wind_mps?,depth_m?",
+     .out = "sigma0_vv_db,sigma0_hh_db,sigma0_hv_db,rho,nu,texture_m,still,spread_mps,width_hz,foliage_db,volume_1_m",
+     .open = clutter_probe_open, .row = clutter_probe_row, .close = clutter_probe_close},
+    {.name = "clutter-cell",
+     .help = "scattering of one resolution cell of level ground, the square of side_m (1) that holds x, y, summed over its 16 "
+             "scatterers about its middle, m; relative: intensity over its mean. A row a place for the distribution, a row a "
+             "time or azimuth (of the antenna, clockwise from north) for the correlation",
+     .in = "surface$,frequency_ghz,grazing_deg,x_m,y_m,side_m?,azimuth_deg?,wind_mps?,t_s?,seed?",
+     .out = "vv_re,vv_im,hh_re,hh_im,hv_re,hv_im,relative",
+     .open = clutter_probe_open, .row = clutter_cell_probe_row, .close = clutter_probe_close},
 };
 const int render_probe_count = sizeof render_probes / sizeof *render_probes;

@@ -19,5 +19,9 @@ const char *radar_equation_probe_row(void *state, const ProbeValue *in, ProbeVal
 Status      rcs_probe_open(void **state, int argc, char **argv);
 const char *rcs_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
 void        rcs_probe_close(void *state);
+Status      clutter_probe_open(void **state, int argc, char **argv); /* of both */
+const char *clutter_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
+const char *clutter_cell_probe_row(void *state, const ProbeValue *in, ProbeValue *out);
+void        clutter_probe_close(void *state);
 
 #endif

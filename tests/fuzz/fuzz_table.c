@@ -11,6 +11,7 @@
 #include "render/heat/part_table.h"
 #include "render/materials/materials.h"
 #include "render/radar/gas_attenuation.h"
+#include "render/radar/clutter_table.h"
 #include "sensor/detector/sheet.h"
 
 #include <stdlib.h>
@@ -23,6 +24,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
     static const char *const name[] = {"catalog.csv",  "heat.csv",     "effects.csv",
                                        "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet",
                                        "radar/oxygen_lines.csv", "radar/water_lines.csv"};
+                                       "radar/clutter.csv"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
     switch (index % (names + 3)) {
@@ -138,6 +140,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             materials_close(&materials);
         if (table_column(&table, "surface") >= 0 && materials_open(&materials, materials_path, path, NULL) == STATUS_OK)
             materials_close(&materials);
+        static ClutterTable clutter;
+        if (table_column(&table, "texture_m") >= 0 && clutter_table_open(&clutter, path) == STATUS_OK)
+            for (int surface = 0; surface < SURFACE_COUNT; surface++)
+                for (int band = 0; band < CLUTTER_BAND_COUNT; band++) {
+                    const ClutterRow *row = &clutter.row[surface][band];
+                    if (!(clutter_sigma0(row, 0.1, 0.003) >= 0 && clutter_texture(row, 8) >= 0 && clutter_foliage_db(row, 9) >= 0))
+                        abort();
+                }
         table_close(&table);
     }
     close(file);

@@ -116,5 +116,20 @@ near "10 dBsm at 3 km, dBW" "$(cell 1 received_dbw)" -121.98728 0.0001
 near "noise" "$(cell 1 noise_dbw)" -117.97519 0.0001
 near "3 dB of loss" "$(cell 2 snr_db)" -7.0121 0.0001
 check "no range, no echo" test -n "$(cell 3 error)"
+# radar clutter: grass at 16 GHz is -15 dB + 5 log10(1.6) of sin(30 deg), by etc/radar/clutter.csv; and 4000 resolution cells of
+# soil, a kilometre of them, whose intensity has the mean and the second moment, 2 (1 + 1 / nu), of a K distribution
+probe clutter < <(printf 'surface,frequency_ghz,grazing_deg,wind_mps\ngrass,16,30,0\nforest_broadleaf,35,30,8\nlava,35,30,0\ngrass,20,30,0\ngrass,16,0,0\n')
+near "sigma0 of grass" "$(cell 1 sigma0_vv_db)" -16.99 0.06
+near "without wind all is still" "$(cell 1 still)" 1 0
+near "trees in 8 m/s: 1/beta" "$(cell 2 spread_mps)" 0.17474 0.0001
+near "and its rms Doppler" "$(cell 2 width_hz)" 57.70 0.1
+near "a metre of leaves at 35 GHz" "$(cell 2 foliage_db)" 1.235 0.006
+for row in 3 4 5; do check "clutter: row $row says why not" test -n "$(cell $row error)" -a -z "$(cell $row sigma0_vv_db)"; done
+probe clutter-cell < <(echo surface,frequency_ghz,grazing_deg,x_m,y_m,t_s
+    awk 'BEGIN { for (i = 0; i < 4000; i++) print "bare_soil,94,20," 8 * (i % 80) "," 8 * int(i / 80) ",0"; print "bare_soil,94,20,0,0,1e6" }')
+check "clutter-cell: moments of K with nu = 12" awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "relative") c = i }
+    NR > 1 && NR <= 4001 { n++; m += $c; q += $c * $c }
+    END { m /= n; q /= n; exit !(n == 4000 && m > 0.93 && m < 1.07 && q / m / m > 1.9 && q / m / m < 2.45) }' "$tmp/stdout"
+check "clutter-cell: no wind, no change" test "$(cell 1 vv_re)" = "$(cell 4001 vv_re)" -a -n "$(cell 1 vv_re)"
 
 finish
