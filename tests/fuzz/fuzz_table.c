@@ -23,8 +23,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const char *const name[] = {"catalog.csv",  "heat.csv",     "effects.csv",
                                        "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet",
-                                       "radar/oxygen_lines.csv", "radar/water_lines.csv"};
-                                       "radar/clutter.csv"};
+                                       "radar/oxygen_lines.csv", "radar/water_lines.csv", "radar/clutter.csv"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
     switch (index % (names + 3)) {
