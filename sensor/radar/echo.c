@@ -12,12 +12,14 @@ static const double beta = 2.30 * width; /* Barnett et al., equation 1.14, for t
 
 struct EchoGrid {
     int        samples, points, pulses;
-    double     wave_rad_m, step_rad_m;  /* of a metre of path: at the centre; a sample further */
+    double     wave_rad_m;              /* of a metre of path, at the centre */
     double     points_per_m;
-    double    *grid;                    /* [pulses][points] complex */
+    double    *grid;                    /* [channels][pulses][points] complex */
     double    *correction;              /* [samples]: over the kernel's transform */
     Transform *transform;
 };
+
+static size_t grid_size(const EchoGrid *g) { return 2 * (size_t)interval_channels * (size_t)g->pulses * (size_t)g->points; }
 
 /* |x| <= 1 is its support. */
 static double kernel(double x)
@@ -39,29 +41,32 @@ static double kernel_transform(double rad_per_point)
     return sum / points * width;
 }
 
-Status echo_grid_create(EchoGrid **out, int samples, int pulses, double centre_hz, double step_hz)
+static void clear(EchoGrid *g) { memset(g->grid, 0, grid_size(g) * sizeof *g->grid); }
+
+Status echo_grid_create(EchoGrid **out, const Waveform *wave)
 {
-    if (samples < 8 || samples > 65536 || samples % 2 || pulses < 1 || pulses > 4096 || samples > (1 << 24) / pulses ||
-        !(centre_hz > 0) || !(step_hz > 0))
+    const int    samples = wave->samples, pulses = wave->pulses;
+    const double step_hz = wave->bandwidth_hz / samples;
+    if (samples < 8 || samples > 65536 || samples % 2 || pulses < 1 || pulses > 4096 || samples > (1 << 22) / pulses ||
+        !(wave->centre_hz > 0) || !(step_hz > 0))
         return STATUS_BAD_VALUE;
     EchoGrid *g = calloc(1, sizeof *g);
     if (!g) return STATUS_NO_MEMORY;
     g->samples = samples;
     g->points = oversampling * samples;
     g->pulses = pulses;
-    g->wave_rad_m = 2 * pi_rad * centre_hz / light_mps;
-    g->step_rad_m = 2 * pi_rad * step_hz / light_mps;
+    g->wave_rad_m = 2 * pi_rad * wave->centre_hz / light_mps;
     g->points_per_m = step_hz * g->points / light_mps;
-    g->grid = transform_alloc(2 * (size_t)pulses * (size_t)g->points);
+    g->grid = transform_alloc(grid_size(g));
     g->correction = malloc((size_t)samples * sizeof *g->correction);
     if (!g->grid || !g->correction ||
-        transform_create(&g->transform, TRANSFORM_ROWS, pulses, g->points, g->grid, g->grid) != STATUS_OK) {
+        transform_create(&g->transform, TRANSFORM_ROWS, interval_channels * pulses, g->points, g->grid, g->grid) != STATUS_OK) {
         echo_grid_destroy(g);
         return STATUS_NO_MEMORY;
     }
     for (int m = 0; m < samples; m++)
         g->correction[m] = 1 / kernel_transform(2 * pi_rad * (m - samples / 2) / g->points);
-    echo_grid_clear(g);
+    clear(g);
     *out = g;
     return STATUS_OK;
 }
@@ -75,8 +80,6 @@ void echo_grid_destroy(EchoGrid *g)
     free(g);
 }
 
-void echo_grid_clear(EchoGrid *g) { memset(g->grid, 0, 2 * (size_t)g->pulses * (size_t)g->points * sizeof *g->grid); }
-
 /* Weights of the points from the first on that a path is spread over. */
 static int spread(double weight[width], const EchoGrid *g, double path_m)
 {
@@ -87,47 +90,65 @@ static int spread(double weight[width], const EchoGrid *g, double path_m)
     return round < g->points ? (int)round : 0;
 }
 
-static void deposit(EchoGrid *g, int pulse, int first, const double weight[width], double complex a)
+static void deposit(double *row, int points, int first, const double weight[width], double complex a)
 {
-    double *row = g->grid + 2 * (size_t)pulse * (size_t)g->points;
     const double re = creal(a), im = cimag(a);
     for (int i = 0; i < width; i++) {
         int at = first + i;
-        if (at >= g->points) at -= g->points;
+        if (at >= points) at -= points;
         row[2 * at] += re * weight[i];
         row[2 * at + 1] += im * weight[i];
     }
 }
 
-void echo_add(EchoGrid *g, int pulse, double path_m, double complex amplitude)
-{
-    double    weight[width];
-    const int first = spread(weight, g, path_m);
-    deposit(g, pulse, first, weight, amplitude * cexp(-I * g->wave_rad_m * path_m));
-}
+typedef struct Job {
+    EchoGrid   *grid;
+    const Echo *echo;
+    int         count;
+} Job;
 
-void echo_add_train(EchoGrid *g, double path_m, double path_per_pulse_m, double complex amplitude)
-{
-    enum { restart = 64 }; /* phasors are turned by products, and made anew after so many: 1e-14 */
-    double               weight[width];
-    const int            first = spread(weight, g, path_m + 0.5 * (g->pulses - 1) * path_per_pulse_m);
-    const double complex turn = cexp(-I * g->wave_rad_m * path_per_pulse_m);
-    double complex       a = 0;
-    for (int p = 0; p < g->pulses; p++) {
-        a = p % restart ? a * turn : amplitude * cexp(-I * g->wave_rad_m * (path_m + p * path_per_pulse_m));
-        deposit(g, p, first, weight, a);
-    }
-}
+enum { block_pulses = 8 }; /* of a task, which has them to itself */
 
-void echo_voltages(double complex *out, EchoGrid *g)
+static void add_block(void *user, int worker, int task)
 {
-    transform_run(g->transform);
-    for (int p = 0; p < g->pulses; p++) {
-        const double *row = g->grid + 2 * (size_t)p * (size_t)g->points;
-        for (int m = 0; m < g->samples; m++) {
-            const int at = (m - g->samples / 2 + g->points) % g->points;
-            out[(size_t)p * (size_t)g->samples + (size_t)m] = (row[2 * at] + I * row[2 * at + 1]) * g->correction[m];
+    const Job *job = user;
+    EchoGrid  *g = job->grid;
+    const int  first_pulse = task * block_pulses, end = first_pulse + block_pulses < g->pulses ? first_pulse + block_pulses : g->pulses;
+    const double middle = 0.5 * (g->pulses - 1);
+    (void)worker;
+    for (int k = 0; k < job->count; k++) {
+        const Echo          *e = &job->echo[k];
+        double               weight[width];
+        const int            first = spread(weight, g, e->path_m);
+        const double complex turn = cexp(-I * g->wave_rad_m * e->path_per_pulse_m);
+        double complex       phase = cexp(-I * g->wave_rad_m * (e->path_m + (first_pulse - middle) * e->path_per_pulse_m));
+        for (int p = first_pulse; p < end; p++) {
+            for (int c = 0; c < interval_channels; c++)
+                if (e->amplitude[c] != 0)
+                    deposit(g->grid + 2 * ((size_t)c * (size_t)g->pulses + (size_t)p) * (size_t)g->points, g->points, first, weight,
+                            e->amplitude[c] * phase);
+            phase *= turn;
         }
     }
-    echo_grid_clear(g);
+}
+
+void echo_add(EchoGrid *g, const Echo *echo, int count, Pool *pool)
+{
+    Job       job = {g, echo, count};
+    const int tasks = (g->pulses + block_pulses - 1) / block_pulses;
+    if (pool) pool_run(pool, tasks, add_block, &job);
+    else for (int t = 0; t < tasks; t++) add_block(&job, 0, t);
+}
+
+void echo_sum(double complex *sample, EchoGrid *g)
+{
+    transform_run(g->transform);
+    for (int row = 0; row < interval_channels * g->pulses; row++) {
+        const double *from = g->grid + 2 * (size_t)row * (size_t)g->points;
+        for (int m = 0; m < g->samples; m++) {
+            const int at = (m - g->samples / 2 + g->points) % g->points;
+            sample[(size_t)row * (size_t)g->samples + (size_t)m] = (from[2 * at] + I * from[2 * at + 1]) * g->correction[m];
+        }
+    }
+    clear(g);
 }

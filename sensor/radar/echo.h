@@ -7,29 +7,32 @@
  *     a exp(-j 2 pi f_m path / c)
  *
  * Paths beyond half of c / step, either way, fold over as they do in a real receiver: leave those out that the gate cuts.
+ * Over the pulses the path grows evenly: its phase exactly, its delay taken at the middle of the interval, for paths that change by
+ * a small part of c / (step samples) in all.
  * Sums are by gridding: each echo is spread over 8 points of a delay grid of twice the samples, which is transformed and divided by the
  * kernel's transform ("exponential of semicircle": Barnett, Magland & af Klinteberg, SIAM J. Sci. Comput. 41(5), 2019). Error
- * below 1e-6 of the sum of amplitudes (tests/sensor/test_echo.c). Sums are in the order of the calls. */
+ * below 1e-6 of the sum of amplitudes (tests/sensor/test_echo.c). Sums are in the order of the echoes, for any number of
+ * threads. */
 #ifndef SENSOR_RADAR_ECHO_H
 #define SENSOR_RADAR_ECHO_H
 
-#include "pitviper.h"
+#include "sensor/radar/interval.h"
 
 #include <complex.h>
 
+typedef struct Echo {
+    double path_m, path_per_pulse_m; /* in the middle of the interval; from pulse to pulse */
+    double complex amplitude[interval_channels];
+} Echo;
+
 typedef struct EchoGrid EchoGrid;
 
-/* samples: even, 8 .. 65536; pulses 1 .. 4096; at most 2^24 of both. */
-Status echo_grid_create(EchoGrid **out, int samples, int pulses, double centre_hz, double step_hz);
+/* For wave->samples 8 .. 65536, pulses 1 .. 4096, at most 2^22 of both. */
+Status echo_grid_create(EchoGrid **out, const Waveform *wave);
 void   echo_grid_destroy(EchoGrid *grid); /* accepts NULL */
-/* Forgets all echoes. */
-void   echo_grid_clear(EchoGrid *grid);
-/* One echo in one pulse. */
-void   echo_add(EchoGrid *grid, int pulse, double path_m, double complex amplitude);
-/* The same echo in all pulses, its path growing by path_per_pulse_m, with the delay of the middle pulse in all: for paths that change
- * by a small part of c / (step samples) in all. Phases are exact. */
-void   echo_add_train(EchoGrid *grid, double path_m, double path_per_pulse_m, double complex amplitude);
-/* out[pulses][samples]. */
-void   echo_voltages(double complex *out, EchoGrid *grid);
+/* Adds to those of earlier calls. pool may be NULL. */
+void   echo_add(EchoGrid *grid, const Echo *echo, int count, Pool *pool);
+/* sample[channels][pulses][samples] of all that were added; forgets them. */
+void   echo_sum(double complex *sample, EchoGrid *grid);
 
 #endif

@@ -25,20 +25,15 @@ static const double  reference_m = 3000, power_w = 15, loss = 3;
 static void add_points(Interval *interval, const Point *point, int count)
 {
     EchoGrid *grid;
-    CHECK(echo_grid_create(&grid, samples, pulses, wave.centre_hz, wave.bandwidth_hz / samples) == STATUS_OK);
-    for (int c = 0; c < interval_channels; c++) {
-        for (int i = 0; i < count; i++) {
-            const Point      *p = &point[i];
-            const AntennaGain g = antenna_gain(&dish, p->cos_right, p->cos_down);
-            const double      receive[] = {g.sum, g.right, g.down, 0};
-            const RadarLink   link = {power_w, 1, 1, dish.wavelength_m, reference_m + p->range_m, loss};
-            const double      a = sqrt(radar_received_w(&link, p->rcs_m2));
-            for (int n = 0; n < pulses; n++) /* the middle of the interval is where ranges are meant */
-                echo_add(grid, n, 2 * (p->range_m + p->range_rate_mps * (n - 0.5 * (pulses - 1)) / wave.repeat_hz),
-                         a * g.sum * receive[c] * cexp(I * p->phase_rad));
-        }
-        echo_voltages(interval->sample + (size_t)c * cells, grid);
+    CHECK(echo_grid_create(&grid, &wave) == STATUS_OK);
+    for (int i = 0; i < count; i++) {
+        const Point      *p = &point[i];
+        const AntennaGain g = antenna_gain(&dish, p->cos_right, p->cos_down);
+        const RadarLink   link = {power_w, 1, 1, dish.wavelength_m, reference_m + p->range_m, loss};
+        const double complex a = sqrt(radar_received_w(&link, p->rcs_m2)) * g.sum * cexp(I * p->phase_rad);
+        echo_add(grid, &(Echo){2 * p->range_m, 2 * p->range_rate_mps / wave.repeat_hz, {a * g.sum, a * g.right, a * g.down, 0}}, 1, NULL);
     }
+    echo_sum(interval->sample, grid);
     echo_grid_destroy(grid);
 }
 
