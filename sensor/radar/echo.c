@@ -41,7 +41,7 @@ static double kernel_transform(double rad_per_point)
     return sum / points * width;
 }
 
-static void clear(EchoGrid *g) { memset(g->grid, 0, grid_size(g) * sizeof *g->grid); }
+void echo_forget(EchoGrid *g) { memset(g->grid, 0, grid_size(g) * sizeof *g->grid); }
 
 Status echo_grid_create(EchoGrid **out, const Waveform *wave)
 {
@@ -66,7 +66,7 @@ Status echo_grid_create(EchoGrid **out, const Waveform *wave)
     }
     for (int m = 0; m < samples; m++)
         g->correction[m] = 1 / kernel_transform(2 * pi_rad * (m - samples / 2) / g->points);
-    clear(g);
+    echo_forget(g);
     *out = g;
     return STATUS_OK;
 }
@@ -150,5 +150,5 @@ void echo_sum(double complex *sample, EchoGrid *g)
             sample[(size_t)row * (size_t)g->samples + (size_t)m] = (from[2 * at] + I * from[2 * at + 1]) * g->correction[m];
         }
     }
-    clear(g);
+    echo_forget(g);
 }

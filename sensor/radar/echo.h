@@ -34,5 +34,6 @@ void   echo_grid_destroy(EchoGrid *grid); /* accepts NULL */
 void   echo_add(EchoGrid *grid, const Echo *echo, int count, Pool *pool);
 /* sample[channels][pulses][samples] of all that were added; forgets them. */
 void   echo_sum(double complex *sample, EchoGrid *grid);
+void   echo_forget(EchoGrid *grid);
 
 #endif

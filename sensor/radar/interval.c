@@ -102,6 +102,8 @@ void interval_process(RangeDoppler *out, IntervalPlan *p, const Interval *in)
     }
 }
 
+double interval_noise_share(const IntervalPlan *p) { return p->noise_share; }
+
 double interval_lobe(const IntervalPlan *p, bool doppler, double cells)
 {
     const int     count = doppler ? p->pulses : p->samples;
@@ -109,6 +111,13 @@ double interval_lobe(const IntervalPlan *p, bool doppler, double cells)
     double        sum = 0;
     for (int i = 0; i < count; i++) sum += weight[i] * cos(turn * (i - middle));
     return sum;
+}
+
+void interval_pulse(double complex *out, IntervalPlan *p, const Interval *in, int channel, int pulse)
+{
+    compress(p, in->sample + (size_t)channel * (size_t)p->samples * (size_t)p->pulses);
+    const double *row = p->rows + 2 * (size_t)pulse * (size_t)p->samples;
+    for (int m = 0; m < p->samples; m++) out[m] = row[2 * m] + I * row[2 * m + 1];
 }
 
 void interval_profile(double *profile, IntervalPlan *p, const Interval *in, int channel)

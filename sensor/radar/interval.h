@@ -41,8 +41,12 @@ Status interval_plan_create(IntervalPlan **out, const Waveform *wave, const Wind
 void   interval_plan_destroy(IntervalPlan *plan); /* accepts NULL */
 /* out->cell: [channels][pulses][samples]; the rest is filled. */
 void   interval_process(RangeDoppler *out, IntervalPlan *plan, const Interval *in);
+/* Of a map: RangeDoppler.noise_share. */
+double interval_noise_share(const IntervalPlan *plan);
 /* Amplitude at an offset in cells of the response to a point, 1 at 0, over range or over Doppler. */
 double interval_lobe(const IntervalPlan *plan, bool doppler, double cells);
+/* Complex range profile of one pulse: out[samples]. */
+void   interval_pulse(double complex *out, IntervalPlan *plan, const Interval *in, int channel, int pulse);
 /* Range profile of one channel over all pulses, without Doppler: profile[samples], mean power over pulses. */
 void   interval_profile(double *profile, IntervalPlan *plan, const Interval *in, int channel);
 

@@ -1,0 +1,140 @@
+/* sensor/publish/consume_radar.c: the consumer that writes OUT/radar: range profiles, maps of range and Doppler. */
+#include "sensor/publish/consumers.h"
+
+#include "sensor/publish/image_file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+typedef struct RadarFiles {
+    Consumer     consumer;
+    PictureFiles of;
+    RetryBackoff retry;
+} RadarFiles;
+
+static const char *const channel_name[interval_channels] = {"sum", "right", "down", "cross"};
+
+static bool path_of(char path[frame_path_size], const RadarFiles *to, const Frame *f, const char *ending)
+{
+    const int size = snprintf(path, frame_path_size, "%s/radar/%06d.%s", to->of.out, f->number, ending);
+    if (size >= 0 && size < frame_path_size) return true;
+    log_error("out: a path of %d characters is too long; choose another place with --out", size);
+    return false;
+}
+
+/* ---- range profile -------------------------------------------------------------------------------- */
+
+static Status write_profile(const char *path, const RadarFrame *r)
+{
+    FILE *file = fopen(path, "w");
+    if (!file) {
+        log_error("radar: cannot write %s: %s", path, strerror(errno));
+        return STATUS_IO;
+    }
+    const int samples = r->preset->wave.samples;
+    fprintf(file, "# %s; power: mean of all pulses, W; re, im: the middle pulse, sqrt(W), of the transmitted polarisation (%s) and of "
+                  "the other; relative to the noise of %.6g W\nrange_m,power_w,re,im,cross_re,cross_im\n",
+            r->preset->name, r->preset->transmits_h ? "h" : "v", r->receiver.noise_w * r->map.noise_share * r->preset->wave.pulses);
+    for (int i = 0; i < samples; i++) {
+        const double complex same = r->profile[i], cross = r->profile[samples + i];
+        fprintf(file, "%.4f,%.6g,%.6g,%.6g,%.6g,%.6g\n", r->reference_m + (i - samples / 2) * r->map.metre_per_column,
+                r->profile_w[i], creal(same), cimag(same), creal(cross), cimag(cross));
+    }
+    const bool ok = !ferror(file);
+    if (fclose(file) == 0 && ok) return STATUS_OK;
+    log_error("radar: cannot write %s: %s", path, strerror(errno));
+    return STATUS_IO;
+}
+
+/* ---- map ------------------------------------------------------------------------------------------- */
+
+static Status write_map(const char *path, const Frame *f)
+{
+    const RadarFrame *r = f->radar;
+    const int         rows = r->map.rows, columns = r->map.columns;
+    const size_t      cells = (size_t)rows * (size_t)columns;
+    float            *value = malloc(2 * interval_channels * cells * sizeof *value);
+    Plane             plane[2 * interval_channels];
+    char              name[2 * interval_channels][16];
+    if (!value) return STATUS_NO_MEMORY;
+    for (int c = 0; c < interval_channels; c++)
+        for (int part = 0; part < 2; part++) {
+            float *to = value + (size_t)(2 * c + part) * cells;
+            for (size_t i = 0; i < cells; i++) {
+                const double complex v = r->map.cell[(size_t)c * cells + i];
+                to[i] = (float)(part ? cimag(v) : creal(v));
+            }
+            snprintf(name[2 * c + part], sizeof name[0], "%s_%s", channel_name[c], part ? "im" : "re");
+            plane[2 * c + part] = (Plane){name[2 * c + part], PLANE_F32, columns, rows, to};
+        }
+    const ImageAttribute attribute[] = {
+        image_string("unit", "sqrt(W)"), image_string("radar", r->preset->name), image_int("frame", f->number),
+        image_double("time_s", f->time_s), image_string("host", f->host), image_double("reference_m", r->reference_m),
+        image_double("reference_rate_mps", r->reference_rate_mps), image_double("metre_per_column", r->map.metre_per_column),
+        image_double("mps_per_row", r->map.mps_per_row), image_double("noise_w", r->receiver.noise_w * r->map.noise_share)};
+    const Status status =
+        image_write_exr_as(path, "zip:1", plane, 2 * interval_channels, NULL, attribute, sizeof attribute / sizeof *attribute);
+    free(value);
+    return status;
+}
+
+/* Power of the sum channel in decibels: black at 5 dB below the noise, white at the greatest, or 40 dB above that. */
+static Status write_picture(const char *path, const RadarFrame *r)
+{
+    const size_t cells = (size_t)r->map.rows * (size_t)r->map.columns;
+    uint8_t     *grey = malloc(cells);
+    if (!grey) return STATUS_NO_MEMORY;
+    double most = 0;
+    for (size_t i = 0; i < cells; i++) most = fmax(most, creal(r->map.cell[i] * conj(r->map.cell[i])));
+    const double noise_db = 10 * log10(r->receiver.noise_w * r->map.noise_share) - 5;
+    const double span_db = fmax(10 * log10(most) - noise_db, 45);
+    for (size_t i = 0; i < cells; i++) {
+        const double power_db = 10 * log10(creal(r->map.cell[i] * conj(r->map.cell[i])));
+        grey[i] = (uint8_t)lround(255 * clamp((power_db - noise_db) / span_db, 0, 1));
+    }
+    const Status status = image_write_png(path, grey, r->map.columns, r->map.rows, 1, 8);
+    free(grey);
+    return status;
+}
+
+/* ---- the consumer ------------------------------------------------------------------------------------ */
+
+static Status write_files(RadarFiles *to, const Frame *f)
+{
+    char   path[frame_path_size];
+    Status status = path_of(path, to, f, "csv") ? write_profile(path, f->radar) : STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = path_of(path, to, f, "exr") ? write_map(path, f) : STATUS_BAD_VALUE;
+    if (status == STATUS_OK && to->of.config->publish.png)
+        status = path_of(path, to, f, "png") ? write_picture(path, f->radar) : STATUS_BAD_VALUE;
+    return status;
+}
+
+static Status put(Consumer *consumer, Frame *frame)
+{
+    RadarFiles *to = (RadarFiles *)consumer;
+    if (!frame->radar) return STATUS_OK;
+    const bool due = !to->of.patient || retry_due(&to->retry);
+    Status     status = due ? write_files(to, frame) : STATUS_IO;
+    if (!to->of.patient) return status;
+    retry_done(&to->retry, due, status);
+    return status == STATUS_IO ? STATUS_OK : status;
+}
+
+static Status close_files(Consumer *consumer)
+{
+    free(consumer);
+    return STATUS_OK;
+}
+
+Status consume_radar(Consumer **out, const PictureFiles *made_of)
+{
+    char        path[frame_path_size];
+    RadarFiles *to = calloc(1, sizeof *to);
+    if (!to) return STATUS_NO_MEMORY;
+    *to = (RadarFiles){.consumer = {0, put, NULL, close_files, "radar_files"}, .of = *made_of, .retry = {.what = "files of the radar"}};
+    Status status = snprintf(path, sizeof path, "%s/radar", made_of->out) < (int)sizeof path ? STATUS_OK : STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = frame_files_folder(path);
+    if (status == STATUS_OK) *out = &to->consumer;
+    else free(to);
+    return status;
+}
