@@ -9,6 +9,7 @@
 #include "sensor/commands/inspect.h"
 #include "sensor/node/live.h"
 #include "sensor/commands/model.h"
+#include "sensor/commands/rcs.h"
 #include "sensor/commands/record.h"
 #include "sensor/commands/replay.h"
 #include "sensor/commands/terrain.h"
@@ -111,6 +112,7 @@ static const struct Command {
     {"record", record_command, "record an exercise from the network", false},
     {"model", model_command, "list models; describe or draw one, built in or from a file", true},
     {"heat", heat_command, "a vehicle's temperatures over a clear day: table, plot and thermal images", true},
+    {"rcs", rcs_command, "a target's radar cross section over aspect: table, polar plot and a radar image", true},
     {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true},
     {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false},
     {"bench", run_bench, "benchmark this build on this machine: times with their errors", true},

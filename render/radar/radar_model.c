@@ -6,19 +6,14 @@
 
 Status radar_model_open(RadarModel *out, const char *name, const RadarMaterials *materials, double sag_m)
 {
-    RadarModel  m = {0};
     ModelImport report;
     bool        imported;
-    Status      status = shape_is_named(name) ? shape_build(&m.model, name, sag_m)
-                                              : model_open(&m.model, &report, &imported, name, sag_m);
-    if (status == STATUS_OK) status = radar_target_create(&m.target, &m.model, materials, "avx2");
-    if (status != STATUS_OK) {
-        model_destroy(&m.model);
-        return status;
-    }
-    *out = m;
-    out->target->model = &out->model;
-    return STATUS_OK;
+    *out = (RadarModel){0};
+    Status status = shape_is_named(name) ? shape_build(&out->model, name, sag_m)
+                                         : model_open(&out->model, &report, &imported, name, sag_m);
+    if (status == STATUS_OK) status = radar_target_create(&out->target, &out->model, materials, "avx2");
+    if (status != STATUS_OK) radar_model_close(out);
+    return status;
 }
 
 void radar_model_close(RadarModel *m)

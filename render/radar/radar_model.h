@@ -4,6 +4,7 @@
 
 #include "render/radar/target.h"
 
+/* Stays where it was opened: the target points to the model. */
 typedef struct RadarModel {
     Model        model;
     RadarTarget *target;

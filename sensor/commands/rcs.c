@@ -1,0 +1,225 @@
+/* sensor/commands/rcs.c: `pitviper rcs`: the command line, the files and the summary of a target's radar cross section. */
+#include "sensor/commands/rcs.h"
+
+#include "sensor/commands/rcs_sweep.h"
+#include "sensor/node/overwrite.h"
+
+#include <errno.h>
+#include <sys/stat.h>
+
+static const char help[] =
+    "usage: pitviper rcs NAME|FILE|SHAPE [-o FOLDER] [--frequency GHZ[,GHZ...]] [--azimuth FROM:TO:STEP]\n"
+    "                    [--elevation DEG] [--range M] [--rays N] [--image DEG|none] [--cell M] [--overwrite]\n"
+    "\n"
+    "A target's radar cross section over azimuth, at full polarisation, by ray tubes and physical optics. Its joints are\n"
+    "at rest and it stands alone: no ground.\n"
+    "\n"
+    "NAME: a built-in model (tank, truck, helicopter ...). FILE: as `pitviper model show` takes it. SHAPE, of metal, in m:\n"
+    "sphere:R plate:AxB disc:R cylinder:RxL dihedral:AxB trihedral:A corner:A. Writes to FOLDER:\n"
+    "  rcs.csv    a row each look and frequency: dBsm and complex field, m, as received and transmitted polarisation\n"
+    "  rcs.svg    a polar plot of HH and VV at the first frequency\n"
+    "  isar.png   a picture by range and cross range at the first frequency, HH and HV: nose up, seen from above\n"
+    "\n"
+    "  --out FOLDER         or -o (default: NAME_rcs in the current folder)\n"
+    "  --frequency LIST     0.1 .. 300 GHz, at most 64 (10)\n"
+    "  --azimuth FROM:TO:STEP   clockwise from the nose, deg (0:360:1)\n"
+    "  --elevation DEG      upwards, -90 .. 90 (10)\n"
+    "  --range M            from the body's origin; without it the far field\n"
+    "  --rays N             ray tubes a wavelength, 0.25 .. 16 (1.25); the error of one number falls slowly with it\n"
+    "  --image DEG|none     azimuth at which the picture is taken (30)\n"
+    "  --cell M             its resolution, 0.01 .. 10 (a sixtieth of the target, at least three wavelengths)\n"
+    "  --overwrite          replace these files in FOLDER; without it that is an error\n";
+
+typedef struct RcsOptions {
+    const char *out;
+    RcsConfig   config;
+    bool        overwrite;
+} RcsOptions;
+
+static int refuse(const char *option, const char *what)
+{
+    text_print(stderr, "pitviper rcs: %s: %s; see `pitviper rcs --help`\n", option, what);
+    return 2;
+}
+
+static bool in_range(double *out, const char *text, double low, double high)
+{
+    return text && text_to_double(out, text) && *out >= low && *out <= high;
+}
+
+/* Numbers between a separator, at most `most`; their number, -1 where one is none. */
+static int read_list(double *out, int most, const char *text, char separator)
+{
+    char copy[1024];
+    int  count = 0;
+    if (!text || snprintf(copy, sizeof copy, "%s", text) >= (int)sizeof copy) return -1;
+    for (char *at = copy; at; ) {
+        char *end = strchr(at, separator);
+        if (end) *end++ = 0;
+        if (count == most || !text_to_double(&out[count++], at)) return -1;
+        at = end;
+    }
+    return count;
+}
+
+static bool read_frequencies(RcsConfig *config, const char *text)
+{
+    config->frequencies = read_list(config->frequency_hz, rcs_most_frequencies, text, ',');
+    for (int f = 0; f < config->frequencies; f++) {
+        if (!(config->frequency_hz[f] >= 0.1 && config->frequency_hz[f] <= 300)) return false;
+        config->frequency_hz[f] *= 1e9;
+    }
+    return config->frequencies > 0;
+}
+
+static bool read_azimuth(RcsConfig *config, const char *text)
+{
+    double number[3];
+    if (read_list(number, 3, text, ':') != 3 || !(fabs(number[0]) <= 720 && fabs(number[1]) <= 720) || !(number[2] > 0) ||
+        !(number[1] >= number[0]))
+        return false;
+    const double looks = floor((number[1] - number[0]) / number[2] + 1e-9) + 1;
+    if (!(looks <= rcs_most_looks)) return false;
+    config->from_deg = number[0], config->step_deg = number[2], config->looks = (int)looks;
+    return true;
+}
+
+/* 0: valid; else the exit code. */
+static int parse(RcsOptions *o, int argc, char **argv)
+{
+    RcsConfig *c = &o->config;
+    *o = (RcsOptions){.config = {.step_deg = 1, .looks = 361, .elevation_deg = 10, .range_m = INFINITY, .frequencies = 1,
+                                 .frequency_hz = {10e9}, .image_deg = 30}};
+    for (int i = 1; i < argc; i++) {
+        const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
+        if (strcmp(option, "--overwrite") == 0) {
+            o->overwrite = true;
+            continue;
+        }
+        if (option[0] != '-') {
+            if (c->name) return refuse(option, "one target at a time");
+            c->name = option;
+            continue;
+        }
+        if (strcmp(option, "--out") == 0 || strcmp(option, "-o") == 0) {
+            if (!value || !*value) return refuse(option, "needs a folder");
+            o->out = value;
+        } else if (strcmp(option, "--frequency") == 0) {
+            if (!read_frequencies(c, value)) return refuse(option, "needs 1 to 64 numbers in 0.1 .. 300 GHz, separated by commas");
+        } else if (strcmp(option, "--azimuth") == 0) {
+            if (!read_azimuth(c, value)) return refuse(option, "needs FROM:TO:STEP in deg, rising, at most 36001 looks, as 0:360:1");
+        } else if (strcmp(option, "--elevation") == 0) {
+            if (!in_range(&c->elevation_deg, value, -90, 90)) return refuse(option, "needs an angle in -90 .. 90 deg");
+        } else if (strcmp(option, "--range") == 0) {
+            if (!in_range(&c->range_m, value, 1e-3, 1e9)) return refuse(option, "needs a distance in 0.001 .. 1e9 m");
+        } else if (strcmp(option, "--rays") == 0) {
+            if (!in_range(&c->rays_per_wavelength, value, 0.25, 16)) return refuse(option, "needs a number in 0.25 .. 16");
+        } else if (strcmp(option, "--cell") == 0) {
+            if (!in_range(&c->resolution_m, value, 0.01, 10)) return refuse(option, "needs a length in 0.01 .. 10 m");
+        } else if (strcmp(option, "--image") == 0) {
+            c->image_deg = NAN;
+            if (!value || (strcmp(value, "none") != 0 && !in_range(&c->image_deg, value, -720, 720)))
+                return refuse(option, "needs an angle within 720 deg, or none");
+        } else {
+            return refuse(option, "no such option");
+        }
+        i++;
+    }
+    if (!c->name) return refuse("rcs", "needs a target: a built-in name, a file or a shape");
+    if (fabs(c->elevation_deg) > 85 && !isnan(c->image_deg))
+        return refuse("--elevation", "there is no cross range beyond 85 deg: add --image none");
+    return 0;
+}
+
+/* ---- files ------------------------------------------------------------------------------------------ */
+
+enum { file_csv, file_svg, file_png, file_count, path_size = 4096 };
+typedef char Path[path_size];
+
+static Status make_paths(Path path[file_count], const RcsOptions *o)
+{
+    static const char *const names[file_count] = {"rcs.csv", "rcs.svg", "isar.png"};
+    const char *slash = strrchr(o->config.name, '/'), *last = slash ? slash + 1 : o->config.name;
+    char        folder[path_size - 32];
+    const int   length = o->out ? snprintf(folder, sizeof folder, "%s", o->out)
+                                : snprintf(folder, sizeof folder, "%.*s_rcs", (int)strcspn(last, ".:"), last);
+    if (length >= (int)sizeof folder) {
+        log_error("rcs: the folder's name is too long; choose a shorter one with --out");
+        return STATUS_BAD_VALUE;
+    }
+    for (int k = 0; k < file_count; k++) {
+        snprintf(path[k], path_size, "%s/%s", folder, names[k]);
+        const Status status = overwrite_file("rcs", path[k], o->overwrite);
+        if (status != STATUS_OK) return status;
+    }
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
+        log_error("rcs: cannot create %s: %s; choose another folder with --out", folder, strerror(errno));
+        return STATUS_IO;
+    }
+    return STATUS_OK;
+}
+
+static void put_csv(FILE *to, const void *user) { rcs_write_csv(to, user); }
+static void put_plot(FILE *to, const void *user) { rcs_plot(to, user); }
+
+static void print_summary(const RcsSweep *sweep, double seconds)
+{
+    const RcsConfig *c = &sweep->config;
+    for (int f = 0; f < c->frequencies; f++) {
+        double mean_m2[2] = {0, 0}, most_dbsm = -INFINITY, at_deg = 0;
+        for (int look = 0; look < c->looks; look++) {
+            const ScatterMatrix *s = &sweep->s[(size_t)look * (size_t)c->frequencies + (size_t)f];
+            const double complex value[2] = {s->hh, s->vv};
+            for (int p = 0; p < 2; p++) {
+                mean_m2[p] += 4 * pi_rad * (creal(value[p]) * creal(value[p]) + cimag(value[p]) * cimag(value[p])) / c->looks;
+                if (value[p] != 0 && rcs_dbsm(value[p]) > most_dbsm)
+                    most_dbsm = rcs_dbsm(value[p]), at_deg = rcs_look_deg(c, look);
+            }
+        }
+        log_print("%s at %g GHz: mean HH %.1f, VV %.1f dBsm; most %.1f dBsm at azimuth %g deg\n", sweep->model.model.name,
+                  c->frequency_hz[f] * 1e-9, mean_m2[0] > 0 ? 10 * log10(mean_m2[0]) : -INFINITY,
+                  mean_m2[1] > 0 ? 10 * log10(mean_m2[1]) : -INFINITY, most_dbsm, at_deg);
+    }
+    if (!isnan(sweep->grid_db)) log_print("error of the grid of ray tubes, by another grid: %.0f dB\n", sweep->grid_db);
+    log_detail("rcs: %lld ray tubes, %lld hits, %.1f s\n", sweep->rays, sweep->hit_count, seconds);
+}
+
+static Status make_picture(RcsSweep *sweep, const char *path)
+{
+    RcsImage image;
+    Status   status = rcs_image_make(&image, sweep);
+    if (status != STATUS_OK) return status;
+    status = rcs_image_write(&image, sweep, path);
+    rcs_image_free(&image);
+    return status;
+}
+
+int rcs_command(int argc, char **argv)
+{
+    static Path path[file_count];
+    RcsOptions  o;
+    thread_flush_denormals();
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+            fputs(help, stdout);
+            return 0;
+        }
+    if (argc < 2) {
+        fputs(help, stderr);
+        return 2;
+    }
+    const int wrong = parse(&o, argc, argv);
+    if (wrong) return wrong;
+    RcsSweep     sweep = {0};
+    const double begun_s = wall_clock_s();
+    Status       status = rcs_sweep_open(&sweep, &o.config);
+    if (status == STATUS_OK) status = make_paths(path, &o);
+    if (status == STATUS_OK) status = rcs_sweep_run(&sweep);
+    if (status == STATUS_OK) status = text_write_file("rcs", path[file_csv], put_csv, &sweep);
+    if (status == STATUS_OK) status = text_write_file("rcs", path[file_svg], put_plot, &sweep);
+    if (status == STATUS_OK && !isnan(o.config.image_deg)) status = make_picture(&sweep, path[file_png]);
+    if (status == STATUS_OK) print_summary(&sweep, wall_clock_s() - begun_s);
+    if (status == STATUS_NO_MEMORY) log_error("rcs: out of memory: %s", o.config.name);
+    rcs_sweep_close(&sweep);
+    return status == STATUS_OK ? 0 : 1;
+}

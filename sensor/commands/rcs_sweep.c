@@ -1,0 +1,118 @@
+/* sensor/commands/rcs_sweep.c: computes a target's fields over aspect and frequency. */
+#include "sensor/commands/rcs_sweep.h"
+
+#include <stdlib.h>
+
+enum { checked_looks = 8 }; /* those computed with another grid of tubes as well */
+
+double rcs_look_deg(const RcsConfig *config, int look) { return config->from_deg + look * config->step_deg; }
+
+static double highest_hz(const RcsConfig *config)
+{
+    double highest = 0;
+    for (int f = 0; f < config->frequencies; f++) highest = fmax(highest, config->frequency_hz[f]);
+    return highest;
+}
+
+Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
+{
+    const double highest = highest_hz(config);
+    *out = (RcsSweep){.config = *config, .tubes = tubes_default_config(highest), .grid_db = NAN};
+    if (config->rays_per_wavelength > 0) {
+        out->tubes.rays_per_radius *= config->rays_per_wavelength / out->tubes.rays_per_wavelength;
+        out->tubes.rays_per_wavelength = config->rays_per_wavelength;
+    }
+    Status status = radar_materials_load(&out->materials);
+    if (status == STATUS_OK) status = radar_model_open(&out->model, config->name, &out->materials, radar_sag_m(highest));
+    if (status == STATUS_OK) status = pool_create(&out->pool, thread_processors());
+    if (status == STATUS_OK) {
+        out->s = calloc((size_t)config->looks * (size_t)config->frequencies, sizeof *out->s);
+        if (!out->s) status = STATUS_NO_MEMORY;
+    }
+    if (status == STATUS_OK) radar_target_pose(out->model.target, NULL, 0);
+    if (status != STATUS_OK) rcs_sweep_close(out);
+    return status;
+}
+
+void rcs_sweep_close(RcsSweep *sweep)
+{
+    tubes_free(&sweep->hits);
+    pool_destroy(sweep->pool);
+    radar_model_close(&sweep->model);
+    radar_materials_close(&sweep->materials);
+    free(sweep->s);
+    *sweep = (RcsSweep){0};
+}
+
+static Status look_at(ScatterMatrix *s, RcsSweep *sweep, int look, uint64_t seed)
+{
+    ScatterAntenna antenna;
+    TubeConfig     tubes = sweep->tubes;
+    tubes.seed = seed;
+    radar_look(&antenna, rcs_look_deg(&sweep->config, look) * rad_per_deg, sweep->config.elevation_deg * rad_per_deg,
+               sweep->config.range_m);
+    Status status = tubes_trace(&sweep->hits, sweep->model.target, &antenna, &antenna, &tubes, sweep->pool);
+    sweep->rays += sweep->hits.rays;
+    sweep->hit_count += (long long)sweep->hits.count;
+    for (int f = 0; f < sweep->config.frequencies && status == STATUS_OK; f++)
+        status = field_at(&s[f], sweep->config.frequency_hz[f], &sweep->hits, sweep->pool);
+    return status;
+}
+
+static double power(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
+
+/* Some looks again with another grid of tubes: the difference is the error of both. */
+static Status check_grid(RcsSweep *sweep)
+{
+    ScatterMatrix again[rcs_most_frequencies];
+    double        off = 0, whole = 0;
+    const int     count = sweep->config.looks < checked_looks ? sweep->config.looks : checked_looks;
+    for (int i = 0; i < count; i++) {
+        const int            look = (int)((long long)i * sweep->config.looks / count);
+        const ScatterMatrix *s = sweep->s + (size_t)look * (size_t)sweep->config.frequencies;
+        const Status         status = look_at(again, sweep, look, 1);
+        if (status != STATUS_OK) return status;
+        for (int f = 0; f < sweep->config.frequencies; f++) {
+            off += power(again[f].hh - s[f].hh) + power(again[f].vv - s[f].vv);
+            whole += power(s[f].hh) + power(s[f].vv);
+        }
+    }
+    sweep->grid_db = whole > 0 ? 10 * log10(off / whole / 2) : NAN; /* half of it is each grid's own */
+    return STATUS_OK;
+}
+
+Status rcs_sweep_run(RcsSweep *sweep)
+{
+    Status status = STATUS_OK;
+    char   line[96];
+    for (int look = 0; look < sweep->config.looks && status == STATUS_OK; look++) {
+        snprintf(line, sizeof line, "rcs: look %d of %d", look + 1, sweep->config.looks);
+        log_status(line);
+        status = look_at(sweep->s + (size_t)look * (size_t)sweep->config.frequencies, sweep, look, 0);
+    }
+    if (status == STATUS_OK) status = check_grid(sweep);
+    log_status("");
+    return status;
+}
+
+static void write_dbsm(FILE *to, double complex s)
+{
+    if (s == 0) fputs(",", to);
+    else fprintf(to, ",%.4f", rcs_dbsm(s));
+}
+
+void rcs_write_csv(FILE *to, const RcsSweep *sweep)
+{
+    const RcsConfig *config = &sweep->config;
+    fputs("az_deg,el_deg,f_ghz,hh_dbsm,hv_dbsm,vh_dbsm,vv_dbsm,hh_re_m,hh_im_m,hv_re_m,hv_im_m,vh_re_m,vh_im_m,vv_re_m,vv_im_m\n",
+          to);
+    for (int look = 0; look < config->looks; look++)
+        for (int f = 0; f < config->frequencies; f++) {
+            const ScatterMatrix *s = &sweep->s[(size_t)look * (size_t)config->frequencies + (size_t)f];
+            const double complex value[4] = {s->hh, s->hv, s->vh, s->vv};
+            fprintf(to, "%.10g,%.10g,%.10g", rcs_look_deg(config, look), config->elevation_deg, config->frequency_hz[f] * 1e-9);
+            for (int p = 0; p < 4; p++) write_dbsm(to, value[p]);
+            for (int p = 0; p < 4; p++) fprintf(to, ",%.9g,%.9g", creal(value[p]), cimag(value[p]));
+            fputc('\n', to);
+        }
+}

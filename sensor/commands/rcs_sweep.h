@@ -1,0 +1,57 @@
+/* sensor/commands/rcs_sweep.h: the fields of a target over aspect and frequency, and what is drawn of them. */
+#ifndef SENSOR_COMMANDS_RCS_SWEEP_H
+#define SENSOR_COMMANDS_RCS_SWEEP_H
+
+#include "render/radar/field.h"
+#include "render/radar/radar_model.h"
+
+enum { rcs_most_frequencies = 64, rcs_most_looks = 36001 };
+
+typedef struct RcsConfig {
+    const char *name;
+    double      from_deg, step_deg;      /* azimuth, clockwise from the nose */
+    int         looks;
+    double      elevation_deg, range_m;  /* INFINITY: plane waves */
+    int         frequencies;
+    double      frequency_hz[rcs_most_frequencies];
+    double      rays_per_wavelength;     /* 0: the default */
+    double      image_deg;               /* azimuth of the picture's middle; NaN: none */
+    double      resolution_m;            /* of the picture; 0: a sixtieth of the target, not below three wavelengths / 8 */
+} RcsConfig;
+
+typedef struct RcsSweep {
+    RcsConfig      config;
+    RadarMaterials materials;
+    RadarModel     model;
+    Pool          *pool;
+    TubeConfig     tubes;
+    TubeHits       hits;                 /* of the last look */
+    ScatterMatrix *s;                    /* [looks][frequencies] */
+    long long      rays, hit_count;
+    double         grid_db;              /* power of the difference of two grids over that of one, some looks; NaN: none */
+} RcsSweep;
+
+/* Logs what fails. */
+Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config);
+Status rcs_sweep_run(RcsSweep *sweep);
+void   rcs_sweep_close(RcsSweep *sweep); /* accepts zeroes */
+double rcs_look_deg(const RcsConfig *config, int look);
+
+void   rcs_write_csv(FILE *to, const RcsSweep *sweep);
+/* HH and VV of the first frequency over azimuth, polar: SVG. */
+void   rcs_plot(FILE *to, const RcsSweep *sweep);
+
+/* An inverse synthetic aperture picture: range by frequency, cross range by azimuth, on the plane through the middle of the
+ * target's height. */
+typedef struct RcsImage {
+    double   middle_deg, span_deg, frequency_hz, bandwidth_hz, resolution_m, side_m; /* side_m: of the square shown */
+    double   centre[3];                  /* of the square, body axes */
+    int      pulses, frequencies, pixels;
+    float   *hh_dbsm, *hv_dbsm;          /* [pixels][pixels]: rows from the nose backwards, columns from left to right */
+} RcsImage;
+
+Status rcs_image_make(RcsImage *out, RcsSweep *sweep);
+Status rcs_image_write(const RcsImage *image, const RcsSweep *sweep, const char *path);
+void   rcs_image_free(RcsImage *image);
+
+#endif
