@@ -93,31 +93,52 @@ void clutter_place(double p_m[2], const ClutterGrid *grid, const ClutterCell *ce
 
 /* ---- texture -------------------------------------------------------------------------------------------- */
 
-/* A standard normal field: four nodes of a lattice, with weights whose squares sum to 1 everywhere (cosine and
- * sine), so that each point's value is exactly normal and the gamma distribution of the texture exact. */
+/* A standard normal field: four by four nodes of a lattice about a place, with Gaussian weights whose squares sum to 1,
+ * so that each point's value is exactly normal and the gamma distribution of the texture exact. Weights of nodes that
+ * come and go are 3e-4. Correlated nearly as exp(-(distance / length)^2); not at all from four lengths on. */
 static double deviate_at(uint64_t seed, double length_m, const double p_m[2])
 {
-    double at[2], near[2], weight[2][2];
+    enum { nodes = 4 };
+    double weight[2][nodes], first[2];
     for (int a = 0; a < 2; a++) {
-        at[a]   = p_m[a] / length_m;
-        near[a] = floor(at[a]);
-        weight[a][0] = cos(0.5 * pi_rad * (at[a] - near[a]));
-        weight[a][1] = sin(0.5 * pi_rad * (at[a] - near[a]));
+        const double at = p_m[a] / length_m;
+        double       square = 0;
+        first[a] = floor(at) - 1;
+        for (int k = 0; k < nodes; k++) {
+            const double away = at - (first[a] + k);
+            weight[a][k] = exp(-2 * away * away);
+            square += weight[a][k] * weight[a][k];
+        }
+        for (int k = 0; k < nodes; k++) weight[a][k] /= sqrt(square);
     }
-    double sum = 0;
-    for (int k = 0; k < 4; k++) {
-        const uint32_t x = (uint32_t)(int64_t)(near[0] + k % 2), y = (uint32_t)(int64_t)(near[1] + k / 2);
-        sum += weight[0][k % 2] * weight[1][k / 2] * random_normal(seed, texture_stream, y, x);
+    /* columns from 2^31 on, so that those of a row follow one another */
+    const uint64_t column = (uint64_t)(int64_t)first[0] + 0x80000000u;
+    double         sum = 0;
+    for (int y = 0; y < nodes; y++) {
+        double normal[nodes], row = 0;
+        random_normals(normal, nodes, seed, texture_stream, (uint32_t)(int64_t)(first[1] + y), column);
+        for (int x = 0; x < nodes; x++) row += weight[0][x] * normal[x];
+        sum += weight[1][y] * row;
     }
     return sum;
+}
+
+/* A cell has the texture of one place in it, for all of it: means over many cells then vary more than those of the
+ * field, by (1 - V^2) / count, V^2 the share of its variance that a cell's mean keeps. What the deviations are scaled by
+ * so that they vary alike: 1 for cells much smaller than the texture, 0.96, 0.75, 0.43 for 1, 2, 4 of its lengths. */
+static double level_share(double side_m, double length_m)
+{
+    const double a = side_m / length_m, field = pi_rad / (a * a);
+    /* of exp(-d^2) over a square; its series where the closed form cancels */
+    const double kept = a < 1e-2 ? 1 - a * a / 6 : (sqrt(pi_rad) * a * erf(a) + expm1(-a * a)) / (a * a);
+    return sqrt(field / (field + 1 - kept * kept));
 }
 
 double clutter_texture_at(const ClutterGrid *grid, const ClutterRow *row, int level, const double p_m[2])
 {
     if (isinf(row->nu)) return 1;
-    /* the mean over (side / length)^2 independent patches has that much less variance */
-    const double shrink = fmin(1, row->texture_m / clutter_side(grid, level));
-    return 1 + shrink * (clutter_texture(row, deviate_at(grid->seed, row->texture_m, p_m)) - 1);
+    const double share = level_share(clutter_side(grid, level), row->texture_m);
+    return 1 + share * (clutter_texture(row, deviate_at(grid->seed, row->texture_m, p_m)) - 1);
 }
 
 /* ---- scatterers ------------------------------------------------------------------------------------------- */

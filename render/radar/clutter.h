@@ -9,8 +9,8 @@
  *
  * Cells of level l have sides of side_m 2^l and nest. Each level has its own speckle: the mean is the same at every
  * level, phases are not. So a dwell that is to be coherent must keep the level of each cell, by asking with one
- * `from`. Texture is shared by the levels; where cells are larger than it, its variance is that of its mean over
- * the cell.
+ * `from`. Texture is shared by the levels; where cells are larger than it, its variance is less, so that means over
+ * many cells vary alike at every level.
  *
  * Order of work: cells; their centres, to drop those that are hidden (the caller's rays); places and the ground's
  * height, normal and class there (the caller's); clutter_draw, once a dwell; clutter_see, once a pulse. Nothing
