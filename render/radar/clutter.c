@@ -124,8 +124,9 @@ static double deviate_at(uint64_t seed, double length_m, const double p_m[2])
 }
 
 /* A cell has the texture of one place in it, for all of it: means over many cells then vary more than those of the
- * field, by (1 - V^2) / count, V^2 the share of its variance that a cell's mean keeps. What the deviations are scaled by
- * so that they vary alike: 1 for cells much smaller than the texture, 0.96, 0.75, 0.43 for 1, 2, 4 of its lengths. */
+ * field, by (1 - V^2) / count, V^2 the share of its variance that a cell's mean keeps. What the deviations are
+ * scaled by so that they vary alike: 1 for cells much smaller than the texture, 0.96, 0.75, 0.43 for 1, 2, 4 of its
+ * lengths. */
 static double level_share(double side_m, double length_m)
 {
     const double a = side_m / length_m, field = pi_rad / (a * a);

@@ -169,7 +169,8 @@ static void intensities_are_distributed_as_stated(void **state)
         table.row[SURFACE_GRASS][CLUTTER_KU] = made.row[SURFACE_GRASS][CLUTTER_KU];
 
         Stage *s = stage(count, SURFACE_GRASS, 1, 11);
-        for (int i = 0; i < count; i++) s->cell[i] = (ClutterCell){40 * (i % across) - 5000, 40 * (i / across) - 5000, 0};
+        for (int i = 0; i < count; i++)
+            s->cell[i] = (ClutterCell){40 * (i % across) - 5000, 40 * (i / across) - 5000, 0};
         stage_place(s);
         stage_draw(s, CLUTTER_KU);
         ClutterLook look = look_from(0.4, 0.5, ku_hz);
@@ -487,8 +488,9 @@ static double kept_by_mean(double side)
     return sum * sum;
 }
 
-/* Means of the texture over blocks of 16 nodes vary alike at every level, also where cells are longer than the texture:
- * as the field's, but for the edges of the blocks. One place a cell, of cells 4 nodes long, would vary 6 times as much. */
+/* Means of the texture over blocks of 16 nodes vary alike at every level, also where cells are longer than the
+ * texture: as the field's, but for the edges of the blocks. One place a cell, of cells 4 nodes long, would vary 6
+ * times as much. */
 static void levels_keep_the_variance_of_means(void **state)
 {
     (void)state;
