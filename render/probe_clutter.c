@@ -1,4 +1,4 @@
-/* render/probe_clutter.c: `pitviper probe clutter` and `clutter-cell`: the table of ground clutter, and single resolution cells. */
+/* render/probe_clutter.c: `pitviper probe clutter` and `clutter-cell`: ground clutter's table and its cells. */
 #include "render/probe_private.h"
 
 #include "render/radar/clutter.h"
@@ -25,7 +25,10 @@ Status clutter_probe_open(void **state, int argc, char **argv)
 
 void clutter_probe_close(void *state) { free(state); }
 
-static double given(const ProbeValue *value, double otherwise) { return isnan(value->number) ? otherwise : value->number; }
+static double given(const ProbeValue *value, double otherwise)
+{
+    return isnan(value->number) ? otherwise : value->number;
+}
 
 /* surface$, frequency_ghz, grazing_deg: the first columns of both. */
 static const char *find_row(SurfaceClass *surface, ClutterBand *band, const ProbeValue *in)
@@ -90,7 +93,8 @@ const char *clutter_cell_probe_row(void *state, const ProbeValue *in, ProbeValue
     const ClutterGrid    grid = {side_m / across, (uint64_t)seed};
     const ScatterAntenna antenna = {{cos(psi) * sin(azimuth), cos(psi) * cos(azimuth), sin(psi)}, INFINITY};
     const double         k = 2 * pi_rad * look.frequency_hz / speed_of_light_mps;
-    const int            x0 = across * (int)floor(in[3].number / side_m), y0 = across * (int)floor(in[4].number / side_m);
+    const int            x0 = across * (int)floor(in[3].number / side_m);
+    const int            y0 = across * (int)floor(in[4].number / side_m);
     ClutterCell          cell[count];
     ClutterScatterer     scatterer[count];
     ScatterMatrix        seen[count], sum = {0};
@@ -107,7 +111,8 @@ const char *clutter_cell_probe_row(void *state, const ProbeValue *in, ProbeValue
     }
     clutter_draw(scatterer, &grid, table, band, count, cell, kind);
     const ClutterGround ground = {count, cell, kind, {p[0], p[1], p[2]}, {n[0], n[1], n[2]}};
-    const double        far_m = 1e12, middle[2] = {(x0 + 0.5 * across) * grid.side_m, (y0 + 0.5 * across) * grid.side_m};
+    const double        far_m = 1e12;
+    const double        middle[2] = {(x0 + 0.5 * across) * grid.side_m, (y0 + 0.5 * across) * grid.side_m};
     for (int a = 0; a < 3; a++) look.antenna_enu[a] = far_m * antenna.u[a];
     clutter_see(seen, &grid, table, scatterer, &ground, &look);
     for (int i = 0; i < count; i++) {
@@ -118,7 +123,8 @@ const char *clutter_cell_probe_row(void *state, const ProbeValue *in, ProbeValue
     }
     const double complex s[3] = {sum.vv, sum.hh, sum.hv};
     for (int i = 0; i < 3; i++) out[2 * i].number = creal(s[i]), out[2 * i + 1].number = cimag(s[i]);
+    const double sigma0 = clutter_sigma0(&table->row[surface][band], psi, speed_of_light_mps / look.frequency_hz);
     out[6].number = 4 * pi_rad * (creal(sum.vv) * creal(sum.vv) + cimag(sum.vv) * cimag(sum.vv)) /
-                    (clutter_sigma0(&table->row[surface][band], psi, speed_of_light_mps / look.frequency_hz) * side_m * side_m);
+                    (sigma0 * side_m * side_m);
     return NULL;
 }

@@ -41,7 +41,8 @@ static void split(Split *s, ClutterCell cell)
     const double side_m = clutter_side(s->grid, cell.level);
     const double west_m = cell.x * side_m, south_m = cell.y * side_m;
     /* its descendants' centres are inside it */
-    if (west_m >= s->high_m[0] || south_m >= s->high_m[1] || west_m + side_m <= s->low_m[0] || south_m + side_m <= s->low_m[1])
+    if (west_m >= s->high_m[0] || south_m >= s->high_m[1] || west_m + side_m <= s->low_m[0] ||
+        south_m + side_m <= s->low_m[1])
         return;
     const double away_m = hypot(s->from_m[0] - clamp(s->from_m[0], west_m, west_m + side_m),
                                 s->from_m[1] - clamp(s->from_m[1], south_m, south_m + side_m));
@@ -64,7 +65,8 @@ size_t clutter_cells_at(ClutterCell *out, size_t capacity, const ClutterGrid *gr
     Split        s = {out, capacity, 0, grid, low_m, high_m, from_m, share};
     const int    last = clutter_levels - 1;
     const double side_m = clutter_side(grid, last);
-    for (int a = 0; a < 2; a++) assert(fabs(low_m[a]) <= grid->side_m * 0x1p30 && fabs(high_m[a]) <= grid->side_m * 0x1p30);
+    for (int a = 0; a < 2; a++)
+        assert(fabs(low_m[a]) <= grid->side_m * 0x1p30 && fabs(high_m[a]) <= grid->side_m * 0x1p30);
     for (double y = floor(low_m[1] / side_m); y * side_m < high_m[1]; y++)
         for (double x = floor(low_m[0] / side_m); x * side_m < high_m[0]; x++)
             split(&s, (ClutterCell){(int32_t)x, (int32_t)y, last});
@@ -91,31 +93,53 @@ void clutter_place(double p_m[2], const ClutterGrid *grid, const ClutterCell *ce
 
 /* ---- texture -------------------------------------------------------------------------------------------- */
 
-/* A standard normal field: four nodes of a lattice, with weights whose squares sum to 1 everywhere (cosine and sine), so that
- * each point's value is exactly normal and the gamma distribution of the texture exact. */
+/* A standard normal field: four by four nodes of a lattice about a place, with Gaussian weights whose squares sum to 1,
+ * so that each point's value is exactly normal and the gamma distribution of the texture exact. Weights of nodes that
+ * come and go are 3e-4. Correlated nearly as exp(-(distance / length)^2); not at all from four lengths on. */
 static double deviate_at(uint64_t seed, double length_m, const double p_m[2])
 {
-    double at[2], near[2], weight[2][2];
+    enum { nodes = 4 };
+    double weight[2][nodes], first[2];
     for (int a = 0; a < 2; a++) {
-        at[a]   = p_m[a] / length_m;
-        near[a] = floor(at[a]);
-        weight[a][0] = cos(0.5 * pi_rad * (at[a] - near[a]));
-        weight[a][1] = sin(0.5 * pi_rad * (at[a] - near[a]));
+        const double at = p_m[a] / length_m;
+        double       square = 0;
+        first[a] = floor(at) - 1;
+        for (int k = 0; k < nodes; k++) {
+            const double away = at - (first[a] + k);
+            weight[a][k] = exp(-2 * away * away);
+            square += weight[a][k] * weight[a][k];
+        }
+        for (int k = 0; k < nodes; k++) weight[a][k] /= sqrt(square);
     }
-    double sum = 0;
-    for (int k = 0; k < 4; k++) {
-        const uint32_t x = (uint32_t)(int64_t)(near[0] + k % 2), y = (uint32_t)(int64_t)(near[1] + k / 2);
-        sum += weight[0][k % 2] * weight[1][k / 2] * random_normal(seed, texture_stream, y, x);
+    /* columns from 2^31 on, so that those of a row follow one another */
+    const uint64_t column = (uint64_t)(int64_t)first[0] + 0x80000000u;
+    double         sum = 0;
+    for (int y = 0; y < nodes; y++) {
+        double normal[nodes], row = 0;
+        random_normals(normal, nodes, seed, texture_stream, (uint32_t)(int64_t)(first[1] + y), column);
+        for (int x = 0; x < nodes; x++) row += weight[0][x] * normal[x];
+        sum += weight[1][y] * row;
     }
     return sum;
+}
+
+/* A cell has the texture of one place in it, for all of it: means over many cells then vary more than those of the
+ * field, by (1 - V^2) / count, V^2 the share of its variance that a cell's mean keeps. What the deviations are
+ * scaled by so that they vary alike: 1 for cells much smaller than the texture, 0.96, 0.75, 0.43 for 1, 2, 4 of its
+ * lengths. */
+static double level_share(double side_m, double length_m)
+{
+    const double a = side_m / length_m, field = pi_rad / (a * a);
+    /* of exp(-d^2) over a square; its series where the closed form cancels */
+    const double kept = a < 1e-2 ? 1 - a * a / 6 : (sqrt(pi_rad) * a * erf(a) + expm1(-a * a)) / (a * a);
+    return sqrt(field / (field + 1 - kept * kept));
 }
 
 double clutter_texture_at(const ClutterGrid *grid, const ClutterRow *row, int level, const double p_m[2])
 {
     if (isinf(row->nu)) return 1;
-    /* the mean over (side / length)^2 independent patches has that much less variance */
-    const double shrink = fmin(1, row->texture_m / clutter_side(grid, level));
-    return 1 + shrink * (clutter_texture(row, deviate_at(grid->seed, row->texture_m, p_m)) - 1);
+    const double share = level_share(clutter_side(grid, level), row->texture_m);
+    return 1 + share * (clutter_texture(row, deviate_at(grid->seed, row->texture_m, p_m)) - 1);
 }
 
 /* ---- scatterers ------------------------------------------------------------------------------------------- */
@@ -125,8 +149,8 @@ static void draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterRo
     enum { still = clutter_still_terms, moving = clutter_terms - still, of_term = 9, of_velocity = 4 };
     double normal[clutter_terms * of_term + moving * of_velocity], p_m[2];
     clutter_place(p_m, grid, cell);
-    random_normals(normal, sizeof normal / sizeof *normal, grid->seed, speckle_stream + (uint32_t)cell->level, (uint32_t)cell->y,
-                   first_index(cell));
+    random_normals(normal, sizeof normal / sizeof *normal, grid->seed, speckle_stream + (uint32_t)cell->level,
+                   (uint32_t)cell->y, first_index(cell));
     const double power = 0.5 * clutter_texture_at(grid, row, cell->level, p_m);
     const double unlike = sqrt(1 - row->rho * row->rho), hh = sqrt(row->hh), hv = sqrt(row->hv);
     for (int m = 0; m < clutter_terms; m++) {
@@ -144,8 +168,8 @@ static void draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterRo
     }
 }
 
-void clutter_draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterTable *table, ClutterBand band, int count,
-                  const ClutterCell *cell, const uint8_t *surface)
+void clutter_draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterTable *table, ClutterBand band,
+                  int count, const ClutterCell *cell, const uint8_t *surface)
 {
     for (int i = 0; i < count; i++) draw(&out[i], grid, &table->row[surface[i]][band], &cell[i]);
 }
@@ -161,9 +185,10 @@ static void add_terms(ScatterMatrix *s, const ClutterScatterer *from, int first,
                       double moved_m, double size)
 {
     for (int m = first; m < end; m++) {
-        const double towards_m = u[0] * (double)from->offset_m[m][0] + u[1] * (double)from->offset_m[m][1] +
-                                 u[2] * (double)from->offset_m[m][2] +
-                                 (m < clutter_still_terms ? 0 : moved_m * (double)from->velocity[m - clutter_still_terms]);
+        const float *offset_m = from->offset_m[m];
+        const double gone_m = m < clutter_still_terms ? 0 : moved_m * (double)from->velocity[m - clutter_still_terms];
+        const double towards_m =
+            u[0] * (double)offset_m[0] + u[1] * (double)offset_m[1] + u[2] * (double)offset_m[2] + gone_m;
         const double re = size * cos(k2 * towards_m), im = size * sin(k2 * towards_m);
         s->vv += turned(from->vv[m], re, im);
         s->hh += turned(from->hh[m], re, im);
@@ -171,8 +196,8 @@ static void add_terms(ScatterMatrix *s, const ClutterScatterer *from, int first,
     }
 }
 
-void clutter_see(ScatterMatrix *out, const ClutterGrid *grid, const ClutterTable *table, const ClutterScatterer *scatterer,
-                 const ClutterGround *ground, const ClutterLook *look)
+void clutter_see(ScatterMatrix *out, const ClutterGrid *grid, const ClutterTable *table,
+                 const ClutterScatterer *scatterer, const ClutterGround *ground, const ClutterLook *look)
 {
     const double  wavelength_m = speed_of_light_mps / look->frequency_hz, k2 = 4 * pi_rad / wavelength_m;
     ClutterBand   band;
@@ -180,7 +205,8 @@ void clutter_see(ScatterMatrix *out, const ClutterGrid *grid, const ClutterTable
     const bool    in_band = clutter_band_of(&band, look->frequency_hz);
     assert(in_band);
     if (!in_band) return;
-    for (int s = 0; s < SURFACE_COUNT; s++) motion[s] = clutter_motion(&table->row[s][band], look->frequency_hz, look->wind_mps);
+    for (int s = 0; s < SURFACE_COUNT; s++)
+        motion[s] = clutter_motion(&table->row[s][band], look->frequency_hz, look->wind_mps);
 
     for (int i = 0; i < ground->count; i++) {
         const ClutterMotion *moves = &motion[ground->surface[i]];

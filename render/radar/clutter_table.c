@@ -22,9 +22,9 @@ bool clutter_band_of(ClutterBand *out, double frequency_hz)
 
 static const double deviate_end = 8;
 
-/* ln of P(a, x) (tail: of 1 - P), the regularised incomplete gamma function, and its derivative by ln x. By the series below
- * a + 1 and the continued fraction above: each where it converges fast, and in logarithms, so that tails keep their digits.
- * Source: Abramowitz and Stegun 6.5.29, 6.5.31. */
+/* ln of P(a, x) (tail: of 1 - P), the regularised incomplete gamma function, and its derivative by ln x. By the
+ * series below a + 1 and the continued fraction above: each where it converges fast, and in logarithms, so that
+ * tails keep their digits. Source: Abramowitz and Stegun 6.5.29, 6.5.31. */
 static double log_gamma_share(double *slope, double a, double log_x, bool tail)
 {
     const double x = exp(log_x), front = a * log_x - x - lgamma(a);
@@ -51,9 +51,9 @@ static double log_gamma_share(double *slope, double a, double log_x, bool tail)
     return share;
 }
 
-/* ln of the quantiles of mean 1 at normal deviates -8 .. 8, by Newton's method from one to the next. It cannot miss: the
- * logarithms of both tails are concave in ln x, and the first is begun from below, by the first term of the series. Each from
- * the smaller of the two tails: the larger has lost it. */
+/* ln of the quantiles of mean 1 at normal deviates -8 .. 8, by Newton's method from one to the next. It cannot
+ * miss: the logarithms of both tails are concave in ln x, and the first is begun from below, by the first term of
+ * the series. Each from the smaller of the two tails: the larger has lost it. */
 static void fill_texture(ClutterRow *row)
 {
     double y = 0; /* ln(nu t) */
@@ -75,7 +75,7 @@ static void fill_texture(ClutterRow *row)
 double clutter_texture(const ClutterRow *row, double deviate)
 {
     if (isinf(row->nu)) return 1;
-    const double at = (clamp(deviate, -deviate_end, deviate_end) + deviate_end) * ((clutter_texture_nodes - 1) / (2 * deviate_end));
+    const double at = (clamp(deviate / deviate_end, -1, 1) + 1) * (0.5 * (clutter_texture_nodes - 1));
     const int    i  = at < clutter_texture_nodes - 2 ? (int)at : clutter_texture_nodes - 2;
     const double f  = at - i;
     return exp((1 - f) * (double)row->texture[i] + f * (double)row->texture[i + 1]);
@@ -164,14 +164,17 @@ Status clutter_table_open(ClutterTable *out, const char *path)
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
     for (int c = 0; c < numbers; c++) name[c] = columns[c].name;
-    if (!table_columns(text, &table, text_columns, 3, "clutter") || !table_columns(at, &table, name, numbers, "clutter"))
+    if (!table_columns(text, &table, text_columns, 3, "clutter") ||
+        !table_columns(at, &table, name, numbers, "clutter"))
         status = STATUS_BAD_VALUE;
-    for (int row = 0; row < table.rows && status == STATUS_OK; row++) status = read_row(&read, seen, &table, row, at, text);
+    for (int row = 0; row < table.rows && status == STATUS_OK; row++)
+        status = read_row(&read, seen, &table, row, at, text);
     table_close(&table);
     for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT && status == STATUS_OK; s++)
         for (int b = 0; b < CLUTTER_BAND_COUNT && status == STATUS_OK; b++)
             if (!seen[s][b]) {
-                log_error("clutter: no row: file=%s surface=%s band=%s", path, surface_name((SurfaceClass)s), bands[b].name);
+                log_error("clutter: no row: file=%s surface=%s band=%s", path, surface_name((SurfaceClass)s),
+                          bands[b].name);
                 status = STATUS_BAD_VALUE;
             }
     if (status != STATUS_OK) return status;

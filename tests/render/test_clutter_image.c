@@ -121,7 +121,9 @@ static void an_image_reads_sigma0_and_focuses(void **state)
     table.row[SURFACE_BARE_SOIL][CLUTTER_KU].nu = INFINITY; /* the mean of a thousand cells, to 0.1 dB */
     const double noise = lay_out(&step_rad, &step_hz);
     /* the point response's equivalent area, by Parseval over one period of range and cross-range */
-    const double area_m2 = noise * noise * c_mps / (2 * step_hz * cos(psi)) * c_mps / carrier_hz / (2 * step_rad * cos(psi));
+    const double range_period_m = c_mps / (2 * step_hz * cos(psi));
+    const double cross_period_m = c_mps / carrier_hz / (2 * step_rad * cos(psi));
+    const double area_m2 = noise * noise * range_period_m * cross_period_m;
     const double sigma0 = table.row[SURFACE_BARE_SOIL][CLUTTER_KU].gamma * sin(psi);
 
     double sum = 0, dark = 0;
@@ -149,8 +151,8 @@ static void an_image_reads_sigma0_and_focuses(void **state)
         const double x = point[0] + 0.1 * (k % 9 - 4), y = point[1] + 0.1 * (k / 9 - 4), m2 = focus(x, y);
         if (m2 > most) most = m2, best[0] = x, best[1] = y;
     }
-    printf("point of %.1f dBsm: %.2f dBsm, largest at %.2f %.2f m from it, %.1f dB above the clutter\n", db(point_m2), db(peak),
-           best[0] - point[0], best[1] - point[1], db(peak / (sum / lit)));
+    printf("point of %.1f dBsm: %.2f dBsm, largest at %.2f %.2f m from it, %.1f dB above the clutter\n", db(point_m2),
+           db(peak), best[0] - point[0], best[1] - point[1], db(peak / (sum / lit)));
     CHECK_NEAR(db(peak), db(point_m2), 0.2);
     CHECK_NEAR(best[0], point[0], 1e-9);
     CHECK_NEAR(best[1], point[1], 1e-9);
