@@ -55,7 +55,7 @@ static Status write_map(const char *path, const Frame *f)
     const size_t      cells = (size_t)rows * (size_t)columns;
     float            *value = malloc(2 * interval_channels * cells * sizeof *value);
     Plane             plane[2 * interval_channels];
-    char              name[2 * interval_channels][16];
+    char              name[2 * interval_channels][16], date[32];
     if (!value) return STATUS_NO_MEMORY;
     for (int c = 0; c < interval_channels; c++)
         for (int part = 0; part < 2; part++) {
@@ -72,8 +72,9 @@ static Status write_map(const char *path, const Frame *f)
         image_double("time_s", f->time_s), image_string("host", f->host), image_double("reference_m", r->reference_m),
         image_double("reference_rate_mps", r->reference_rate_mps), image_double("metre_per_column", r->map.metre_per_column),
         image_double("mps_per_row", r->map.mps_per_row), image_double("noise_w", r->receiver.noise_w * r->map.noise_share)};
+    frame_date(date, f->unix_s);
     const Status status =
-        image_write_exr_as(path, "zip:1", plane, 2 * interval_channels, NULL, attribute, sizeof attribute / sizeof *attribute);
+        image_write_exr_as(path, "zip:1", plane, 2 * interval_channels, date, attribute, sizeof attribute / sizeof *attribute);
     free(value);
     return status;
 }
