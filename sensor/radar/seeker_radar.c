@@ -16,7 +16,7 @@ static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
     Status status = etc_path(path, sizeof path, "radars.csv") ? radar_preset_read(&r->preset, path, config->preset) : STATUS_BAD_VALUE;
     if (status != STATUS_OK) return status;
     if (!clutter_band_of(&r->band, r->preset.wave.centre_hz) && config->ground) {
-        log_error("radar: %s: no ground is known at %g GHz (etc/radar/clutter.csv: 12-18, 27-40, 75-110); set radar.ground: off",
+        log_error("radar: %s: no ground is known at %g GHz (etc/radar/clutter.csv: 12-18, 27-40, 75-110); set radar.ground: false",
                   r->preset.name, 1e-9 * r->preset.wave.centre_hz);
         return STATUS_BAD_VALUE;
     }

@@ -241,9 +241,9 @@ const Reference reference_radar_map = {
     .notation = "Field: `channel` of the EXR file, or `header`: its attribute.",
     .field = REFERENCE_FIELDS(radar_map_fields),
     .python =
-        "import glob, math, OpenEXR\n"
+        "import glob, math, numpy, OpenEXR\n"
         "for path in sorted(glob.glob('radar/*.exr')):\n"
         "    file = OpenEXR.File(path, separate_channels=True)\n"
         "    power = file.channels()['sum_re'].pixels ** 2 + file.channels()['sum_im'].pixels ** 2\n"
-        "    print(path, power.shape, 10 * math.log10(power.max() / file.header()['noise_w']), 'dB over the noise')\n",
+        "    print(path, power.shape, 10 * math.log10(power.max() / numpy.ravel(file.header()['noise_w'])[0]), 'dB over the noise')\n",
 };
