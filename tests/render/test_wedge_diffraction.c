@@ -227,6 +227,7 @@ static void test_boundaries(void **state)
         const WedgeFrame wedge = plain(n);
         for (uint32_t i = 0; i < 60; i++) {
             const double from = pi * (0.05 + 0.9 * uniform(i, 0));
+            if (fabs(n * pi - from - pi) < 0.05) continue; /* along face 2, whose shadow boundary is singular */
             for (int which = 0; which < 4; which++) {
                 double at[11][2][2], u_t[3], u_r[3];
                 for (int k = 0; k < 11; k++) {
