@@ -1,4 +1,4 @@
-/* edges.c: integrals along a target's edges: what is seen of them, in segments with linear paths. */
+/* render/radar/edges.c: integrals along a target's edges: what is seen of them, in segments with linear paths. */
 #include "render/radar/edges.h"
 
 #include <assert.h>
@@ -6,7 +6,7 @@
 
 static const double pi = 3.14159265358979323846;
 static const double bend_rad = 0.02;  /* largest change of the sum of directions along a segment */
-static const double curve_rad = 0.05; /* largest departure of k path from a line, at a segment's ends */
+static const double curve_rad = 0.02; /* largest departure of k path from a line, at a segment's ends */
 enum { samples_most = 4096, segments_most = 65536 };
 
 /* What one pair of antennas sees. */
@@ -26,7 +26,7 @@ static void point_along(double out[3], const Wedge *w, double share)
 /* Distance of an antenna from a point over that from the phase centre; path as in scatter.h. */
 static double distance_ratio(const ScatterAntenna *a, double path_m)
 {
-    return isinf(a->range_m) ? 1 : 1 + path_m / a->range_m;
+    return 1 + path_m / a->range_m;
 }
 
 static bool seen(const View *view, const Wedge *w, double share)
@@ -53,8 +53,11 @@ static void emit_segment(const View *view, const Wedge *w, int index, double mid
     for (int a = 0; a < 2; a++) {
         const double path_m = scatter_path(s.u[a], view->antenna[a], s.p);
         s.path_m += path_m;
-        s.slope -= v3_dot(s.u[a], w->frame.z);
-        spread /= distance_ratio(view->antenna[a], path_m);
+        const double along = v3_dot(s.u[a], w->frame.z), ratio = distance_ratio(view->antenna[a], path_m);
+        s.slope -= along;
+        spread /= ratio;
+        /* the mean over the segment of what the path adds to its tangent */
+        s.path_m += (1 - along * along) / (ratio * view->antenna[a]->range_m) * length_m * length_m / 24;
         for (int q = 0; q < 2; q++) { /* the antenna's own polarisation, across the direction from here */
             const double *e = view->basis[a][q];
             v3_add_scaled(basis[a][q], e, -v3_dot(e, s.u[a]), s.u[a]);
@@ -77,7 +80,7 @@ static void emit_stretch(const View *view, const Wedge *w, int index, double fro
         for (int a = 0; a < 2; a++) {
             const ScatterAntenna *antenna = view->antenna[a];
             const double path_m = scatter_path(u, antenna, p);
-            if (!isinf(antenna->range_m)) bend += 1 / (antenna->range_m + path_m);
+            bend += 1 / (antenna->range_m + path_m);
         }
         bend_per_m = fmax(bend_per_m, bend);
     }

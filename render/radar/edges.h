@@ -32,7 +32,7 @@ typedef struct EdgeSegment {
     int    wedge;           /* whose it is */
     double p[3], length_m;  /* middle */
     double amplitude[2][2]; /* m; [received][transmitted], 0: h, 1: v */
-    double path_m, slope;   /* at the middle, as in scatter.h; its change per length of edge */
+    double path_m, slope;   /* as in scatter.h, the mean along the segment; its change per length of edge */
     double u[2][3];         /* unit directions to transmitter and receiver: d path = -dp . (u[0] + u[1]) */
 } EdgeSegment;
 

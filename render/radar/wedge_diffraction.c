@@ -1,4 +1,4 @@
-/* wedge_diffraction.c: fringe currents of a wedge's two faces, integrated in closed form.
+/* render/radar/wedge_diffraction.c: fringe currents of a wedge's two faces, integrated in closed form.
  *
  * In face axes (x along the face, y its normal, z along the edge) let the incident wave travel along d, c = d.z,
  * s = sqrt(1 - c^2), and come from the angle f about the edge; N = exterior_pi. Fields vary as exp(-j k c z), and E_z, H_z

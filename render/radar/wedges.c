@@ -1,4 +1,4 @@
-/* wedges.c: finds the wedges of a triangle mesh: corners welded, faces sorted by edge, straight pieces joined. */
+/* render/radar/wedges.c: finds the wedges of a triangle mesh: corners welded, faces sorted by edge, straight pieces joined. */
 #include "render/radar/wedges.h"
 
 #include <assert.h>
