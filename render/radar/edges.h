@@ -1,17 +1,17 @@
 /* render/radar/edges.h: the field that a target's edges scatter beyond physical optics.
  *
- * Each wedge is divided where an antenna loses sight of it, and into segments short enough that both paths are linear along
- * one and directions hardly change. A segment contributes
+ * Each wedge is divided where an antenna loses sight of it, and into segments short enough that both paths are linear
+ * along one and directions hardly change. A segment contributes
  *
  *     S_qp(k) = amplitude_qp sinc(k slope length / 2) exp(-j k path),      sinc x = sin x / x
  *
- * with an amplitude that holds at every frequency (wedge_diffraction.h), so that segments made once serve a whole band, up to
- * the k they were made for. To be added to physical optics of the same faces.
+ * with an amplitude that holds at every frequency (wedge_diffraction.h), so that segments made once serve a whole band,
+ * up to the k they were made for. To be added to physical optics of the same faces.
  *
  * Against an integral over the whole edge, 30 m and beyond: 2e-3 of its largest value (tests/render/test_edges.c).
  *
- * Metal only. First order: an edge is lit by the incident wave alone. What two edges do to one wave (a plate seen within some
- * 30 degrees of its plane with the electric field across the edges), and what corners add, is left out. */
+ * Metal only. First order: an edge is lit by the incident wave alone. What two edges do to one wave (a plate seen
+ * within some 30 degrees of its plane with the electric field across the edges), and what corners add, is left out. */
 #ifndef RENDER_RADAR_EDGES_H
 #define RENDER_RADAR_EDGES_H
 

@@ -1,18 +1,18 @@
 /* render/radar/wedge_diffraction.c: fringe currents of a wedge's two faces, integrated in closed form.
  *
- * In face axes (x along the face, y its normal, z along the edge) let the incident wave travel along d, c = d.z,
- * s = sqrt(1 - c^2), and come from the angle f about the edge; N = exterior_pi. Fields vary as exp(-j k c z), and E_z, H_z
- * obey the two-dimensional wave equation with k s. On the face the current is K_x = H_z, K_z = -H_x, with
- * H_x = (j / (k s^2)) (dE_z/dy / Z - c dH_z/dx). The strip runs along g = s x + c z, so its far field in direction u needs
- * integrals of the two-dimensional solutions times exp(j k s m x), m = (u.g - c^2) / s^2 <= 1. Put m = -cos a (a real in
- * 0 .. pi, or imaginary below -1). Sommerfeld's integral for the wedge, integrated over x, is the difference of one integrand
- * on two lines 2 pi apart: the residues at a and -a between them are all that is left,
+ * In face axes (x along the face, y its normal, z along the edge) let the incident wave travel along d, c = d.z, s =
+ * sqrt(1 - c^2), and come from the angle f about the edge; N = exterior_pi. Fields vary as exp(-j k c z), and E_z, H_z
+ * obey the two-dimensional wave equation with k s. On the face the current is K_x = H_z, K_z = -H_x, with H_x = (j / (k
+ * s^2)) (dE_z/dy / Z - c dH_z/dx). The strip runs along g = s x + c z, so its far field in direction u needs integrals
+ * of the two-dimensional solutions times exp(j k s m x), m = (u.g - c^2) / s^2 <= 1. Put m = -cos a (a real in 0 .. pi,
+ * or imaginary below -1). Sommerfeld's integral for the wedge, integrated over x, is the difference of one integrand on
+ * two lines 2 pi apart: the residues at a and -a between them are all that is left,
  *
- *     integral dE_z/dy = -(2/N) sin(f/N) / (cos(f/N) - cos(a/N)) = -(w(a - f) - w(a + f)) 2,     w(x) = cot(x / 2N) / 2N
+ *     integral dE_z/dy = -(2/N) sin(f/N) / (cos(f/N) - cos(a/N)) = -2 (w(a - f) - w(a + f)),   w(x) = cot(x/2N) / 2N
  *     integral H_z     = -(2 / (j k s sin a)) (w(a - f) + w(a + f))
  *
- * Physical optics is the same with N = 1: on a lit face (f < pi) w becomes g(x) = cot(x / 2N) / 2N - cot(x / 2) / 2, which
- * is regular at x = 0, where the boundaries are. H_z at the edge is 2 / N, for physical optics 2. */
+ * Physical optics is the same with N = 1: on a lit face (f < pi) w becomes g(x) = cot(x / 2N) / 2N - cot(x / 2) / 2,
+ * which is regular at x = 0, where the boundaries are. H_z at the edge is 2 / N, for physical optics 2. */
 #include "render/radar/wedge_diffraction.h"
 
 static const double pi = 3.14159265358979323846;
@@ -24,7 +24,8 @@ static double complex kernel(double complex x, double n, bool lit)
     if (cabs(x) < 0.1) { /* the difference of two poles; the next term is 2e-8 x^9 */
         const double complex x2 = x * x;
         const double m2 = 1 / (n * n), m4 = m2 * m2;
-        return x * ((1 - m2) / 12 + x2 * ((1 - m4) / 720 + x2 * ((1 - m4 * m2) / 30240 + x2 * (1 - m4 * m4) / 1209600)));
+        const double complex high = (1 - m4 * m2) / 30240 + x2 * (1 - m4 * m4) / 1209600;
+        return x * ((1 - m2) / 12 + x2 * ((1 - m4) / 720 + x2 * high));
     }
     return 1 / (2 * n * ctan(x / (2 * n))) - 1 / (2 * ctan(x / 2));
 }
@@ -83,8 +84,8 @@ double wedge_angle(const WedgeFrame *wedge, const double u[3])
     return f < 0 ? f + 2 * pi : f;
 }
 
-void wedge_fringe(double out[2][2], const WedgeFrame *wedge, const double u_t[3], const double t[2][3], const double u_r[3],
-                  const double r[2][3])
+void wedge_fringe(double out[2][2], const WedgeFrame *wedge, const double u_t[3], const double t[2][3],
+                  const double u_r[3], const double r[2][3])
 {
     memset(out, 0, 4 * sizeof **out);
     const double n = wedge->exterior_pi, opening = n * pi, f = wedge_angle(wedge, u_t), c_t = v3_dot(u_t, wedge->z);

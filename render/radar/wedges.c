@@ -1,4 +1,5 @@
-/* render/radar/wedges.c: finds the wedges of a triangle mesh: corners welded, faces sorted by edge, straight pieces joined. */
+/* render/radar/wedges.c: finds the wedges of a triangle mesh. Corners are welded, faces sorted by edge, straight pieces
+ * joined. */
 #include "render/radar/wedges.h"
 
 #include <assert.h>
@@ -124,7 +125,8 @@ static int find_sides(Side *out, const Model *m, const int *place)
     return count;
 }
 
-/* Whether vertex normals say that two faces are one smooth surface, at either end. flip: they look to opposite sides. */
+/* Whether vertex normals say that two faces are one smooth surface, at either end. flip: they look to opposite sides.
+ * */
 static bool smooth(const Model *m, const Side *s, const Side *t, bool flip, double angle_rad)
 {
     const int end[2][2] = {{s->from, t->from}, {s->to, t->to}};
@@ -309,7 +311,8 @@ static int join(Found *f, const End *end, bool *used)
                 for (int k = low; k < 2 * f->count && end[k].place == place && !more; k++) {
                     const int j = end[k].piece;
                     bool swap;
-                    if (used[j] || !continues(&swap, &first, &f->wedge[j]) || f->end[j][!tip != swap] != place) continue;
+                    if (used[j] || !continues(&swap, &first, &f->wedge[j])) continue;
+                    if (f->end[j][!tip != swap] != place) continue;
                     used[j] = more = true;
                     place = f->end[j][tip != swap];
                     memcpy(whole.p[tip], f->wedge[j].p[tip != swap], sizeof whole.p[tip]);

@@ -1,16 +1,17 @@
 /* render/radar/wedges.h: the straight edges of a model that scatter as wedges.
  *
- * Faces that meet in an edge are those of one part whose corners coincide within weld_m; edges with one face only are closed
- * with those of the node's other parts. What an edge is follows from the directions of its faces about it:
+ * Faces that meet in an edge are those of one part whose corners coincide within weld_m; edges with one face only are
+ * closed with those of the node's other parts. What an edge is follows from the directions of its faces about it:
  *
  *     one         a half plane: an open boundary, or the rim of a sheet modelled with both of its sides
- *     two         a wedge, where the angle through free space exceeds pi; seen from behind as well where the part is open
- *                 or the faces are two-sided. Faces that turn by less than angle_rad are one surface; so are those whose
- *                 vertex normals differ by less at either end (facets of a curved surface)
+ *     two         a wedge, where the angle through free space exceeds pi; seen from behind as well where the part is
+ *                 open or the faces are two-sided. Faces that turn by less than angle_rad are one surface; so are
+ *                 those whose vertex normals differ by less at either end (facets of a curved surface)
  *     more        junctions, left out and counted
  *
- * Concave edges are left out: rays that bounce between their faces account for most of them. Pieces that continue one another
- * in a straight line with the same faces (to 1e-3 rad) are one wedge. Order follows the model's own vertices. */
+ * Concave edges are left out: rays that bounce between their faces account for most of them. Pieces that continue one
+ * another in a straight line with the same faces (to 1e-3 rad) are one wedge. Order follows the model's own vertices.
+ * */
 #ifndef RENDER_RADAR_WEDGES_H
 #define RENDER_RADAR_WEDGES_H
 

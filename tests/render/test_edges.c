@@ -1,5 +1,5 @@
-/* Wedges of meshes whose edges are known; the integral along them against quadrature; plates against the Austin RCS Benchmark
- * Suite's integral-equation results. */
+/* Wedges of meshes whose edges are known; the integral along them against quadrature; plates against the Austin RCS
+ * Benchmark Suite's integral-equation results. */
 #include "tests/check.h"
 #include "render/radar/edges.h"
 
@@ -166,7 +166,8 @@ static void test_sheets(void **state)
             CHECK_NEAR(total_length(&list, 1.5), 2, 1e-9);
             CHECK_NEAR(total_length(&list, 2), 8, 1e-9);
             for (int i = 0; i < list.count; i++)
-                if (list.wedge[i].frame.exterior_pi < 1.9) CHECK(fmax(list.wedge[i].frame.x[1], list.wedge[i].frame.x[2]) > 0.99);
+                if (list.wedge[i].frame.exterior_pi < 1.9)
+                    CHECK(fmax(list.wedge[i].frame.x[1], list.wedge[i].frame.x[2]) > 0.99);
             wedges_destroy(&list);
         }
         /* three sheets at one edge: a junction */
@@ -185,34 +186,20 @@ static void test_sheets(void **state)
     wedges_destroy(&list);
 }
 
-/* A step: two boxes' outline as one closed body has one concave edge. */
+/* A step, closed, 1 m high: one concave edge of it. Long sides are in two pieces each, so that corners meet corners. */
 static void test_concave(void **state)
 {
     (void)state;
-    const double corner[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}; /* counter-clockwise, concave at (1, 1) */
+    static const double ring[8][2] = {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}, {0, 1}};
+    const double x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
     begin();
-    for (int i = 0; i < 6; i++) {
-        const double *a = corner[i], *b = corner[(i + 1) % 6];
-        add_panel((const double[3]){a[0], a[1], 0}, (const double[3]){b[0] - a[0], b[1] - a[1], 0},
-                  (const double[3]){0, 0, 1}, 1, 0);
-    }
-    for (int k = 0; k < 3; k++) { /* squares of the outline, below and above */
-        const double x0 = k == 1, y0 = k == 2;
-        add_panel((const double[3]){x0, y0, 0}, (const double[3]){0, 1, 0}, (const double[3]){1, 0, 0}, 1, 0);
-        add_panel((const double[3]){x0, y0, 1}, (const double[3]){1, 0, 0}, (const double[3]){0, 1, 0}, 1, 0);
-    }
-    /* the long sides again, in two pieces each, so that corners meet corners */
-    mesh.triangle_count = 0;
-    const double ring[8][2] = {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}, {0, 1}};
     for (int i = 0; i < 8; i++) {
         const double *a = ring[i], *b = ring[(i + 1) % 8];
-        add_panel((const double[3]){a[0], a[1], 0}, (const double[3]){b[0] - a[0], b[1] - a[1], 0},
-                  (const double[3]){0, 0, 1}, 1, 0);
+        add_panel((const double[3]){a[0], a[1], 0}, (const double[3]){b[0] - a[0], b[1] - a[1], 0}, z, 1, 0);
     }
-    for (int k = 0; k < 3; k++) {
-        const double x0 = k == 1, y0 = k == 2;
-        add_panel((const double[3]){x0, y0, 0}, (const double[3]){0, 1, 0}, (const double[3]){1, 0, 0}, 1, 0);
-        add_panel((const double[3]){x0, y0, 1}, (const double[3]){1, 0, 0}, (const double[3]){0, 1, 0}, 1, 0);
+    for (int k = 0; k < 3; k++) { /* squares of the outline, below and above */
+        add_panel((const double[3]){k == 1, k == 2, 0}, y, x, 1, 0);
+        add_panel((const double[3]){k == 1, k == 2, 1}, x, y, 1, 0);
     }
     WedgeList list = find();
     CHECK(list.concave == 1 && list.junctions == 0 && list.count == 5 + 12);
@@ -420,13 +407,13 @@ static void test_place(void **state)
 static double sinc(double x) { return fabs(x) < 1e-8 ? 1 : sin(x) / x; }
 
 /* Physical optics of a rectangle (centre, half sides, its normal towards the antenna), backscatter, closed form. */
-static void add_rectangle(ScatterMatrix *s, const double centre[3], const double a[3], const double b[3], const double n[3],
-                          const double u[3], double k)
+static void add_rectangle(ScatterMatrix *s, const double centre[3], const double a[3], const double b[3],
+                          const double n[3], const double u[3], double k)
 {
     if (v3_dot(n, u) <= 0) return;
     const double area = 4 * v3_length(a) * v3_length(b);
-    const double complex wave =
-        -I * k / (2 * pi) * area * sinc(2 * k * v3_dot(u, a)) * sinc(2 * k * v3_dot(u, b)) * cexp(2 * I * k * v3_dot(u, centre));
+    const double pattern = area * sinc(2 * k * v3_dot(u, a)) * sinc(2 * k * v3_dot(u, b));
+    const double complex wave = -I * k / (2 * pi) * pattern * cexp(2 * I * k * v3_dot(u, centre));
     double e[2][3], d[3];
     scatter_basis(e[0], e[1], u);
     v3_scale(d, -1, u);
@@ -509,16 +496,17 @@ static bool compare(Medians out[windows], const char *name, const double size[3]
             for (int which = 0; which < 3; which++) {
                 static double of[2 * angles_most];
                 int n = 0;
-                for (int i = 0; i < count; i++)
+                for (int i = 0; i < count; i++) {
+                    if (phi_deg[i] < window_deg[w][0] || phi_deg[i] > window_deg[w][1]) continue;
                     for (int q = 0; q < 2; q++)
-                        if (phi_deg[i] >= window_deg[w][0] && phi_deg[i] <= window_deg[w][1] && (which == 2 || which == q))
-                            of[n++] = error[edges][q][i];
+                        if (which == 2 || which == q) of[n++] = error[edges][q][i];
+                }
                 qsort(of, (size_t)n, sizeof *of, double_order);
                 (edges ? out[w].with : out[w].without)[which] = of[n / 2];
             }
+        const double *from = out[w].without, *to = out[w].with;
         printf("  %2.0f-%2.0f deg: HH %5.2f -> %5.2f, VV %5.2f -> %5.2f, both %5.2f -> %5.2f dB\n", window_deg[w][0],
-               window_deg[w][1], out[w].without[0], out[w].with[0], out[w].without[1], out[w].with[1], out[w].without[2],
-               out[w].with[2]);
+               window_deg[w][1], from[0], to[0], from[1], to[1], from[2], to[2]);
     }
     return true;
 }
@@ -551,14 +539,14 @@ static void test_austin_thick(void **state)
     CHECK(m[0].without[2] > 5 && m[0].with[2] < 1.5 && m[0].with[1] < 1.0);
 }
 
-/* Ten degrees from the plate's plane all the way round: what is left out of first order rules except before the front edge
- * (80 to 90 degrees). Better than without edges, and no more than that is claimed. */
+/* Ten degrees from the plate's plane all the way round: what is left out of first order rules except before the front
+ * edge (80 to 90 degrees). Better than without edges, and no more than that is claimed. */
 static void test_austin_grazing(void **state)
 {
     (void)state;
     Medians m[windows];
-    if (!compare(m, "radar/austin/IIA_plate_W128in_xy_theta80_f6_ref.csv", (const double[3]){128 * inch_m, 224 * inch_m, 0}))
-        skip();
+    const double size[3] = {128 * inch_m, 224 * inch_m, 0};
+    if (!compare(m, "radar/austin/IIA_plate_W128in_xy_theta80_f6_ref.csv", size)) skip();
     CHECK(m[5].with[2] < 4.5 && m[5].without[2] > 20 && m[0].with[2] < 0.6 * m[0].without[2]);
 }
 

@@ -1,9 +1,10 @@
 /* Fringe coefficients of wedges against solutions of the wedge that do not share their derivation.
  *
- * On the diffraction cone: Keller's coefficients (J. Opt. Soc. Am. 52, 1962) less physical optics'. Off it: the face currents as
- * sums of Bessel functions (Bowman, Senior, Uslenghi, "Electromagnetic and Acoustic Scattering by Simple Shapes", ch. 6),
- * integrated term by term: integral of J_v(x) exp(-p x) dx = q^v / sqrt(p^2 + 1), of J_v(x) exp(-p x) / x: q^v / v, with
- * q = sqrt(p^2 + 1) - p. The sums are geometric series; for -1 < m < 1 they stand for their limit without losses. */
+ * On the diffraction cone: Keller's coefficients (J. Opt. Soc. Am. 52, 1962) less physical optics'. Off it: the face
+ * currents as sums of Bessel functions (Bowman, Senior, Uslenghi, "Electromagnetic and Acoustic Scattering by Simple
+ * Shapes", ch. 6), integrated term by term: integral of J_v(x) exp(-p x) dx = q^v / sqrt(p^2 + 1), of J_v(x) exp(-p x)
+ * / x: q^v / v, with q = sqrt(p^2 + 1) - p. The sums are geometric series; for -1 < m < 1 they stand for their limit
+ * without losses. */
 #include "tests/check.h"
 #include "render/radar/wedge_diffraction.h"
 
@@ -54,8 +55,8 @@ static void keller(double out[2], double n, double f, double from)
     out[1] = common * (minus + plus);
 }
 
-/* Physical optics of the lit faces, -(j k / 2 pi) r . (n x (d x t)) integrated over the strip that starts at the edge and
- * runs along the face as the diffracted ray does: x (1, c / s) in face axes. */
+/* Physical optics of the lit faces, -(j k / 2 pi) r . (n x (d x t)) integrated over the strip that starts at the edge
+ * and runs along the face as the diffracted ray does: x (1, c / s) in face axes. */
 static void optics(double out[2][2], const WedgeFrame *w, const double u_t[3], const double u_r[3])
 {
     double t[2][3], r[2][3], d[3], sum[3];
@@ -119,7 +120,8 @@ static void test_cone(void **state)
 }
 
 /* Integrals over a face of dE_z/dy and of j k_t H_z, times exp(j k_t m x): 4 / N times the sum of w^i sin(i f / N), and
- * 2 j / (N sqrt(p^2 + 1)) times 1 + 2 the sum of w^i cos(i f / N), p = -j m, w = (j q)^(1 / N); both sums are geometric. */
+ * 2 j / (N sqrt(p^2 + 1)) times 1 + 2 the sum of w^i cos(i f / N), p = -j m, w = (j q)^(1 / N); both sums are
+ * geometric. */
 static void bessel_integrals(double out[2], double n, double from, double m)
 {
     const double complex root = m < -1 ? I * sqrt(m * m - 1) : sqrt(1 - m * m), w = cpow(I * (root + I * m), 1 / n);
@@ -179,13 +181,15 @@ static void test_off_cone(void **state)
             checked[steep]++;
         }
     }
-    printf("off the cone: %d steep, largest difference %.1e; %d others, %.1e\n", checked[1], worst[1], checked[0], worst[0]);
+    printf("off the cone: %d steep, largest difference %.1e; %d others, %.1e\n", checked[1], worst[1], checked[0],
+           worst[0]);
     CHECK(checked[0] > 2000 && checked[1] > 200);
     CHECK_NEAR(worst[1], 0, 1e-11);
     CHECK_NEAR(worst[0], 0, 1e-11);
 }
 
-/* The whole coefficient on the cone, fringe and physical optics, is the same when transmitter and receiver change places. */
+/* The whole coefficient on the cone, fringe and physical optics, is the same when transmitter and receiver change
+ * places. */
 static void test_reciprocity(void **state)
 {
     (void)state;
@@ -204,7 +208,8 @@ static void test_reciprocity(void **state)
     }
 }
 
-/* Edge-on from the front, electric field along the edge: sigma = L^2 / pi (Knott, Shaeffer, Tuley, "Radar Cross Section"). */
+/* Edge-on from the front, electric field along the edge: sigma = L^2 / pi (Knott, Shaeffer, Tuley, "Radar Cross
+ * Section"). */
 static void test_knife_edge(void **state)
 {
     (void)state;
@@ -290,8 +295,8 @@ static void test_flat(void **state)
     }
 }
 
-/* Every combination of directions along faces, edges, boundaries and near them: finite, and within the limit that is stated;
- * in backscatter well within. */
+/* Every combination of directions along faces, edges, boundaries and near them: finite, and within the limit that is
+ * stated; in backscatter well within. */
 static void test_finite(void **state)
 {
     (void)state;
@@ -299,7 +304,8 @@ static void test_finite(void **state)
     const double off[] = {0, 1e-15, -1e-15, 1e-9, -1e-9, 1e-4, -1e-4};
     double worst = 0;
     for (int w = 0; w < 5; w++) {
-        const double n = exterior_pi[w], angle[] = {0, pi / 4, pi / 2, 3 * pi / 4, pi, n * pi - pi, n * pi / 2, n * pi, 2 * pi};
+        const double n = exterior_pi[w];
+        const double angle[] = {0, pi / 4, pi / 2, 3 * pi / 4, pi, n * pi - pi, n * pi / 2, n * pi, 2 * pi};
         const double cosine[] = {0, 0.3, -0.3, 1, -1, 1 - 1e-15, 1 - 1e-12, 1e-9 - 1, 0.9999, -0.9999};
         const WedgeFrame wedge = plain(n);
         double u[9 * 7 * 10][3], t[9 * 7 * 10][2][3], got[2][2];
