@@ -80,8 +80,12 @@ static void add_face(double out_e[3], double out_h[3], const double x[3], const 
 
 double wedge_angle(const WedgeFrame *wedge, const double u[3])
 {
-    const double f = atan2(v3_dot(u, wedge->y), v3_dot(u, wedge->x));
-    return f < 0 ? f + 2 * pi : f;
+    static const double rounding = 1e-9;
+    const double opening = wedge->exterior_pi * pi, at = atan2(v3_dot(u, wedge->y), v3_dot(u, wedge->x));
+    const double f = at < 0 ? at + 2 * pi : at;
+    if (f <= opening) return f;
+    if (f > 2 * pi - rounding) return 0;
+    return f < opening + rounding ? opening : f;
 }
 
 void wedge_fringe(double out[2][2], const WedgeFrame *wedge, const double u_t[3], const double t[2][3],

@@ -42,7 +42,8 @@ typedef struct WedgeFrame {
 void wedge_fringe(double out[2][2], const WedgeFrame *wedge, const double u_t[3], const double t[2][3],
                   const double u_r[3], const double r[2][3]);
 
-/* Angle of a direction about the edge, from face 1 through free space, rad: 0 .. 2 pi. */
+/* Angle of a direction about the edge, from face 1 through free space, rad: 0 .. 2 pi; above exterior_pi pi: into the
+ * metal. Directions along a face, to 1e-9 rad, are outside. */
 double wedge_angle(const WedgeFrame *wedge, const double u[3]);
 
 #endif

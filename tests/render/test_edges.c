@@ -440,8 +440,22 @@ typedef struct Medians {
     double without[3], with[3];
 } Medians;
 
-/* A box of size m (0: no thickness) about the origin. False: no data. */
-static bool compare(Medians out[windows], const char *name, const double size[3])
+/* What the sides of a plate at y = +-width / 2, height long, do to one another's waves, for the electric field across
+ * them and antennas in the plane across them: Keller's coefficients for hard half planes, once and again, over all
+ * orders. Waves cross on both faces, each with half of what grazing incidence with its reflection would be. Not near
+ * grazing. */
+static double complex strip_orders(double k, double phi_rad, double width, double height)
+{
+    /* cosines of half the angles from the faces; the far edge's is 0 along the plate, where this does not hold */
+    const double near = sqrt((1 + sin(phi_rad)) / 2), far = sqrt(fmax(1 - sin(phi_rad), 1e-12) / 2);
+    const double complex cross = csqrt(2 * pi / k) * cexp(-I * (pi / 4 + k * width)) / sqrt(width);
+    const double complex again = -cross / (2 * pi), turn = cexp(I * k * width * sin(phi_rad));
+    const double complex even = 2 / (near * far), odd = again * (turn / (far * far) + 1 / (turn * near * near));
+    return -height * cross / (4 * pi * pi) * (even + odd) / (1 - again * again);
+}
+
+/* A box of size m (0: no thickness) about the origin. False: no data. strip: with strip_orders. */
+static bool compare(Medians out[windows], const char *name, const double size[3], bool strip)
 {
     char path[512];
     if (!reference_path(path, name)) return false;
@@ -480,6 +494,7 @@ static bool compare(Medians out[windows], const char *name, const double size[3]
         s[1] = s[0];
         const EdgeConfig config = {.k_per_m = k, .sample_m = 0.05, .clear_m = 1e-4};
         edge_field(&s[1], list.wedge, list.count, &at, &at, &config);
+        if (strip) s[1].hh += strip_orders(k, phi * rad_per_deg, size[1], size[2]);
         for (int edges = 0; edges < 2; edges++) {
             error[edges][0][count] = fabs(20 * log10(cabs(s[edges].hh)) + 10 * log10(4 * pi) - hh);
             error[edges][1][count] = fabs(20 * log10(cabs(s[edges].vv)) + 10 * log10(4 * pi) - vv);
@@ -520,11 +535,24 @@ static void test_austin_thin(void **state)
     (void)state;
     const double size[3] = {0, 10.5 * inch_m, 6 * inch_m};
     Medians m[windows];
-    if (!compare(m, "radar/austin/IIA_plate_W6in_zy_f11_ref.csv", size)) skip();
+    if (!compare(m, "radar/austin/IIA_plate_W6in_zy_f11_ref.csv", size, false)) skip();
     CHECK(m[0].without[2] > 5 && m[0].with[2] < 1.0 && m[0].with[0] < 2.0 && m[0].with[1] < 0.6);
     CHECK(m[3].with[1] < 0.6 && m[4].with[1] < 1.3 && m[5].with[1] < 1.8);
-    if (!compare(m, "radar/austin/IIA_plate_W6in_zy_f10_ref.csv", size)) skip();
+    if (!compare(m, "radar/austin/IIA_plate_W6in_zy_f10_ref.csv", size, false)) skip();
     CHECK(m[0].without[2] > 5 && m[0].with[2] < 1.5 && m[0].with[1] < 1.0);
+}
+
+/* What is missing in HH is waves that cross the plate: with them, added here in closed form, HH is as good as VV to 80
+ * degrees. */
+static void test_austin_second_order(void **state)
+{
+    (void)state;
+    const double size[3] = {0, 10.5 * inch_m, 6 * inch_m};
+    Medians m[windows];
+    if (!compare(m, "radar/austin/IIA_plate_W6in_zy_f11_ref.csv", size, true)) skip();
+    for (int w = 1; w < 5; w++) CHECK(m[w].with[0] < 0.8);
+    if (!compare(m, "radar/austin/IIA_plate_W6in_zy_f10_ref.csv", size, true)) skip();
+    for (int w = 1; w < 5; w++) CHECK(m[w].with[0] < 1.3);
 }
 
 /* 64 mil thick: twelve right-angled wedges, opposite ones 0.03 and 0.06 wavelengths apart. */
@@ -533,9 +561,9 @@ static void test_austin_thick(void **state)
     (void)state;
     const double size[3] = {0.064 * inch_m, 10.5 * inch_m, 6 * inch_m};
     Medians m[windows];
-    if (!compare(m, "radar/austin/IIB_thinPECplate_W6in_f11_ref.csv", size)) skip();
+    if (!compare(m, "radar/austin/IIB_thinPECplate_W6in_f11_ref.csv", size, false)) skip();
     CHECK(m[0].without[2] > 4 && m[0].with[2] < 0.9 && m[0].with[1] < 0.5);
-    if (!compare(m, "radar/austin/IIB_thinPECplate_W6in_f10_ref.csv", size)) skip();
+    if (!compare(m, "radar/austin/IIB_thinPECplate_W6in_f10_ref.csv", size, false)) skip();
     CHECK(m[0].without[2] > 5 && m[0].with[2] < 1.5 && m[0].with[1] < 1.0);
 }
 
@@ -546,7 +574,7 @@ static void test_austin_grazing(void **state)
     (void)state;
     Medians m[windows];
     const double size[3] = {128 * inch_m, 224 * inch_m, 0};
-    if (!compare(m, "radar/austin/IIA_plate_W128in_xy_theta80_f6_ref.csv", size)) skip();
+    if (!compare(m, "radar/austin/IIA_plate_W128in_xy_theta80_f6_ref.csv", size, false)) skip();
     CHECK(m[5].with[2] < 4.5 && m[5].without[2] > 20 && m[0].with[2] < 0.6 * m[0].without[2]);
 }
 
@@ -556,7 +584,8 @@ int main(void)
         cmocka_unit_test(test_box),      cmocka_unit_test(test_sheets),      cmocka_unit_test(test_concave),
         cmocka_unit_test(test_cylinder), cmocka_unit_test(test_integral),    cmocka_unit_test(test_segments),
         cmocka_unit_test(test_hidden),   cmocka_unit_test(test_place),       cmocka_unit_test(test_austin_thin),
-        cmocka_unit_test(test_austin_thick), cmocka_unit_test(test_austin_grazing),
+        cmocka_unit_test(test_austin_second_order), cmocka_unit_test(test_austin_thick),
+        cmocka_unit_test(test_austin_grazing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

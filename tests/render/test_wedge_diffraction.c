@@ -329,12 +329,29 @@ static void test_finite(void **state)
     CHECK(worst < 0.7);
 }
 
+/* Straight along either face, a rounding to either side: outside, with the value beside it. */
+static void test_along_faces(void **state)
+{
+    (void)state;
+    const WedgeFrame wedge = plain(1.5);
+    for (int face = 0; face < 2; face++) {
+        double at[5][2][2], u[3];
+        const double off[] = {-1e-12, 0, 1e-12, face ? -1e-6 : 1e-6, face ? 1e-3 : -1e-3};
+        for (int k = 0; k < 5; k++) {
+            direction(u, face * 1.5 * pi + off[k], 0.1);
+            fringe(at[k], &wedge, u, u);
+        }
+        for (int k = 0; k < 3; k++) CHECK_NEAR(at[k][1][1], at[3][1][1], 1e-5);
+        CHECK(fabs(at[3][1][1]) > 0.05 && at[4][1][1] == 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cone),       cmocka_unit_test(test_off_cone),   cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_knife_edge), cmocka_unit_test(test_boundaries), cmocka_unit_test(test_faces),
-        cmocka_unit_test(test_flat),       cmocka_unit_test(test_finite),
+        cmocka_unit_test(test_flat),       cmocka_unit_test(test_finite),     cmocka_unit_test(test_along_faces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
