@@ -17,7 +17,8 @@
 
 #include "render/radar/wedges.h"
 
-/* Whether a point beside an edge (target frame, clear of the metal) sees the transmitter (0) or the receiver (1). */
+/* Whether a point beside an edge (target frame, clear of the metal) sees the transmitter (0) or the receiver (1). The
+ * receiver is asked for only where the transmitter is seen; where both are one antenna, it need not be traced. */
 typedef bool EdgeVisible(void *user, const double p[3], int antenna);
 
 typedef struct EdgeConfig {

@@ -179,17 +179,47 @@ typedef struct Fan {
     const Side *side[2]; /* the first that runs against low to high, and along it; NULL: none */
 } Fan;
 
+enum { fans_most = 8 };
+
 static const Side *first_of(const Fan *fan) { return fan->side[0] ? fan->side[0] : fan->side[1]; }
+
+/* An edge of three faces or more scatters as a wedge where free space between two of them spans more than pi; what the
+ * others do is hidden from there. */
+static void add_junction(Found *f, const Fan *fan, int fans)
+{
+    const Side *base = first_of(&fan[0]);
+    double angle[fans_most], widest = 0;
+    int    from = 0, to = 0;
+    for (int i = 0; i < fans; i++) { /* about the direction from low to high */
+        const double *x = first_of(&fan[i])->x, up = v3_dot(x, base->n) * (base->along ? 1 : -1);
+        angle[i] = atan2(up, v3_dot(x, base->x));
+    }
+    for (int i = 0; i < fans; i++) {
+        double gap = 2 * pi; /* to the next one */
+        int    next = i;
+        for (int k = 0; k < fans; k++) {
+            const double ahead = angle[k] - angle[i] + (angle[k] < angle[i] ? 2 * pi : 0);
+            if (k != i && ahead < gap) gap = ahead, next = k;
+        }
+        if (gap > widest) widest = gap, from = i, to = next;
+    }
+    const Side *a = first_of(&fan[from]), *b = first_of(&fan[to]);
+    const bool free = fan[from].side[true] && fan[to].side[false];
+    if (widest < pi + f->angle_rad || !(free || f->open[a->part] || f->open[b->part]))
+        f->junctions++;
+    else
+        add_wedge(f, a, a->along, widest);
+}
 
 /* The faces side[0 .. count) of one edge. */
 static void add_edge(Found *f, const Side *const *side, int count)
 {
-    Fan fan[2] = {0};
+    Fan fan[fans_most] = {0};
     int fans = 0;
     for (int i = 0; i < count; i++) {
         int k = 0;
         while (k < fans && v3_dot(first_of(&fan[k])->x, side[i]->x) < cos(same_rad)) k++;
-        if (k == 2) {
+        if (k == fans_most) {
             f->junctions++;
             return;
         }
@@ -198,6 +228,10 @@ static void add_edge(Found *f, const Side *const *side, int count)
     }
     if (fans == 1) {
         add_wedge(f, first_of(&fan[0]), true, 2 * pi);
+        return;
+    }
+    if (fans > 2) {
+        add_junction(f, fan, fans);
         return;
     }
     /* Angle from the first face to the second, counted to the side that the first looks to. */

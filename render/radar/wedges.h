@@ -7,7 +7,7 @@
  *     two         a wedge, where the angle through free space exceeds pi; seen from behind as well where the part is
  *                 open or the faces are two-sided. Faces that turn by less than angle_rad are one surface; so are
  *                 those whose vertex normals differ by less at either end (facets of a curved surface)
- *     more        junctions, left out and counted
+ *     more        a wedge, where free space between two of them spans more than pi; else left out and counted
  *
  * Concave edges are left out: rays that bounce between their faces account for most of them. Pieces that continue one
  * another in a straight line with the same faces (to 1e-3 rad) are one wedge. Order follows the model's own vertices.
@@ -33,7 +33,7 @@ typedef struct Wedge {
 typedef struct WedgeList {
     int    count;
     Wedge *wedge;    /* node axes */
-    int    concave, junctions; /* pieces left out */
+    int    concave, junctions; /* pieces left out: of two faces, of more */
 } WedgeList;
 
 /* model: one that passes model_check. STATUS_NO_MEMORY is the only failure. */

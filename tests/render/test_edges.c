@@ -186,6 +186,42 @@ static void test_sheets(void **state)
     wedges_destroy(&list);
 }
 
+/* A fin on a plate, and on a roof's ridge: the fin's foot is no wedge, for it divides the free space. Two boxes of one
+ * part, side by side: where they touch, their common wall is inside, and top edges go on over it. */
+static void test_junctions(void **state)
+{
+    (void)state;
+    const double o[3] = {0}, x[3] = {1, 0, 0}, left[3] = {0, 1, 0}, right[3] = {0, -1, 0}, up[3] = {0, 0, 1};
+    for (int ridge = 0; ridge < 2; ridge++) {
+        const double low[3] = {0, 1, -1}, other[3] = {0, -1, -1};
+        begin();
+        add_panel(o, x, ridge ? low : left, 1, 0);
+        add_panel(o, ridge ? other : right, x, 1, 0);
+        add_panel(o, x, up, 1, 0);
+        add_panel(o, up, x, 1, 0);
+        WedgeList list = find();
+        CHECK(list.junctions == 1 && list.count == (ridge ? 9 : 7)); /* the flat plate's sides go on past the fin */
+        wedges_destroy(&list);
+    }
+    /* without the plate's right half, with a brace: free space goes from the left half, below, to the fin */
+    begin();
+    add_panel(o, x, left, 1, 0);
+    add_panel(o, x, (const double[3]){0, 1, 1}, 1, 0);
+    add_panel(o, x, up, 1, 0);
+    WedgeList list = find();
+    CHECK(list.junctions == 0 && list.count == 10);
+    CHECK_NEAR(total_length(&list, 1.5), 1, 1e-9);
+    wedges_destroy(&list);
+
+    begin();
+    add_box(o, (const double[3]){1, 1, 1}, 1, 0);
+    add_box(x, (const double[3]){1, 1, 1}, 1, 0);
+    list = find();
+    CHECK(list.junctions == 4 && list.count == 12);
+    CHECK_NEAR(total_length(&list, 1.5), 4 * (2 + 1 + 1), 1e-9);
+    wedges_destroy(&list);
+}
+
 /* A step, closed, 1 m high: one concave edge of it. Long sides are in two pieces each, so that corners meet corners. */
 static void test_concave(void **state)
 {
@@ -207,13 +243,16 @@ static void test_concave(void **state)
     wedges_destroy(&list);
 }
 
-/* A closed cylinder of few facets: its side counts as smooth by its vertex normals, and as facets without them. */
+/* A closed cylinder: its side counts as smooth by its vertex normals, or because its facets turn little; else as
+ * facets. */
 static void test_cylinder(void **state)
 {
     (void)state;
     const double radius_m = 0.5, up[3] = {0, 0, 1}, down[3] = {0, 0, -1};
-    enum { facets = 12 };
-    for (int smooth = 0; smooth < 2; smooth++) {
+    static const int facets_of[] = {12, 12, 48};
+    for (int which = 0; which < 3; which++) {
+        const int  facets = facets_of[which];
+        const bool smooth = which == 1;
         begin();
         for (int i = 0; i < facets; i++) {
             double p[2][3], n[2][3], top[2][3];
@@ -236,7 +275,7 @@ static void test_cylinder(void **state)
             add_triangle(cap[1][0], cap[1][1], cap[1][2], 0);
         }
         WedgeList list = find();
-        CHECK(list.count == 2 * facets + (smooth ? 0 : facets));
+        CHECK(list.count == 2 * facets + (which == 0 ? facets : 0));
         CHECK_NEAR(total_length(&list, 1.5), 2 * facets * 2 * radius_m * sin(pi / facets), 1e-9);
         check_outward(&list, (const double[3]){0, 0, 0.5});
         wedges_destroy(&list);
@@ -582,6 +621,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_box),      cmocka_unit_test(test_sheets),      cmocka_unit_test(test_concave),
+        cmocka_unit_test(test_junctions),
         cmocka_unit_test(test_cylinder), cmocka_unit_test(test_integral),    cmocka_unit_test(test_segments),
         cmocka_unit_test(test_hidden),   cmocka_unit_test(test_place),       cmocka_unit_test(test_austin_thin),
         cmocka_unit_test(test_austin_second_order), cmocka_unit_test(test_austin_thick),
