@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # The radar of radar.preset, end to end: a sphere of 10 m2 at 3 km against the radar equation on paper; a truck seen among the
-# ground; the same bits for any threads, skips
-# and span; what is refused. labels: slow
+# ground; the same bits for any threads, skips and span; what is refused. labels: slow
 . "$(dirname "$0")/common.sh"
 command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
 
