@@ -79,21 +79,36 @@ static Status write_map(const char *path, const Frame *f)
     return status;
 }
 
-/* Power of the sum channel in decibels: black at 5 dB below the noise, white at the greatest, or 40 dB above that. */
+enum { plot_rows = 96, map_rows = 256 };
+
+static double power_db(double complex v) { return 10 * log10(creal(v) * creal(v) + cimag(v) * cimag(v)); }
+
+/* To look at: the range profile, columns as high as their decibels; below it the power of the map's sum channel in decibels, each row
+ * as often as makes it some 256 rows high, approaching on top. Both from 5 dB below the noise to the greatest, at least 45 dB. */
 static Status write_picture(const char *path, const RadarFrame *r)
 {
-    const size_t cells = (size_t)r->map.rows * (size_t)r->map.columns;
-    uint8_t     *grey = malloc(cells);
+    const int    columns = r->map.columns, again = map_rows / r->map.rows > 1 ? map_rows / r->map.rows : 1;
+    const int    height = plot_rows + again * r->map.rows;
+    const size_t cells = (size_t)r->map.rows * (size_t)columns;
+    uint8_t     *grey = calloc((size_t)height * (size_t)columns, 1);
     if (!grey) return STATUS_NO_MEMORY;
-    double most = 0;
-    for (size_t i = 0; i < cells; i++) most = fmax(most, creal(r->map.cell[i] * conj(r->map.cell[i])));
+    /* a pulse's noise is that of a cell times the pulses, but for the window over them */
     const double noise_db = 10 * log10(r->receiver.noise_w * r->map.noise_share) - 5;
-    const double span_db = fmax(10 * log10(most) - noise_db, 45);
-    for (size_t i = 0; i < cells; i++) {
-        const double power_db = 10 * log10(creal(r->map.cell[i] * conj(r->map.cell[i])));
-        grey[i] = (uint8_t)lround(255 * clamp((power_db - noise_db) / span_db, 0, 1));
+    const double pulse_db = noise_db + 10 * log10(r->map.rows);
+    double       most_db = noise_db + 45, most_pulse_db = pulse_db + 45;
+    for (size_t i = 0; i < cells; i++) most_db = fmax(most_db, power_db(r->map.cell[i]));
+    for (int x = 0; x < columns; x++) most_pulse_db = fmax(most_pulse_db, 10 * log10(r->profile_w[x]));
+    for (int x = 0; x < columns; x++) {
+        const double share = (10 * log10(r->profile_w[x]) - pulse_db) / (most_pulse_db - pulse_db);
+        const int    top = plot_rows - (int)lround((plot_rows - 2) * clamp(share, 0, 1));
+        for (int y = top; y < plot_rows - 1; y++) grey[(size_t)y * (size_t)columns + (size_t)x] = 200;
     }
-    const Status status = image_write_png(path, grey, r->map.columns, r->map.rows, 1, 8);
+    for (int y = plot_rows; y < height; y++)
+        for (int x = 0; x < columns; x++) {
+            const double db = power_db(r->map.cell[(size_t)((y - plot_rows) / again) * (size_t)columns + (size_t)x]);
+            grey[(size_t)y * (size_t)columns + (size_t)x] = (uint8_t)lround(255 * clamp((db - noise_db) / (most_db - noise_db), 0, 1));
+        }
+    const Status status = image_write_png(path, grey, columns, height, 1, 8);
     free(grey);
     return status;
 }

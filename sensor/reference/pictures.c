@@ -236,8 +236,8 @@ const Reference reference_radar_map = {
     .topic = "radar-map",
     .file  = "radar/NNNNNN.exr, NNNNNN.png",
     .title = "map of range and Doppler of the radar of radar.preset",
-    .about = "Four channels of complex voltage, scaled as the profile's. The PNG is the power of the sum beam in decibels,\n"
-             "black 5 dB below the noise, white at the greatest, or 45 dB above black.",
+    .about = "Four channels of complex voltage, scaled as the profile's. The PNG has the range profile above and the\n"
+             "power of the sum beam below, both in decibels from 5 dB below the noise to the greatest, 45 dB at least.",
     .notation = "Field: `channel` of the EXR file, or `header`: its attribute.",
     .field = REFERENCE_FIELDS(radar_map_fields),
     .python =
