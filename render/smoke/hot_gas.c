@@ -128,7 +128,8 @@ double hot_gas_through(HotGasRay *ray, HotGasBand band, HotGasColumn column, con
         }
         ray->taken[g] = fmin(ray->taken[g], 1); /* weights of very different temperatures may sum to more */
     }
-    return ray->taken[0] + ray->taken[1] - ray->taken[0] * ray->taken[1]; /* not 1 - products: thin columns would cancel */
+    /* not 1 - products: thin columns would cancel */
+    return ray->taken[0] + ray->taken[1] - ray->taken[0] * ray->taken[1];
 }
 
 double hot_gas_emissivity(HotGasBand band, HotGasColumn column, double temp_k)

@@ -33,15 +33,15 @@ enum { hot_gas_terms = 8, hot_gas_passed_nodes = 3 };
 
 /* Weights w_j of one temperature, CO2 and H2O. */
 void hot_gas_weights(double weight[2][hot_gas_terms], HotGasBand band, double temp_k);
-/* A ray in one band: of each grey gas what passes the gas so far, exp(-k column), and what each of the two gases has taken. */
+/* A ray in one band: of each grey gas what passes the gas so far, exp(-k column); and what CO2 and H2O have taken. */
 typedef struct HotGasRay {
     double left[2][hot_gas_terms], taken[2];
 } HotGasRay;
 
 void hot_gas_start(HotGasRay *ray);
-/* The ray goes on through a column of gas with these weights. Returns the emissivity of all of it so far: what each piece adds is
- * by its own weights, of what the pieces before it left of each grey gas. At one temperature: hot_gas_emissivity of all the
- * column, however it is cut. */
+/* The ray goes on through a column of gas with these weights. Returns the emissivity of all of it so far: what each
+ * piece adds is by its own weights, of what the pieces before it left of each grey gas. At one temperature it is
+ * hot_gas_emissivity of the whole column, however it is cut. */
 double hot_gas_through(HotGasRay *ray, HotGasBand band, HotGasColumn column, const double weight[2][hot_gas_terms]);
 
 /* ---- behind cold air ------------------------------------------------------------------------ */

@@ -221,8 +221,8 @@ static void cross_gas(Segment *s, Passed *p, const SmokeGas *g, double column_m,
     }
 }
 
-/* What of the gas' own radiation of a band the air lets pass: of emission and absorption alike, so that gas as warm as its
- * background stays invisible. */
+/* What of the gas' own radiation of a band the air lets pass: of emission and absorption alike, so that gas as warm as
+ * its background stays invisible. */
 static double air_passes(const Passed *p, int which)
 {
     double mean[hot_gas_passed_nodes];
@@ -234,7 +234,8 @@ static double air_passes(const Passed *p, int which)
 /* Optical depth that the gas of a segment adds to that of the gas before it. */
 static double gas_adds(Passed *p, Segment *s, int which)
 {
-    const double most = 1 - 1e-12, per[2] = {1 / fmax(s->column.co2_atm_m, 1e-300), 1 / fmax(s->column.h2o_atm_m, 1e-300)};
+    static const double most = 1 - 1e-12, least = 1e-300;
+    const double per[2] = {1 / fmax(s->column.co2_atm_m, least), 1 / fmax(s->column.h2o_atm_m, least)};
     for (int g = 0; g < 2; g++)
         for (int j = 0; j < hot_gas_terms; j++) s->weighed[which][g][j] *= per[g];
     const double emissivity = hot_gas_through(&p->gas[which], (HotGasBand)which, s->column,

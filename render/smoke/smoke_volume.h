@@ -9,7 +9,7 @@
  *
  * Hot gas is not grey: in the two thermal bands its emissivity follows from the columns of CO2 and H2O that the ray has
  * crossed so far, of all volumes together (hot_gas.h), and a segment takes what its own column adds to that. So the gas
- * of a ray has the emissivity of its whole column however it is cut, and a hot piece behind another shows less of its lines.
+ * of a ray has the emissivity of its whole column however it is cut, and a piece behind another adds less.
  * tests/render/test_smoke_gas.c. */
 #ifndef RENDER_SMOKE_SMOKE_VOLUME_H
 #define RENDER_SMOKE_SMOKE_VOLUME_H

@@ -1,5 +1,5 @@
-/* Patches in a picture: a plate of four lengths, a hot one between cold ones, pixel by pixel against their blend as it is on
- * paper; its edge is warm, and nowhere is there a step. */
+/* Patches in a picture: a plate of four lengths, a hot one between cold ones, pixel by pixel against their blend as
+ * it is on paper; its edge is warm, and nowhere is there a step. */
 #include "tests/render/hand_world.h"
 
 #include "render/parts/parts.h"
@@ -36,8 +36,8 @@ static View show(void)
     return hand_view(eye, west, width, height, focal_px);
 }
 
-/* Squares of 1.5 x 2 m along body y, all facing one way: weights are one over the squared distance of a middle and a quarter of the
- * squared standard distance of a square's surface from its middle. Which of the patches is which, by where its middle is. */
+/* Rectangles of 1.5 x 2 m along body y, all facing one way: weights are one over the squared distance of a middle and a
+ * quarter of the squared standard distance of a rectangle's surface from its middle. Which is which: by its middle. */
 static double blend_k(double y_m, double z_m)
 {
     const Patches *p = &hand.world.patches->of[hand.model[hand_plate_model]];
@@ -45,8 +45,8 @@ static double blend_k(double y_m, double z_m)
     double         sum = 0, weights = 0;
     for (int i = 0; i < lengths; i++) {
         const int    from_left = (int)floor((p->patch[i].p_node[1] + half_y_m) / side_m);
-        const double middle_m = -half_y_m + (from_left + 0.5) * side_m, m2 = (y_m - middle_m) * (y_m - middle_m) + (z_m + half_z_m) * (z_m + half_z_m);
-        const double w = 1 / (m2 + 0.25 * spread_m2);
+        const double y_off_m = y_m + half_y_m - (from_left + 0.5) * side_m, z_off_m = z_m + half_z_m;
+        const double w = 1 / (y_off_m * y_off_m + z_off_m * z_off_m + 0.25 * spread_m2);
         sum += w * (double)warm_k[i], weights += w;
     }
     return sum / weights;
@@ -67,22 +67,25 @@ static void pixels_blend_patches(void **state)
         for (int column = 0; column < width; column++) {
             const size_t at = picture_index(&picture, column, row);
             /* through the pixel's middle: body y to the right seen from its back, so to the left seen from ahead */
-            const double right_m = eye_m * (column + 0.5 - 0.5 * width) / focal_px, up_m = 1 - eye_m * (row + 0.5 - 0.5 * height) / focal_px;
+            const double right_m = eye_m * (column + 0.5 - 0.5 * width) / focal_px;
+            const double up_m = 1 - eye_m * (row + 0.5 - 0.5 * height) / focal_px;
             if (!(fabs(right_m) < half_y_m && up_m > 0 && up_m < 2 * half_z_m)) continue;
             CHECK(picture.entity[at] == 1);
-            CHECK_NEAR((double)picture.range_m[at], sqrt(eye_m * eye_m + right_m * right_m + (up_m - 1) * (up_m - 1)), 1e-4);
+            const double range_m = sqrt(eye_m * eye_m + right_m * right_m + (up_m - 1) * (up_m - 1));
+            CHECK_NEAR((double)picture.range_m[at], range_m, 1e-4);
             const double want_k = blend_k(-right_m, -up_m), got_k = (double)picture.temp_k[at];
             const double want_lwir = (1 - (double)hand_rho_ir) * planck_band(8e-6, 12e-6, want_k, NULL);
             worst_k = fmax(worst_k, fabs(got_k - want_k));
             worst_lwir = fmax(worst_lwir, fabs((double)picture.lwir[at] / want_lwir - 1));
             hottest_k = fmax(hottest_k, got_k), coldest_k = fmin(coldest_k, got_k);
             on++;
-            if (column > 0 && picture.entity[at - 1] == 1) step_k = fmax(step_k, fabs(got_k - (double)picture.temp_k[at - 1]));
+            if (column > 0 && picture.entity[at - 1] == 1)
+                step_k = fmax(step_k, fabs(got_k - (double)picture.temp_k[at - 1]));
             if (row > 0 && picture.entity[at - (size_t)picture.width] == 1)
                 step_k = fmax(step_k, fabs(got_k - (double)picture.temp_k[at - (size_t)picture.width]));
         }
-    print_message("%d pixels of 0.052 m: within %.4f K and %.1e of the blend; %.1f .. %.1f K, steps up to %.2f K\n", on, worst_k, worst_lwir,
-                  coldest_k, hottest_k, step_k);
+    print_message("%d pixels of 0.052 m: within %.4f K and %.1e of the blend; %.1f .. %.1f K, steps up to %.2f K\n", on,
+                  worst_k, worst_lwir, coldest_k, hottest_k, step_k);
     CHECK(on > 4000);
     CHECK_NEAR(worst_k, 0, 5e-4);    /* floats of the hit's place and temperature */
     CHECK_NEAR(worst_lwir, 0, 1e-5); /* the table of Planck's law, as tests/render/test_planck.c has it */

@@ -36,9 +36,9 @@ static void look(int count, double x_m)
 
 static double seen(int band) { return 1 - (double)out.transmittance[band][0]; }
 
-/* A quarter to four times 0.02 atm m of CO2, by the chord: the narrow-band model (25 cm-1, Malkmus lines, parameters of Soufiani &
- * Taine 1997 at their own temperatures, 10 % of each gas in air), evaluated outside this program. What a grey volume that is
- * right at 0.02 atm m makes of it is beside it. */
+/* A quarter to four times 0.02 atm m of CO2, by the chord: the narrow-band model (25 cm-1, Malkmus lines, parameters of
+ * Soufiani & Taine 1997 at their own temperatures, 10 % of each gas in air), evaluated outside this program. What a
+ * grey volume makes of it that is right at 0.02 atm m is beside it. */
 static void every_chord_has_its_emissivity(void **state)
 {
     (void)state;
@@ -63,7 +63,8 @@ static void every_chord_has_its_emissivity(void **state)
     /* both gases in 8 .. 12 um: the same model, from tests/render/test_hot_gas.c; 0.001, 0.02 and 0.1 atm m of each */
     static const double long_k[4] = {500, 700, 1100, 1500}, chord_m[3] = {0.02, 0.4, 2};
     static const double long_want[4][3] = {
-        {0.0002243, 0.004381, 0.02031}, {0.0005524, 0.01042, 0.04485}, {0.001304, 0.02358, 0.09286}, {0.002048, 0.03661, 0.1389}};
+        {0.0002243, 0.004381, 0.02031}, {0.0005524, 0.01042, 0.04485},
+        {0.001304, 0.02358, 0.09286}, {0.002048, 0.03661, 0.1389}};
     static const double short_want[4][3] = {
         {0.08172, 0.1916, 0.2391}, {0.07359, 0.1992, 0.2481}, {0.05728, 0.2156, 0.2727}, {0.04464, 0.2296, 0.2974}};
     double worst_long = 0;
@@ -79,8 +80,8 @@ static void every_chord_has_its_emissivity(void **state)
     CHECK_NEAR(worst_long, 0, 0.04);
 }
 
-/* However the same gas is cut into volumes: beside, inside or behind one another, near enough or far: its whole column's
- * emissivity, in any order, and beyond the number that is composited together. 3e-7: floats. */
+/* However the same gas is cut into volumes, in one place, overlapping or far behind one another: its whole column's
+ * emissivity, also beyond the number that is composited together. 3e-7: floats. */
 static void columns_add(void **state)
 {
     (void)state;
@@ -96,13 +97,14 @@ static void columns_add(void **state)
         look(5, 0);
         CHECK_NEAR(seen(mwir + band), want, 3e-7);
         CHECK_NEAR((double)out.added[mwir + band][0], 7 * want, 7 * 3e-7);
-        for (int i = 0; i < most_volumes; i++) put(i, 100 + 50 * i, 1, 0.015 / most_volumes, 0.01 / most_volumes, 900, 7);
+        for (int i = 0; i < most_volumes; i++)
+            put(i, 100 + 50 * i, 1, 0.015 / most_volumes, 0.01 / most_volumes, 900, 7);
         look(most_volumes, 0);
         CHECK_NEAR(seen(mwir + band), want, 1e-6);
     }
 }
 
-/* Gas as warm as what is behind it, with soot and without, of any columns and whatever the air takes: not to be seen. */
+/* Gas as warm as what is behind it, with soot and without, of any columns, whatever the air takes: not to be seen. */
 static void isothermal_gas_is_invisible(void **state)
 {
     (void)state;
@@ -113,7 +115,8 @@ static void isothermal_gas_is_invisible(void **state)
             put(i, 100 + 3 * u[0], 0.5 + u[1], pow(10, 3 * u[2] - 4), pow(10, 3 * u[3] - 4), 900, 5);
             for (int k = 0; k < hot_gas_passed_nodes; k++) gas[i].passed[k] = 0.1 + 0.2 * k;
             volume[i].even = u[4] < 0.5;
-            for (int b = 0; b < smoke_bands; b++) volume[i].extinction_per_m[b] = i % 2 ? 0.3 * u[5] : 0, volume[i].source[b] = 5;
+            for (int b = 0; b < smoke_bands; b++)
+                volume[i].extinction_per_m[b] = i % 2 ? 0.3 * u[5] : 0, volume[i].source[b] = 5;
         }
         look(6, 0.3);
         for (int b = mwir; b <= lwir; b++) {
@@ -123,7 +126,7 @@ static void isothermal_gas_is_invisible(void **state)
     }
 }
 
-/* Radiance of layers, front to back, by the transport of every pair of grey gases of the two sums; exact for uniform layers. */
+/* Radiance of uniform layers, front to back, by the transport of every pair of grey gases of the two sums. */
 static double transported(HotGasBand band, const double temp_k[], const double co2_atm_m[], const double h2o_atm_m[],
                           const double source[], int layers)
 {
@@ -137,7 +140,8 @@ static double transported(HotGasBand band, const double temp_k[], const double c
             HotGasRay    ray;
             hot_gas_start(&ray);
             one[g][j] = 1;
-            rate[g][j] = hot_gas_through(&ray, band, (HotGasColumn){g ? 0 : u, g ? u : 0}, (const double(*)[hot_gas_terms])one) / u;
+            const HotGasColumn thin = {g ? 0 : u, g ? u : 0};
+            rate[g][j] = hot_gas_through(&ray, band, thin, (const double(*)[hot_gas_terms])one) / u;
         }
     for (int i = 0; i <= hot_gas_terms; i++)
         for (int j = 0; j <= hot_gas_terms; j++) { /* the last of each: what is transparent */
@@ -147,9 +151,10 @@ static double transported(HotGasBand band, const double temp_k[], const double c
                 for (int k = 0; k < hot_gas_terms; k++) a -= weight[l][0][k], b -= weight[l][1][k];
                 if (i < hot_gas_terms) a = weight[l][0][i];
                 if (j < hot_gas_terms) b = weight[l][1][j];
-                const double depth = (i < hot_gas_terms ? rate[0][i] * co2_atm_m[l] : 0) + (j < hot_gas_terms ? rate[1][j] * h2o_atm_m[l] : 0);
-                sum += a * b * source[l] * through * -expm1(-depth);
-                through *= exp(-depth);
+                const double co2 = i < hot_gas_terms ? rate[0][i] * co2_atm_m[l] : 0;
+                const double h2o = j < hot_gas_terms ? rate[1][j] * h2o_atm_m[l] : 0;
+                sum += a * b * source[l] * through * -expm1(-co2 - h2o);
+                through *= exp(-co2 - h2o);
             }
         }
     return sum;
@@ -178,7 +183,8 @@ static void temperatures_mix(void **state)
                 worst[band] = fmax(worst[band], fabs(off));
             }
         }
-    print_message("sheath and core of 400 K between them: medium wave %.1f %%, long wave %.1f %%\n", 100 * worst[0], 100 * worst[1]);
+    print_message("sheath and core of 400 K between them: medium wave %.1f %%, long wave %.1f %%\n", 100 * worst[0],
+                  100 * worst[1]);
     CHECK_NEAR(worst[0], 0, 0.03); /* overlap of the gases at random: of means, not of each pair */
     CHECK_NEAR(worst[1], 0, 0.05);
 }

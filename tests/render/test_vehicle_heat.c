@@ -352,10 +352,12 @@ static void contrast_is_to_the_ground_below(void **state)
         VehicleNodes nodes;
         ecef_from_enu(s.entity.p_ecef, &stage.frame, p_enu);
         s.snapshot.t_s = t_s;
-        CHECK(vehicle_heat_tick(heat, &s.snapshot) == STATUS_OK && vehicle_heat_show(heat, &s.snapshot, stage.arena) == STATUS_OK);
+        CHECK(vehicle_heat_tick(heat, &s.snapshot) == STATUS_OK);
+        CHECK(vehicle_heat_show(heat, &s.snapshot, stage.arena) == STATUS_OK);
         const Patches *p = &stage.patches.of[s.entity.model];
         double         sum = 0, m2 = 0;
-        for (int i = 0; i < p->count; i++) sum += p->patch[i].area_m2 * (double)s.snapshot.patch_k[i], m2 += p->patch[i].area_m2;
+        for (int i = 0; i < p->count; i++)
+            sum += p->patch[i].area_m2 * (double)s.snapshot.patch_k[i], m2 += p->patch[i].area_m2;
         CHECK_NEAR((double)s.entity.dt_k, sum / m2 - (290 + 0.02 * 8 * t_s - 1e-3 * t_s), 2e-5);
         CHECK(vehicle_heat_nodes(&nodes, heat, s.entity.id));
         most_lag_k = fmax(most_lag_k, (0.02 * 8 - 1e-3) * (t_s - nodes.t_s));

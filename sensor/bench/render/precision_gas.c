@@ -1,14 +1,15 @@
-/* sensor/bench/render/precision_gas.c: the number of grey gases that stand for hot CO2 in 3.4 .. 4.8 um, over a quarter to
- * four times 0.02 atm m. */
+/* sensor/bench/render/precision_gas.c: the number of grey gases that stand for hot CO2 in 3.4 .. 4.8 um, over a quarter
+ * to four times 0.02 atm m. */
 #include "sensor/bench/render/rows.h"
 
 #include "render/smoke/hot_gas.h"
 #include "sensor/bench/turn.h"
 
 enum { settings = 4, columns = 5, temperatures = 3, rays = columns * temperatures };
-static const double times[columns] = {0.25, 0.5, 1, 2, 4}, temp_k[temperatures] = {700, 1100, 1500}, middle_atm_m = 0.02;
+static const double times[columns] = {0.25, 0.5, 1, 2, 4}, temp_k[temperatures] = {700, 1100, 1500};
+static const double middle_atm_m = 0.02;
 
-/* The narrow-band model (25 cm-1, Malkmus lines, parameters of Soufiani & Taine 1997), evaluated outside this program. */
+/* Narrow-band model (25 cm-1, Malkmus lines, parameters of Soufiani & Taine 1997), evaluated outside this program. */
 static const double model[temperatures][columns] = {{0.1464, 0.1738, 0.1984, 0.2221, 0.2453},
                                                     {0.1505, 0.1890, 0.2208, 0.2483, 0.2732},
                                                     {0.1440, 0.1951, 0.2365, 0.2687, 0.2962}};
@@ -28,11 +29,12 @@ static void rates(double rate[hot_gas_terms])
         HotGasRay ray;
         hot_gas_start(&ray);
         one[0][j] = 1;
-        rate[j] = hot_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){thin_atm_m, 0}, (const double(*)[hot_gas_terms])one) / thin_atm_m;
+        rate[j] = hot_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){thin_atm_m, 0},
+                                  (const double(*)[hot_gas_terms])one) / thin_atm_m;
     }
 }
 
-/* Neighbours made one, such that the column of the middle keeps its emissivity; a single one is a grey body of weight 1. */
+/* Neighbours made one, such that the column of the middle keeps its emissivity; a single one is a body of weight 1. */
 static void make_gases(GasSet *s)
 {
     double all[hot_gas_terms];
@@ -63,9 +65,11 @@ static void cross(void *user)
             if (s->gases == hot_gas_terms) {
                 HotGasRay ray;
                 hot_gas_start(&ray);
-                seen = hot_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){atm_m, 0}, (const double(*)[hot_gas_terms])s->weight[t]);
+                seen = hot_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){atm_m, 0},
+                                       (const double(*)[hot_gas_terms])s->weight[t]);
             }
-            for (int g = 0; g < s->gases && s->gases < hot_gas_terms; g++) seen += s->weight[t][0][g] * (1 - exp(-s->rate[t][g] * atm_m));
+            for (int g = 0; g < s->gases && s->gases < hot_gas_terms; g++)
+                seen += s->weight[t][0][g] * (1 - exp(-s->rate[t][g] * atm_m));
             s->seen[t * columns + c] = seen;
         }
     bench_keep(s->seen);
@@ -82,12 +86,15 @@ Status bench_precision_gas(Bench *bench)
         set[k].gases = gases[k];
         make_gases(&set[k]);
         cross(&set[k]);
-        for (int i = 0; i < rays; i++) bench_worst(&point[k].error, 100 * fabs(set[k].seen[i] / model[i / columns][i % columns] - 1));
+        for (int i = 0; i < rays; i++)
+            bench_worst(&point[k].error, 100 * fabs(set[k].seen[i] / model[i / columns][i % columns] - 1));
         work[k] = (BenchWork){cross, &set[k], rays};
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_tunable(bench, &(BenchTunable){"grey gases of hot gas", "render/smoke/hot_gas.h", "emissivity of CO2 on a ray, one band", "%",
-                                   "largest, a quarter to four times 0.02 atm m, narrow-band model", 10}, work, point, settings);
+    bench_tunable(bench, &(BenchTunable){"grey gases of hot gas", "render/smoke/hot_gas.h",
+                                         "emissivity of CO2 on a ray, one band", "%",
+                                         "largest, a quarter to four times 0.02 atm m, narrow-band model", 10},
+                  work, point, settings);
     return STATUS_OK;
 }
