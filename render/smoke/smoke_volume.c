@@ -273,12 +273,13 @@ static void compose(Passed *passed, const Crossing *crossing, int count, unsigne
             cross_gas(&gas, passed, c->volume->gas, column_m, bands);
         }
         if (!any) continue;
-        for (int which = 0; which < 2 && any_gas; which++) {
+        const double gas_atm_m = any_gas ? gas.column.co2_atm_m + gas.column.h2o_atm_m : 0;
+        for (int which = 0; which < 2 && gas_atm_m > 0; which++) {
             const int b = gas_band[which];
             if (!(bands >> b & 1)) continue;
             const double depth_here = gas_adds(passed, &gas, which);
             depth[b] += depth_here;
-            shown[b] += depth_here * gas.shown[which] / (gas.column.co2_atm_m + gas.column.h2o_atm_m);
+            shown[b] += depth_here * (gas.shown[which] / gas_atm_m);
         }
         bool goes_on = false;
         for (int b = 0; b < smoke_bands; b++) {
