@@ -24,7 +24,6 @@ typedef struct VehicleState {
     double       seen_s, waits_s; /* first seen; since when work waits, INFINITY: none does */
     NetworkLoad *load;            /* [nodes] at t_s */
     int         *given;           /* [patches] of GivenHeat, -1: none */
-    double       ground_k;        /* in the open, at t_s */
 } VehicleState;
 
 /* An entity whose work waits. */
@@ -258,7 +257,6 @@ static void stay(VehicleState *s, const VehicleMoment *m, double t_s)
 {
     s->t_s    = t_s;
     s->drives = m->entity->drives;
-    s->ground_k = m->place.ground_k;
     ahead_in_enu(s->ahead_enu, m->pose.r_enu_from_body);
     up_in_body(s->up_body, m->pose.r_enu_from_body);
 }
@@ -631,8 +629,14 @@ Status vehicle_heat_show(const VehicleHeat *h, Snapshot *snapshot, Arena *arena)
         for (int k = 0; k < count; k++)
             if (s->given[k] >= 0) patch_k[e->first_patch + k] = (float)given_heat_k(h->world.given, s->given[k], snapshot->t_s);
         e->patches = count;
-        e->dt_k = (float)(mean_of(h->shape[s->model].patches, patch_k + e->first_patch) - s->ground_k);
         snapshot->patch_count += count;
+        double p_enu[3];
+        enu_from_ecef(p_enu, h->world.frame, e->p_ecef);
+        if (!v3_is_finite(p_enu)) continue;
+        PlaceHeat    place;
+        const Status status = h->config.place(&place, h->config.user, h->config.unix_s + snapshot->t_s, p_enu, true);
+        if (status != STATUS_OK) return status;
+        e->dt_k = (float)(mean_of(h->shape[s->model].patches, patch_k + e->first_patch) - place.ground_k);
     }
     return STATUS_OK;
 }
