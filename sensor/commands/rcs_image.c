@@ -36,8 +36,9 @@ static void plan_image(RcsImage *image, const RcsSweep *sweep)
     /* 1.3: the width that the window adds */
     image->bandwidth_hz = fmin(1.3 * light_mps / (2 * image->resolution_m * cosine), f_hz);
     image->span_deg = fmin(1.3 * wavelength_m / (2 * image->resolution_m * cosine) / rad_per_deg, 60);
-    image->frequencies = (int)ceil(image->bandwidth_hz * 2 * 2.2 * entity->radius_m / light_mps) + 2;
-    image->pulses = (int)ceil(image->span_deg * rad_per_deg * 2 * 2.2 * entity->radius_m / wavelength_m) + 2;
+    const double free_m = fmax(2.2 * entity->radius_m, 1.6 * image->side_m); /* without an image of the target beside it */
+    image->frequencies = (int)ceil(image->bandwidth_hz * 2 * free_m / light_mps) + 2;
+    image->pulses = (int)ceil(image->span_deg * rad_per_deg * 2 * free_m / wavelength_m) + 2;
     image->pixels = image_pixels;
 }
 
