@@ -185,7 +185,7 @@ static Status gather(TubeHits *out, TubeWork *work, int threads, int count)
         if (work->piece[t].failed) return STATUS_NO_MEMORY;
         more += work->piece[t].count;
     }
-    const Status status = reserve(out, more);
+    const Status status = reserve(out, more + 1);
     if (status != STATUS_OK) return status;
     for (int t = 0; t < count; t++)
         if (work->piece[t].count)
@@ -236,6 +236,11 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
         status = gather(out, &work, threads, count);
     }
     if (status == STATUS_NO_MEMORY) log_error("radar: out of memory for the hits of ray tubes: rays=%lld", out->rays);
+    if (status == STATUS_OK && out->count > 0) {
+        static const TubeHit none;
+        append(out, &none, 1);
+        out->count--;
+    }
     close_work(&work, threads);
     return status;
 }

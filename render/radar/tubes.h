@@ -38,7 +38,7 @@ typedef struct TubeHits {
     ScatterAntenna tx, rx;
     double    frequency_hz, spacing_m;
     long long rays;         /* shot */
-    size_t    count, capacity;
+    size_t    count, capacity; /* behind the last hit there is one more of no amplitude */
     double   *path_m;       /* two-way, less that over the phase centre; see scatter.h */
     float    *slope_m[2];   /* half the change of path over the footprint's sides */
     float    *amplitude[8]; /* real and imaginary of hh, hv, vh, vv, m^2 */

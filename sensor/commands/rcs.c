@@ -181,7 +181,7 @@ static void print_summary(const RcsSweep *sweep, double seconds)
                   mean_m2[1] > 0 ? 10 * log10(mean_m2[1]) : -INFINITY, most_dbsm, at_deg);
     }
     if (!isnan(sweep->grid_db)) log_print("error of the grid of ray tubes, by another grid: %.0f dB\n", sweep->grid_db);
-    log_detail("rcs: %lld ray tubes, %lld hits, %.1f s\n", sweep->rays, sweep->hit_count, seconds);
+    log_detail("rcs: %lld ray tubes, %lld hits, %.1f s", sweep->rays, sweep->hit_count, seconds);
 }
 
 static Status make_picture(RcsSweep *sweep, const char *path)

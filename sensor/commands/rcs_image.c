@@ -91,7 +91,7 @@ static Status shoot(Pulses *pulses, const RcsImage *image, RcsSweep *sweep)
             make_profile(pulses->profile[q] + (size_t)p * (size_t)pulses->samples, pulses->samples, pulses->bin_m, w, count, step_k);
         }
     }
-    log_status("");
+    log_status(NULL);
     free(s);
     free(w);
     return status;

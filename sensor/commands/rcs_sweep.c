@@ -91,7 +91,7 @@ Status rcs_sweep_run(RcsSweep *sweep)
         status = look_at(sweep->s + (size_t)look * (size_t)sweep->config.frequencies, sweep, look, 0);
     }
     if (status == STATUS_OK) status = check_grid(sweep);
-    log_status("");
+    log_status(NULL);
     return status;
 }
 
