@@ -82,7 +82,8 @@ const char *rcs_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
     if (bistatic) radar_look(&rx, in[5].number * rad_per_deg, in[6].number * rad_per_deg, range_m);
     const TubeConfig config = tubes_default_config(f_hz);
     const Status     status = tubes_trace(&p->hits, p->model->target, &tx, &rx, &config, p->pool);
-    if (status != STATUS_OK) return status == STATUS_NO_MEMORY ? "out of memory" : "too near or too large (see the log)";
+    if (status == STATUS_NO_MEMORY) return "out of memory";
+    if (status != STATUS_OK) return "too near or too large (see the log)";
     if (field_at(&s, f_hz, &p->hits, p->pool) != STATUS_OK) return "out of memory";
     const double complex value[4] = {s.hh, s.hv, s.vh, s.vv};
     for (int i = 0; i < 4; i++) {

@@ -17,8 +17,8 @@ typedef struct Sweep {
     int             padded; /* count, up to a multiple of lanes */
 } Sweep;
 
-/* Change of a hit's path when the antennas move: that of its first point to the transmitter and of its last to the receiver;
- * what lies between changes by the second order (Fermat). */
+/* Change of a hit's path when the antennas move: that of its first point to the transmitter and of its last to the
+ * receiver; what lies between changes by the second order (Fermat). */
 static double moved_by(const Sweep *sweep, size_t i)
 {
     const TubeHits *h = sweep->hits;
@@ -81,9 +81,9 @@ static inline void turning_step(Turning *t)
     t->re = re;
 }
 
-/* Some hits at once, four frequencies at a time: exp(-j k path) and both sines turn from step to step. sinc(k s) = sin(k s) /
- * (k s): the s are in the amplitude here, the k in finish. Slopes below 3e-5 of a radian count as that, so that rounding
- * does not grow. */
+/* Some hits at once, four frequencies at a time: exp(-j k path) and both sines turn from step to step. sinc(k s) =
+ * sin(k s) / (k s): the s are in the amplitude here, the k in finish. Slopes below 3e-5 of a radian count as that, so
+ * that rounding does not grow. */
 static void add_turning(double *sum, const Sweep *sweep, size_t i)
 {
     const TubeHits *h = sweep->hits;

@@ -77,7 +77,8 @@ Status radar_target_create(RadarTarget **out, const Model *model, const RadarMat
     for (int p = 0; p < model->part_count && materials; p++) {
         target->material[p] = radar_materials_find(materials, model->part[p].material);
         if (target->material[p] < 0) {
-            log_error("radar: no radar material of this name: model=%s part=%s material=%s", model->name, model->part[p].name,
+            log_error("radar: no radar material of this name: model=%s part=%s material=%s", model->name,
+                      model->part[p].name,
                       model->part[p].material);
             status = STATUS_BAD_VALUE;
             goto fail;
@@ -112,7 +113,8 @@ void radar_target_pose(RadarTarget *target, const NodePose *pose, int damage)
     parts_pose(&target->entity, target->tracer, 0, target->pose, origin, attitude, damage);
 }
 
-void radar_antenna(ScatterAntenna *out, const double p_antenna[3], const double p_target[3], const double r_from_body[9])
+void radar_antenna(ScatterAntenna *out, const double p_antenna[3], const double p_target[3],
+                   const double r_from_body[9])
 {
     double from[3];
     v3_sub(from, p_antenna, p_target);

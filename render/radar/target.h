@@ -1,8 +1,9 @@
-/* render/radar/target.h: a target ready for radar rays, in its own frame: body axes, the phase centre at the body's origin.
+/* render/radar/target.h: a target ready for radar rays, in its own frame: body axes, the phase centre at the body's
+ * origin.
  *
- * Its model's geometry is traced by render/parts, whose intersections are double throughout (Embree only finds candidates);
- * moved parts are posed in double. Nothing here depends on where the target stands in the world: radar_antenna brings
- * an antenna into its frame, in double, once. */
+ * Its model's geometry is traced by render/parts, whose intersections are double throughout (Embree only finds
+ * candidates); moved parts are posed in double. Nothing here depends on where the target stands in the world:
+ * radar_antenna brings an antenna into its frame, in double, once. */
 #ifndef RENDER_RADAR_TARGET_H
 #define RENDER_RADAR_TARGET_H
 
@@ -26,10 +27,13 @@ void   radar_target_destroy(RadarTarget *target);
 /* pose: one a node, body axes; NULL: at rest. damage: parts that it hides are left out. */
 void   radar_target_pose(RadarTarget *target, const NodePose *pose, int damage);
 
-/* An antenna at p_antenna, seen from a target whose origin is at p_target: any frame in which both are given, double, m. */
-void radar_antenna(ScatterAntenna *out, const double p_antenna[3], const double p_target[3], const double r_from_body[9]);
+/* An antenna at p_antenna, seen from a target whose origin is at p_target: any frame in which both are given, double,
+ * m. */
+void radar_antenna(ScatterAntenna *out, const double p_antenna[3], const double p_target[3],
+                   const double r_from_body[9]);
 
-/* The same from angles: azimuth clockwise from the nose as seen from above, elevation upwards (body axes have z down). */
+/* The same from angles: azimuth clockwise from the nose as seen from above, elevation upwards (body axes have z
+ * down). */
 void radar_look(ScatterAntenna *out, double azimuth_rad, double elevation_rad, double range_m);
 
 /* Chord error that keeps the phase within 2.4 degrees: lambda / 300, 720 deg of phase over lambda of depth. */

@@ -1,6 +1,6 @@
-/* Ray tubes without edge diffraction against the Austin RCS suite: thin plate, NASA almond, PRIME aircraft. Figures by window
- * of angle; the bounds are what physical optics alone is known to reach on such small targets, which edges would lower.
- * labels: slow */
+/* Ray tubes without edge diffraction against the Austin RCS suite: thin plate, NASA almond, PRIME aircraft. Figures
+ * by window of angle; the bounds are what physical optics alone is known to reach on such small targets, which edges
+ * would lower. labels: slow */
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 
@@ -193,9 +193,9 @@ static void run(RadarStage *s, const char *file, double theta_deg, Window *windo
             qsort(window[w].each_db[p], (size_t)window[w].count, sizeof(double), by_size);
             window[w].median_db[p] = window[w].each_db[p][window[w].count / 2];
         }
-        printf("%s, phi %g .. %g: HH %.2f, VV %.2f dB on average, %.2f, %.2f in the median; mean cross section off by %.2f, %.2f dB\n", file, window[w].low_deg,
-               window[w].high_deg, window[w].off_db[0], window[w].off_db[1], window[w].median_db[0], window[w].median_db[1],
-               decibels(window[w].mean[0] / window[w].want[0]),
+        printf("%s, phi %g .. %g: HH %.2f, VV %.2f dB on average, %.2f, %.2f in the median; mean cross section off by "
+               "%.2f, %.2f dB\n", file, window[w].low_deg, window[w].high_deg, window[w].off_db[0], window[w].off_db[1],
+               window[w].median_db[0], window[w].median_db[1], decibels(window[w].mean[0] / window[w].want[0]),
                decibels(window[w].mean[1] / window[w].want[1]));
     }
 }
@@ -204,7 +204,8 @@ static void thin_plate(void **state)
 {
     (void)state;
     RadarStage s;
-    Window     window[3] = {{.low_deg = 0, .high_deg = 2}, {.low_deg = 0, .high_deg = 40}, {.low_deg = 40, .high_deg = 89}};
+    Window     window[3] = {{.low_deg = 0, .high_deg = 2}, {.low_deg = 0, .high_deg = 40},
+                            {.low_deg = 40, .high_deg = 89}};
     stage_open(&s, "plate:0.2667x0.1524", 10e9); /* 7 W / 4 along y, W = 6 in along z */
     run(&s, "IIA_plate_W6in_zy_f11_ref.csv", 90, window, 3, 1);
     CHECK(window[0].off_db[0] <= 0.1 && window[0].off_db[1] <= 0.1);
@@ -216,7 +217,8 @@ static void almond(void **state)
 {
     (void)state;
     RadarStage s = {0};
-    Window     window[3] = {{.low_deg = 60, .high_deg = 120}, {.low_deg = 0, .high_deg = 60}, {.low_deg = 120, .high_deg = 180}};
+    Window     window[3] = {{.low_deg = 60, .high_deg = 120}, {.low_deg = 0, .high_deg = 60},
+                            {.low_deg = 120, .high_deg = 180}};
     build_almond(&s.model);
     stage_target(&s, 7e9);
     run(&s, "IIIA_almond_L9.936in_fx3_ref.csv", 90, window, 3, 2);

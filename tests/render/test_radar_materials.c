@@ -1,11 +1,12 @@
-/* Radar materials: each material that a model may name has a row or its stated default, permittivities between rows, and broken
- * tables refused with file and line. */
+/* Radar materials: each material that a model may name has a row or its stated default, permittivities between rows,
+ * and broken tables refused with file and line. */
 #include "tests/check.h"
 
 #include "render/radar/radar_materials.h"
 
 static const char head[] = "name,kind,f_ghz,eps_re,eps_im,thick_mm,rough_mm,source\n"
-                           "metal_default,metal,10,1,0,0,0.03,estimate\nother_default,half_space,10,3,0.1,0,0.5,estimate\n";
+                           "metal_default,metal,10,1,0,0,0.03,estimate\n"
+                           "other_default,half_space,10,3,0.1,0,0.5,estimate\n";
 
 static Status open_text(RadarMaterials *out, const char *rows)
 {
@@ -110,7 +111,8 @@ static void broken_tables_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_material_has_a_row_or_its_default), cmocka_unit_test(permittivity_is_joined_between_rows),
+        cmocka_unit_test(every_material_has_a_row_or_its_default),
+            cmocka_unit_test(permittivity_is_joined_between_rows),
         cmocka_unit_test(broken_tables_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* Ray tubes: paths to the nanometre, the same bits for any number of threads, the same field wherever the target stands and
- * however it is turned, lists reused for other aspects and frequencies, curved mirrors, bistatic looks. */
+/* Ray tubes: paths to the nanometre, the same bits for any number of threads, the same field wherever the target
+ * stands and however it is turned, lists reused for other aspects and frequencies, curved mirrors, bistatic looks. */
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 
@@ -15,8 +15,8 @@ static int by_size(const void *a, const void *b)
     return p > q ? 1 : p < q ? -1 : 0;
 }
 
-/* After three mirrors at right angles a source at a seems to be at -a, seen from the corner: so a path is |p - a| + |p + a|,
- * p being its last point, and its length hardly depends on p. For parts turned and moved as well. */
+/* After three mirrors at right angles a source at a seems to be at -a, seen from the corner: so a path is |p - a| +
+ * |p + a|, p being its last point, and its length hardly depends on p. For parts turned and moved as well. */
 static void paths_are_exact_at_every_range(void **state)
 {
     (void)state;
@@ -109,7 +109,8 @@ static void threads_change_no_bit(void **state)
         if (threads == 0) continue;
         CHECK(hits->count == first.count && hits->count > 1000);
         CHECK(memcmp(hits->path_m, first.path_m, hits->count * sizeof(double)) == 0);
-        for (int c = 0; c < 8; c++) CHECK(memcmp(hits->amplitude[c], first.amplitude[c], hits->count * sizeof(float)) == 0);
+        for (int c = 0; c < 8; c++) CHECK(memcmp(hits->amplitude[c], first.amplitude[c],
+                                                 hits->count * sizeof(float)) == 0);
         CHECK(memcmp(want, got, sizeof want) == 0);
     }
     tubes_free(&first);
@@ -173,8 +174,8 @@ static void turn_plate_flat(Model *plate)
     }
 }
 
-/* A square trihedral: a list traced at one aspect against lists of others, over 33 frequencies. What is left at the smallest
- * step is the difference between two grids of tubes. */
+/* A square trihedral: a list traced at one aspect against lists of others, over 33 frequencies. What is left at the
+ * smallest step is the difference between two grids of tubes. */
 static void lists_serve_other_aspects(void **state)
 {
     (void)state;
@@ -205,9 +206,9 @@ static void lists_serve_other_aspects(void **state)
 
 /* ---- curved mirrors ----------------------------------------------------------------------------------- */
 
-/* A cylinder of radius r, h high, on a wide plate, seen from an elevation e: plate and cylinder in either order return
- * 8 pi r h^2 cos e / lambda: by images the cylinder's k r h^2 cos e, twice in amplitude. Either order gives half of the field,
- * where the cylinder comes first only if its curvature spreads the tubes as it must. */
+/* A cylinder of radius r, h high, on a wide plate, seen from an elevation e: plate and cylinder in either order
+ * return 8 pi r h^2 cos e / lambda: by images the cylinder's k r h^2 cos e, twice in amplitude. Either order gives
+ * half of the field, where the cylinder comes first only if its curvature spreads the tubes as it must. */
 static void a_curved_mirror_spreads_the_field(void **state)
 {
     (void)state;
@@ -216,7 +217,8 @@ static void a_curved_mirror_spreads_the_field(void **state)
     RadarStage   s = {0};
     const double up[3] = {0, 0, -h_m / 2};
     double       half[2];
-    CHECK(shape_build(&cylinder, "cylinder:0.3x0.4", 1e-5) == STATUS_OK && shape_build(&plate, "plate:3x3", 1) == STATUS_OK);
+    CHECK(shape_build(&cylinder, "cylinder:0.3x0.4", 1e-5) == STATUS_OK &&
+          shape_build(&plate, "plate:3x3", 1) == STATUS_OK);
     turn_plate_flat(&plate);
     join(&s.model, &plate, &cylinder, up);
     stage_target(&s, 3e10);
@@ -233,7 +235,8 @@ static void a_curved_mirror_spreads_the_field(void **state)
                 x[c] = k * (double)s.hits.slope_m[c][i];
                 x[c] = fabs(x[c]) < 1e-6 ? 1 : sin(x[c]) / x[c];
             }
-            sum += CMPLX((double)s.hits.amplitude[0][i], (double)s.hits.amplitude[1][i]) * x[0] * x[1] * cexp(-I * k * s.hits.path_m[i]);
+            sum += CMPLX((double)s.hits.amplitude[0][i],
+                         (double)s.hits.amplitude[1][i]) * x[0] * x[1] * cexp(-I * k * s.hits.path_m[i]);
         }
         sum *= -I * k / (2 * pi_rad);
         half[last] = decibels(4 * sigma(sum) / want);
@@ -249,7 +252,8 @@ static void a_curved_mirror_spreads_the_field(void **state)
 
 /* ---- bistatic ----------------------------------------------------------------------------------------- */
 
-/* One mirror of physical optics is reciprocal where it mirrors; elsewhere its currents are those of the lit side alone. */
+/* One mirror of physical optics is reciprocal where it mirrors; elsewhere its currents are those of the lit side
+ * alone. */
 static void bistatic_fields_are_reciprocal(void **state)
 {
     (void)state;
@@ -261,7 +265,8 @@ static void bistatic_fields_are_reciprocal(void **state)
         const ScatterAntenna a = antenna_at(10, 5, 400), b = antenna_at(10 + apart, 25, 400);
         const ScatterMatrix  there = stage_bistatic(&s, &a, &b), back = stage_bistatic(&s, &b, &a);
         const double         most = fmax(cabs(there.hh), cabs(there.vv));
-        const double complex one[4] = {there.hh, there.hv, there.vh, there.vv}, other[4] = {back.hh, back.vh, back.hv, back.vv};
+        const double complex one[4] = {there.hh, there.hv, there.vh, there.vv};
+        const double other[4] = {back.hh, back.vh, back.hv, back.vv};
         for (int p = 0; p < 4; p++) worst = fmax(worst, cabs(one[p] - other[p]) / most);
     }
     printf("sphere of ka 189, antennas up to 70 deg apart: reciprocal within %.1f dB\n", 20 * log10(worst));
