@@ -266,7 +266,7 @@ static void bistatic_fields_are_reciprocal(void **state)
         const ScatterMatrix  there = stage_bistatic(&s, &a, &b), back = stage_bistatic(&s, &b, &a);
         const double         most = fmax(cabs(there.hh), cabs(there.vv));
         const double complex one[4] = {there.hh, there.hv, there.vh, there.vv};
-        const double other[4] = {back.hh, back.vh, back.hv, back.vv};
+        const double complex other[4] = {back.hh, back.vh, back.hv, back.vv};
         for (int p = 0; p < 4; p++) worst = fmax(worst, cabs(one[p] - other[p]) / most);
     }
     printf("sphere of ka 189, antennas up to 70 deg apart: reciprocal within %.1f dB\n", 20 * log10(worst));
