@@ -200,7 +200,7 @@ const Probe render_probes[] = {
      .in = "unix_s,model$,part$?,heading_deg?,engine?,speed_mps?", .out = "temp_k,low_k,high_k,air_k,ground_k",
      .open = heat_node_probe_open, .row = heat_node_probe_row, .close = heat_node_probe_close},
     {.name = "rcs",
-     .help = "scattered field and radar cross section of a target by ray tubes and physical optics, as received and transmitted "
+     .help = "scattered field and radar cross section of a target by ray tubes, physical optics and edges, as received and transmitted "
              "polarisation; target: a built-in model, a file, or sphere:R, plate:AxB, disc:R, cylinder:RxL, dihedral:AxB, "
              "trihedral:A, corner:A in m, of metal; azimuth: clockwise from the nose; range: empty, far field; rx: the receiver's, "
              "empty: at the transmitter; joints at rest",

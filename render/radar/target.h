@@ -10,6 +10,7 @@
 #include "render/parts/parts.h"
 #include "render/radar/radar_materials.h"
 #include "render/radar/scatter.h"
+#include "render/radar/wedges.h"
 
 typedef struct RadarTarget {
     const Model          *model;
@@ -19,6 +20,9 @@ typedef struct RadarTarget {
     NodePose    *pose;               /* [node_count] */
     int         *material;           /* [part_count], of materials, as undamaged */
     double       curve_m;            /* radius of curvature: a twentieth of the area is curved more; INFINITY: flat */
+    WedgeList    wedges;             /* of all parts, node axes */
+    Wedge       *wedge;              /* [wedge_count], body axes: of metal parts that are there */
+    int          wedge_count;
 } RadarTarget;
 
 /* model and materials must outlive it; its joints are at rest. isa: as tracer_create. */

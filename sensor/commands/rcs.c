@@ -10,10 +10,11 @@
 
 static const char help[] =
     "usage: pitviper rcs NAME|FILE|SHAPE [-o FOLDER] [--frequency GHZ[,GHZ...]] [--azimuth FROM:TO:STEP]\n"
-    "                    [--elevation DEG] [--range M] [--rays N] [--image DEG|none] [--cell M] [--overwrite]\n"
+    "                    [--elevation DEG] [--range M] [--rays N] [--no-edges] [--image DEG|none] [--cell M]\n"
+    "                    [--overwrite]\n"
     "\n"
-    "A target's radar cross section over azimuth, at full polarisation, by ray tubes and physical optics. Its joints\n"
-    "are at rest and it stands alone: no ground.\n"
+    "A target's radar cross section over azimuth, at full polarisation, by ray tubes, physical optics and edges. Its\n"
+    "joints are at rest and it stands alone: no ground.\n"
     "\n"
     "NAME: a built-in model (tank, truck, helicopter ...). FILE: as `pitviper model show` takes it. SHAPE, of metal,\n"
     "in m: sphere:R plate:AxB disc:R cylinder:RxL dihedral:AxB trihedral:A corner:A. Writes to FOLDER:\n"
@@ -27,6 +28,7 @@ static const char help[] =
     "  --elevation DEG      upwards, -90 .. 90 (10)\n"
     "  --range M            from the body's origin; without it the far field\n"
     "  --rays N             ray tubes a wavelength, 0.25 .. 16 (1.25); the error of one number falls slowly with it\n"
+    "  --no-edges           without the diffraction at edges\n"
     "  --image DEG|none     azimuth at which the picture is taken (30)\n"
     "  --cell M             its resolution, 0.01 .. 10 (a sixtieth of the target, at least three wavelengths)\n"
     "  --overwrite          replace these files in FOLDER; without it that is an error\n";
@@ -96,6 +98,10 @@ static int parse(RcsOptions *o, int argc, char **argv)
         const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
         if (strcmp(option, "--overwrite") == 0) {
             o->overwrite = true;
+            continue;
+        }
+        if (strcmp(option, "--no-edges") == 0) {
+            c->no_edges = true;
             continue;
         }
         if (option[0] != '-') {

@@ -87,12 +87,13 @@ static Status shoot(Pulses *pulses, const RcsImage *image, RcsSweep *sweep)
         if (bin_deg != traced_deg) {
             ScatterAntenna middle;
             radar_look(&middle, bin_deg * rad_per_deg, el_rad, sweep->config.range_m);
-            status = tubes_trace(&sweep->hits, sweep->model.target, &middle, &middle, &tubes, sweep->pool);
+            status = total_field_trace(&sweep->field, sweep->model.target, &middle, &middle, &tubes,
+                                       !sweep->config.no_edges, sweep->pool);
             traced_deg = bin_deg;
         }
         if (status == STATUS_OK)
-            status = field_sweep(s, count, first_hz, step_hz, &sweep->hits, &pulses->antenna[p], &pulses->antenna[p],
-                                 sweep->pool);
+            status = total_field_sweep(s, count, first_hz, step_hz, &sweep->field, &pulses->antenna[p],
+                                       &pulses->antenna[p], sweep->pool);
         for (int q = 0; q < 2 && status == STATUS_OK; q++) {
             for (int f = 0; f < count; f++) w[f] = (q ? s[f].hv : s[f].hh) * (hamming(f, count) / sum);
             make_profile(pulses->profile[q] + (size_t)p * (size_t)pulses->samples, pulses->samples, pulses->bin_m, w,

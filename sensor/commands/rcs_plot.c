@@ -92,7 +92,7 @@ void rcs_plot(FILE *to, const RcsSweep *sweep)
             config->elevation_deg);
     if (isinf(config->range_m)) fputs("far field; ", to);
     else fprintf(to, "range %g m; ", config->range_m);
-    fputs("azimuth clockwise from the nose, deg; ray tubes and physical optics</text>\n", to);
+    fputs("azimuth clockwise from the nose, deg; ray tubes and edges</text>\n", to);
     draw_grid(to, &rings);
     for (int p = 0; p < 2; p++) draw_curve(to, sweep, &rings, p);
     if (!isnan(sweep->grid_db))

@@ -37,7 +37,7 @@ Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
 
 void rcs_sweep_close(RcsSweep *sweep)
 {
-    tubes_free(&sweep->hits);
+    total_field_free(&sweep->field);
     pool_destroy(sweep->pool);
     radar_model_close(&sweep->model);
     radar_materials_close(&sweep->materials);
@@ -52,11 +52,12 @@ static Status look_at(ScatterMatrix *s, RcsSweep *sweep, int look, uint64_t seed
     tubes.seed = seed;
     radar_look(&antenna, rcs_look_deg(&sweep->config, look) * rad_per_deg, sweep->config.elevation_deg * rad_per_deg,
                sweep->config.range_m);
-    Status status = tubes_trace(&sweep->hits, sweep->model.target, &antenna, &antenna, &tubes, sweep->pool);
-    sweep->rays += sweep->hits.rays;
-    sweep->hit_count += (long long)sweep->hits.count;
+    Status status = total_field_trace(&sweep->field, sweep->model.target, &antenna, &antenna, &tubes,
+                                      !sweep->config.no_edges, sweep->pool);
+    sweep->rays += sweep->field.hits.rays;
+    sweep->hit_count += (long long)sweep->field.hits.count;
     for (int f = 0; f < sweep->config.frequencies && status == STATUS_OK; f++)
-        status = field_at(&s[f], sweep->config.frequency_hz[f], &sweep->hits, sweep->pool);
+        status = total_field_sweep(&s[f], 1, sweep->config.frequency_hz[f], 0, &sweep->field, NULL, NULL, sweep->pool);
     return status;
 }
 

@@ -2,8 +2,8 @@
 #ifndef SENSOR_COMMANDS_RCS_SWEEP_H
 #define SENSOR_COMMANDS_RCS_SWEEP_H
 
-#include "render/radar/field.h"
 #include "render/radar/radar_model.h"
+#include "render/radar/total_field.h"
 
 enum { rcs_most_frequencies = 64, rcs_most_looks = 36001 };
 
@@ -15,6 +15,7 @@ typedef struct RcsConfig {
     int         frequencies;
     double      frequency_hz[rcs_most_frequencies];
     double      rays_per_wavelength;     /* 0: the default */
+    bool        no_edges;
     double      image_deg;               /* azimuth of the picture's middle; NaN: none */
     double      resolution_m;            /* of the picture; 0: a sixtieth of the target, at least three wavelengths */
 } RcsConfig;
@@ -25,7 +26,7 @@ typedef struct RcsSweep {
     RadarModel     model;
     Pool          *pool;
     TubeConfig     tubes;
-    TubeHits       hits;                 /* of the last look */
+    TotalField     field;                /* of the last look */
     ScatterMatrix *s;                    /* [looks][frequencies] */
     long long      rays, hit_count;
     double         grid_db;              /* error by another grid of tubes, of the power, some looks; NaN: none */
