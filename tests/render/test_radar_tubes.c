@@ -3,6 +3,8 @@
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 
+#include "render/radar/total_field.h"
+
 static const double x_hz = 10e9, w_hz = 94e9;
 
 static double sigma(double complex s) { return 4 * pi_rad * (creal(s) * creal(s) + cimag(s) * cimag(s)); }
@@ -310,6 +312,48 @@ static void bistatic_spheres_equal_mie(void **state)
     table_close(&table);
 }
 
+/* ---- rays and edges ----------------------------------------------------------------------------------- */
+
+static void edges_are_added_to_the_rays(void **state)
+{
+    (void)state;
+    enum { count = 70 };
+    ScatterMatrix got[count], one[count], want;
+    TotalField    field = {0}, alone = {0};
+    RadarStage    s;
+    double        worst = 0, moved = 0;
+    stage_open(&s, "disc:0.4", x_hz);
+    const ScatterAntenna tx = antenna_at(50, 20, 300), rx = antenna_at(55, 18, 300);
+    const ScatterAntenna tx2 = antenna_at(50.02, 20.01, 300), rx2 = antenna_at(55.01, 18, 300);
+    CHECK(total_field_trace(&field, s.target, &tx, &rx, &s.config, true, s.pool) == STATUS_OK);
+    CHECK(field.edges.count > 100);
+    CHECK(total_field_sweep(got, count, 9e9, 2e7, &field, NULL, NULL, s.pool) == STATUS_OK);
+    for (int f = 0; f < count; f += 3) {
+        CHECK(field_at(&want, 9e9 + f * 2e7, &field.hits, s.pool) == STATUS_OK);
+        const double complex rays = want.vv;
+        edge_segments_field(&want, &field.edges, 2 * pi_rad * (9e9 + f * 2e7) / light_mps);
+        worst = fmax(worst, (cabs(got[f].hh - want.hh) + cabs(got[f].hv - want.hv) + cabs(got[f].vv - want.vv)) /
+                                cabs(want.vv));
+        CHECK(cabs(want.vv - rays) > 1e-3 * cabs(want.vv)); /* they do something */
+    }
+    /* the same without threads */
+    CHECK(total_field_trace(&alone, s.target, &tx, &rx, &s.config, true, NULL) == STATUS_OK);
+    CHECK(total_field_sweep(one, count, 9e9, 2e7, &alone, NULL, NULL, NULL) == STATUS_OK);
+    CHECK(memcmp(got, one, sizeof got) == 0);
+    /* moved antennas, against a look of their own; the rays' own list aside */
+    CHECK(total_field_sweep(got, 1, x_hz, 0, &field, &tx2, &rx2, s.pool) == STATUS_OK);
+    CHECK(field_sweep(one, 1, x_hz, 0, &field.hits, &tx2, &rx2, s.pool) == STATUS_OK);
+    CHECK(total_field_trace(&alone, s.target, &tx2, &rx2, &s.config, true, s.pool) == STATUS_OK);
+    want = (ScatterMatrix){0};
+    edge_segments_field(&want, &alone.edges, 2 * pi_rad * x_hz / light_mps);
+    moved = cabs(got[0].vv - one[0].vv - want.vv) / cabs(want.vv);
+    printf("edges in a sweep: within %.1e; 0.02 degrees away: %.1e\n", worst, moved);
+    CHECK(worst <= 1e-8 && moved <= 0.02);
+    total_field_free(&field);
+    total_field_free(&alone);
+    stage_close(&s);
+}
+
 /* ---- what is refused ---------------------------------------------------------------------------------- */
 
 static void bad_looks_are_refused(void **state)
@@ -341,7 +385,7 @@ int main(void)
         cmocka_unit_test(threads_change_no_bit), cmocka_unit_test(a_sweep_equals_its_frequencies),
         cmocka_unit_test(lists_serve_other_aspects), cmocka_unit_test(a_curved_mirror_spreads_the_field),
         cmocka_unit_test(bistatic_fields_are_reciprocal), cmocka_unit_test(bistatic_spheres_equal_mie),
-        cmocka_unit_test(bad_looks_are_refused),
+        cmocka_unit_test(edges_are_added_to_the_rays), cmocka_unit_test(bad_looks_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
