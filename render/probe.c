@@ -217,7 +217,7 @@ const Probe render_probes[] = {
      .in = "power_w,gain_db,frequency_ghz,rcs_dbsm,range_m,bandwidth_hz,noise_figure_db,loss_db?",
      .out = "received_dbw,noise_dbw,snr_db", .row = radar_equation_probe_row},
     {.name = "rcs",
-     .help = "scattered field and radar cross section of a target by ray tubes and physical optics, as received and transmitted "
+     .help = "scattered field and radar cross section of a target by ray tubes, physical optics and edges, as received and transmitted "
              "polarisation; target: a built-in model, a file, or sphere:R, plate:AxB, disc:R, cylinder:RxL, dihedral:AxB, "
              "trihedral:A, corner:A in m, of metal; azimuth: clockwise from the nose; range: empty, far field; rx: the receiver's, "
              "empty: at the transmitter; joints at rest",

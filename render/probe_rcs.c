@@ -1,8 +1,8 @@
 /* render/probe_rcs.c: `pitviper probe rcs`: the scattered field of a target for rows of CSV. */
 #include "render/probe_private.h"
 
-#include "render/radar/field.h"
 #include "render/radar/radar_model.h"
+#include "render/radar/total_field.h"
 
 #include <stdlib.h>
 
@@ -12,7 +12,7 @@ typedef struct RcsProbe {
     RadarModel    *model;     /* of the last row; NULL: none */
     char           name[512];
     double         sag_m;
-    TubeHits       hits;
+    TotalField     field;
 } RcsProbe;
 
 static void drop_model(RcsProbe *p)
@@ -26,7 +26,7 @@ void rcs_probe_close(void *state)
 {
     RcsProbe *p = state;
     drop_model(p);
-    tubes_free(&p->hits);
+    total_field_free(&p->field);
     pool_destroy(p->pool);
     radar_materials_close(&p->materials);
     free(p);
@@ -81,9 +81,10 @@ const char *rcs_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
     rx = tx;
     if (bistatic) radar_look(&rx, in[5].number * rad_per_deg, in[6].number * rad_per_deg, range_m);
     const TubeConfig config = tubes_default_config(f_hz);
-    const Status     status = tubes_trace(&p->hits, p->model->target, &tx, &rx, &config, p->pool);
-    if (status != STATUS_OK) return status == STATUS_NO_MEMORY ? "out of memory" : "too near or too large (see the log)";
-    if (field_at(&s, f_hz, &p->hits, p->pool) != STATUS_OK) return "out of memory";
+    const Status     status = total_field_trace(&p->field, p->model->target, &tx, &rx, &config, true, p->pool);
+    if (status == STATUS_NO_MEMORY) return "out of memory";
+    if (status != STATUS_OK) return "too near or too large (see the log)";
+    if (total_field_sweep(&s, 1, f_hz, 0, &p->field, NULL, NULL, p->pool) != STATUS_OK) return "out of memory";
     const double complex value[4] = {s.hh, s.hv, s.vh, s.vv};
     for (int i = 0; i < 4; i++) {
         out[i].number = value[i] == 0 ? NAN : rcs_dbsm(value[i]);

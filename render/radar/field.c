@@ -1,9 +1,11 @@
 /* render/radar/field.c: sums a list of hits over many frequencies. */
 #include "render/radar/field.h"
 
+#include "pitviper_simd.h"
+
 #include <stdlib.h>
 
-enum { chunk_hits = 8192, restart = 64 };
+enum { chunk_hits = 8192, lanes = 4, together = 2, few = 4, restart = 256 };
 
 typedef struct Sweep {
     int             count;
@@ -11,11 +13,12 @@ typedef struct Sweep {
     const TubeHits *hits;
     bool            moved;
     ScatterAntenna  tx, rx;
-    double         *sum; /* [chunks][count][8] */
+    double         *sum; /* [chunks][8][padded] */
+    int             padded; /* count, up to a multiple of lanes */
 } Sweep;
 
-/* Change of a hit's path when the antennas move: that of its first point to the transmitter and of its last to the receiver;
- * what lies between changes by the second order (Fermat). */
+/* Change of a hit's path when the antennas move: that of its first point to the transmitter and of its last to the
+ * receiver; what lies between changes by the second order (Fermat). */
 static double moved_by(const Sweep *sweep, size_t i)
 {
     const TubeHits *h = sweep->hits;
@@ -28,39 +31,120 @@ static double moved_by(const Sweep *sweep, size_t i)
 
 static double sinc(double x) { return fabs(x) < 1e-4 ? 1 - x * x / 6 : sin(x) / x; }
 
-static void add_hit(double *sum, const Sweep *sweep, size_t i)
+static double path_of(const Sweep *sweep, size_t i)
+{
+    return sweep->hits->path_m[i] + (sweep->moved ? moved_by(sweep, i) : 0);
+}
+
+/* One hit, each frequency by itself. */
+static void add_plain(double *sum, const Sweep *sweep, size_t i)
 {
     const TubeHits *h = sweep->hits;
-    const double    path_m = h->path_m[i] + (sweep->moved ? moved_by(sweep, i) : 0);
-    const double    slope_m[2] = {(double)h->slope_m[0][i], (double)h->slope_m[1][i]};
-    double          a[8];
-    for (int c = 0; c < 8; c++) a[c] = (double)h->amplitude[c][i];
-    for (int start = 0; start < sweep->count; start += restart) {
-        const double k0 = sweep->first_k + start * sweep->step_k;
-        const double turn_re = cos(sweep->step_k * path_m), turn_im = -sin(sweep->step_k * path_m);
-        double       re = cos(k0 * path_m), im = -sin(k0 * path_m);
-        const int    end = start + restart < sweep->count ? start + restart : sweep->count;
-        for (int f = start; f < end; f++) {
-            const double k = sweep->first_k + f * sweep->step_k, share = sinc(k * slope_m[0]) * sinc(k * slope_m[1]);
-            const double x = share * re, y = share * im, next = re * turn_re - im * turn_im;
-            double      *at = sum + 8 * f;
-            for (int p = 0; p < 8; p += 2) {
-                at[p] += a[p] * x - a[p + 1] * y;
-                at[p + 1] += a[p] * y + a[p + 1] * x;
-            }
-            im = re * turn_im + im * turn_re;
-            re = next;
+    const double    path_m = path_of(sweep, i);
+    for (int f = 0; f < sweep->count; f++) {
+        const double k = sweep->first_k + f * sweep->step_k;
+        const double share = sinc(k * (double)h->slope_m[0][i]) * sinc(k * (double)h->slope_m[1][i]);
+        const double x = share * cos(k * path_m), y = -share * sin(k * path_m);
+        for (int p = 0; p < 8; p += 2) {
+            const double re = (double)h->amplitude[p][i], im = (double)h->amplitude[p + 1][i];
+            sum[p * sweep->padded + f] += re * x - im * y;
+            sum[(p + 1) * sweep->padded + f] += re * y + im * x;
         }
     }
 }
+
+/* exp(j a) at four frequencies, and its turn from four to the next four. */
+typedef struct Turning {
+    F64x4 re, im, turn_re, turn_im;
+} Turning;
+
+static void turning_start(Turning *t, double length_m, double k, double step_k)
+{
+    double re[lanes], im[lanes], turn_re = cos(step_k * length_m), turn_im = sin(step_k * length_m);
+    re[0] = cos(k * length_m), im[0] = sin(k * length_m);
+    for (int l = 1; l < lanes; l++) {
+        re[l] = re[l - 1] * turn_re - im[l - 1] * turn_im;
+        im[l] = re[l - 1] * turn_im + im[l - 1] * turn_re;
+    }
+    for (int twice = 0; twice < 2; twice++) {
+        const double square = turn_re * turn_re - turn_im * turn_im;
+        turn_im = 2 * turn_re * turn_im;
+        turn_re = square;
+    }
+    *t = (Turning){f64x4_loadu(re), f64x4_loadu(im), f64x4_set(turn_re), f64x4_set(turn_im)};
+}
+
+static inline void turning_step(Turning *t)
+{
+    const F64x4 re = t->re * t->turn_re - t->im * t->turn_im;
+    t->im = t->re * t->turn_im + t->im * t->turn_re;
+    t->re = re;
+}
+
+/* Some hits at once, four frequencies at a time: exp(-j k path) and both sines turn from step to step. sinc(k s) =
+ * sin(k s) / (k s): the s are in the amplitude here, the k in finish. Slopes below 3e-5 of a radian count as that, so
+ * that rounding does not grow. */
+static void add_turning(double *sum, const Sweep *sweep, size_t i)
+{
+    const TubeHits *h = sweep->hits;
+    const double    least_m = 3e-5 / (sweep->first_k + sweep->count * sweep->step_k);
+    double          path_m[together], slope_m[2][together];
+    F64x4           a[together][8];
+    for (int n = 0; n < together; n++) {
+        path_m[n] = -path_of(sweep, i + (size_t)n);
+        for (int c = 0; c < 2; c++) slope_m[c][n] = fmax(fabs((double)h->slope_m[c][i + (size_t)n]), least_m);
+        const double per = 1 / (slope_m[0][n] * slope_m[1][n]);
+        for (int p = 0; p < 8; p++) a[n][p] = f64x4_set((double)h->amplitude[p][i + (size_t)n] * per);
+    }
+    for (int start = 0; start < sweep->padded; start += restart) {
+        const double k = sweep->first_k + start * sweep->step_k;
+        const int    end = start + restart < sweep->padded ? start + restart : sweep->padded;
+        Turning      way[together], side[2][together];
+        for (int n = 0; n < together; n++) {
+            turning_start(&way[n], path_m[n], k, sweep->step_k);
+            for (int c = 0; c < 2; c++) turning_start(&side[c][n], slope_m[c][n], k, sweep->step_k);
+        }
+        for (int f = start; f < end; f += lanes) {
+            F64x4 whole[8];
+            for (int p = 0; p < 8; p++) whole[p] = f64x4_load(sum + p * sweep->padded + f);
+            for (int n = 0; n < together; n++) {
+                const F64x4 share = side[0][n].im * side[1][n].im, x = share * way[n].re, y = share * way[n].im;
+                for (int p = 0; p < 8; p += 2) {
+                    whole[p] += a[n][p] * x - a[n][p + 1] * y;
+                    whole[p + 1] += a[n][p] * y + a[n][p + 1] * x;
+                }
+                turning_step(&way[n]);
+                turning_step(&side[0][n]);
+                turning_step(&side[1][n]);
+            }
+            for (int p = 0; p < 8; p++) f64x4_store(sum + p * sweep->padded + f, whole[p]);
+        }
+    }
+}
+
+static bool is_turning(const Sweep *sweep) { return sweep->count >= few; }
 
 static void sum_chunk(void *user, int worker, int task)
 {
     const Sweep *sweep = user;
     const size_t first = (size_t)task * chunk_hits;
     const size_t end = first + chunk_hits < sweep->hits->count ? first + chunk_hits : sweep->hits->count;
+    double      *sum = sweep->sum + 8 * (size_t)sweep->padded * (size_t)task;
     (void)worker;
-    for (size_t i = first; i < end; i++) add_hit(sweep->sum + 8 * (size_t)sweep->count * (size_t)task, sweep, i);
+    if (is_turning(sweep)) for (size_t i = first; i < end; i += together) add_turning(sum, sweep, i);
+    else for (size_t i = first; i < end; i++) add_plain(sum, sweep, i);
+}
+
+/* The field at a frequency from the chunks' sums, in their order. */
+static void finish(ScatterMatrix *s, const Sweep *sweep, int chunks, int f)
+{
+    double       whole[8] = {0};
+    const double k = sweep->first_k + f * sweep->step_k, per = is_turning(sweep) ? k * k : 1;
+    const double scale = -k / (2 * pi_rad) / per; /* times j */
+    for (int t = 0; t < chunks; t++)
+        for (int c = 0; c < 8; c++) whole[c] += sweep->sum[(size_t)(8 * t + c) * (size_t)sweep->padded + (size_t)f];
+    double complex *const to[4] = {&s->hh, &s->hv, &s->vh, &s->vv};
+    for (int p = 0; p < 4; p++) *to[p] = CMPLX(-scale * whole[2 * p + 1], scale * whole[2 * p]);
 }
 
 Status field_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz, const TubeHits *hits,
@@ -69,19 +153,15 @@ Status field_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz,
     const double k_per_hz = 2 * pi_rad / light_mps;
     const int    chunks = (int)((hits->count + chunk_hits - 1) / chunk_hits);
     Sweep        sweep = {.count = count, .first_k = first_hz * k_per_hz, .step_k = step_hz * k_per_hz, .hits = hits,
-                          .moved = tx || rx, .tx = tx ? *tx : hits->tx, .rx = rx ? *rx : hits->rx};
-    sweep.sum = calloc(8 * (size_t)count * (size_t)chunks + 1, sizeof *sweep.sum);
+                          .moved = tx || rx, .tx = tx ? *tx : hits->tx, .rx = rx ? *rx : hits->rx,
+                          .padded = (count + lanes - 1) / lanes * lanes};
+    const size_t sums = 8 * (size_t)sweep.padded * (size_t)(chunks + 1);
+    sweep.sum = aligned_alloc(64, sums * sizeof *sweep.sum);
     if (!sweep.sum) return STATUS_NO_MEMORY;
+    memset(sweep.sum, 0, sums * sizeof *sweep.sum);
     if (pool) pool_run(pool, chunks, sum_chunk, &sweep);
     else for (int t = 0; t < chunks; t++) sum_chunk(&sweep, 0, t);
-    for (int f = 0; f < count; f++) {
-        double       whole[8] = {0};
-        const double scale = -(sweep.first_k + f * sweep.step_k) / (2 * pi_rad); /* times j */
-        for (int t = 0; t < chunks; t++)
-            for (int c = 0; c < 8; c++) whole[c] += sweep.sum[8 * ((size_t)count * (size_t)t + (size_t)f) + (size_t)c];
-        double complex *const to[4] = {&s[f].hh, &s[f].hv, &s[f].vh, &s[f].vv};
-        for (int p = 0; p < 4; p++) *to[p] = CMPLX(-scale * whole[2 * p + 1], scale * whole[2 * p]);
-    }
+    for (int f = 0; f < count; f++) finish(&s[f], &sweep, chunks, f);
     free(sweep.sum);
     return STATUS_OK;
 }

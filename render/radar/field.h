@@ -6,9 +6,10 @@
 
 #include "render/radar/tubes.h"
 
-/* S [count] at frequencies first_hz + i step_hz. tx, rx NULL: the list's own antennas; else moved a little from them: 0.1
- * degree costs -54 dB of the largest S near. Phase by recurrence over frequency, restarted each 64 steps: within 1e-11 rad.
- * The same bits for any number of threads. pool may be NULL. */
+/* S [count] at frequencies first_hz + i step_hz. tx, rx NULL: the list's own antennas; else moved a little from them:
+ * 0.1 degree costs -54 dB of the largest S near. Four and more frequencies by recurrence, within 1e-9 of the
+ * amplitude; the first frequency must be above 0, the step not below. The same bits for any number of threads. pool
+ * may be NULL. */
 Status field_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz, const TubeHits *hits,
                    const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool);
 Status field_at(ScatterMatrix *s, double frequency_hz, const TubeHits *hits, Pool *pool);

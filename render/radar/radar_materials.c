@@ -3,8 +3,10 @@
 
 #include <stdlib.h>
 
-static const char *const column_names[] = {"name", "kind", "f_ghz", "eps_re", "eps_im", "thick_mm", "rough_mm", "source"};
-enum { column_name, column_kind, column_f, column_e1, column_e2, column_thick, column_rough, column_source, column_count };
+static const char *const column_names[] = {"name", "kind", "f_ghz", "eps_re", "eps_im", "thick_mm", "rough_mm",
+                                           "source"};
+enum { column_name, column_kind, column_f, column_e1, column_e2, column_thick, column_rough, column_source,
+      column_count };
 
 static const char *const kind_names[RADAR_SURFACE_KINDS] = {"metal", "half_space", "slab", "coated"};
 
@@ -115,7 +117,8 @@ Status radar_materials_load(RadarMaterials *out)
 {
     char      radar[512], materials[512], surfaces[512];
     Materials optical = {0};
-    if (!etc_path(radar, sizeof radar, "radar/materials.csv") || !etc_path(materials, sizeof materials, "materials.csv") ||
+    if (!etc_path(radar, sizeof radar, "radar/materials.csv") ||
+        !etc_path(materials, sizeof materials, "materials.csv") ||
         !etc_path(surfaces, sizeof surfaces, "surfaces.csv")) {
         log_error("radar materials: path of the tables is too long; set PITVIPER_ETC to a shorter one");
         return STATUS_BAD_VALUE;

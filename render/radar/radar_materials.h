@@ -1,8 +1,9 @@
-/* render/radar/radar_materials.h: how each material reflects radar, from etc/radar/materials.csv (with a source a row).
+/* render/radar/radar_materials.h: how each material reflects radar, from etc/radar/materials.csv (with a source a
+ * row).
  *
- * A material has one row, or several at rising frequencies: its permittivity is a straight line over log frequency between
- * them and constant beyond. A material of etc/materials.csv without a row takes the row `metal_default` or `other_default`,
- * by its column `metal`. */
+ * A material has one row, or several at rising frequencies: its permittivity is a straight line over log frequency
+ * between them and constant beyond. A material of etc/materials.csv without a row takes the row `metal_default` or
+ * `other_default`, by its column `metal`. */
 #ifndef RENDER_RADAR_RADAR_MATERIALS_H
 #define RENDER_RADAR_RADAR_MATERIALS_H
 

@@ -10,8 +10,8 @@ typedef struct RadarModel {
     RadarTarget *target;
 } RadarModel;
 
-/* Curved surfaces of built-in models and shapes are within sag_m of their facets; a file is as fine as it is. materials: of
- * radar_materials_load, must outlive it. Logs. */
+/* Curved surfaces of built-in models and shapes are within sag_m of their facets; a file is as fine as it is.
+ * materials: of radar_materials_load, must outlive it. Logs. */
 Status radar_model_open(RadarModel *out, const char *name, const RadarMaterials *materials, double sag_m);
 void   radar_model_close(RadarModel *m); /* accepts zeroes */
 

@@ -98,8 +98,8 @@ static double circle_sides(double radius_m, double sag_m)
     return fmax(8, ceil(pi_rad / acos(1 - fmin(sag_m / radius_m, 0.2))));
 }
 
-/* Each face of an octahedron in n x n triangles, its points moved out to the sphere. The deepest facets, at the middle of a
- * face, have a sag of 0.83 radii / n^2 (measured). */
+/* Each face of an octahedron in n x n triangles, its points moved out to the sphere. The deepest facets, at the
+ * middle of a face, have a sag of 0.83 radii / n^2 (measured). */
 static bool build_sphere(Builder *b, double radius_m, double sag_m)
 {
     const double n = ceil(sqrt(0.83 * radius_m / fmin(sag_m, 0.1 * radius_m)));
@@ -110,7 +110,8 @@ static bool build_sphere(Builder *b, double radius_m, double sag_m)
         for (int i = 0; i < n; i++)
             for (int j = 0; j < n - i; j++)
                 for (int half = 0; half < (j < n - i - 1 ? 2 : 1); half++) {
-                    const int at[2][3][2] = {{{i, j}, {i + 1, j}, {i, j + 1}}, {{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
+                    const int at[2][3][2] = {{{i, j}, {i + 1, j}, {i, j + 1}},
+                                             {{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
                     double    p[3][3], normal[3][3];
                     for (int c = 0; c < 3; c++) {
                         const int *g = at[half][turned ? 2 - c : c];
@@ -159,7 +160,8 @@ static bool build_disc(Builder *b, double radius_m, double sag_m)
     if (sides > most_facets || !make_room(b, (int)sides)) return false;
     for (int i = 0; i < sides; i++) {
         const double o[3] = {0, 0, 0}, from = 2 * pi_rad * i / sides, to = 2 * pi_rad * (i + 1) / sides;
-        const double p[3] = {0, radius_m * cos(from), radius_m * sin(from)}, q[3] = {0, radius_m * cos(to), radius_m * sin(to)};
+        const double p[3] = {0, radius_m * cos(from), radius_m * sin(from)};
+        const double q[3] = {0, radius_m * cos(to), radius_m * sin(to)};
         add_flat(b, o, p, q);
     }
     return true;
@@ -177,7 +179,8 @@ static bool build_plate(Builder *b, double a_m, double b_m)
 
 static bool build_dihedral(Builder *b, double a_m, double b_m)
 {
-    const double o[3] = {0, 0, -b_m / 2}, half = a_m * sqrt(0.5), u[3] = {half, half, 0}, w[3] = {half, -half, 0}, v[3] = {0, 0, b_m};
+    const double o[3] = {0, 0, -b_m / 2}, half = a_m * sqrt(0.5), u[3] = {half, half, 0}, w[3] = {half, -half, 0};
+    const double v[3] = {0, 0, b_m};
     if (!make_room(b, 4)) return false;
     add_plate(b, o, v, u);
     add_plate(b, o, w, v);
@@ -200,7 +203,8 @@ static bool build_trihedral(Builder *b, double a_m, bool square)
 static const struct {
     const char *name;
     int         dimensions;
-} shapes[] = {{"sphere", 1}, {"plate", 2}, {"disc", 1}, {"cylinder", 2}, {"dihedral", 2}, {"trihedral", 1}, {"corner", 1}};
+} shapes[] = {{"sphere", 1}, {"plate", 2}, {"disc", 1}, {"cylinder", 2}, {"dihedral", 2}, {"trihedral", 1},
+              {"corner", 1}};
 enum { shape_count = sizeof shapes / sizeof *shapes };
 
 bool shape_is_named(const char *name) { return strchr(name, ':') != NULL; }
@@ -249,7 +253,8 @@ Status shape_build(Model *out, const char *name, double sag_m)
     }
     Status status = open_model(&builder, &model, name) ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK && !build_shape(&builder, shape, size_m, sag_m)) {
-        log_error("radar: a shape of more than %d facets, or no memory for it: name=%s sag_m=%g", (int)most_facets, name, sag_m);
+        log_error("radar: a shape of more than %d facets, or no memory for it: name=%s sag_m=%g", (int)most_facets,
+                  name, sag_m);
         status = STATUS_BAD_VALUE;
     }
     model.sag_m = sag_m;

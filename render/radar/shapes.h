@@ -5,9 +5,11 @@
  *   plate      A along y, B along z, normal x; disc: normal x. Of no thickness
  *   cylinder   its axis z, about the origin; its ends are a part of their own
  *   dihedral   two plates, A wide and B along z, that meet at right angles in the z axis; opens towards x
- *   trihedral  three right-angled triangles of legs A from the origin along x, y and -z, which is up; corner: three squares;
+ *   trihedral  three right-angled triangles of legs A from the origin along x, y and -z, which is up; corner: three
+ *              squares;
  *              both open towards (1, 1, -1)
- * All metal, one part but for the cylinder. Curved ones lie within sag_m of their facets, corners of facets on the surface. */
+ * All metal, one part but for the cylinder. Curved ones lie within sag_m of their facets, corners of facets on the
+ * surface. */
 #ifndef RENDER_RADAR_SHAPES_H
 #define RENDER_RADAR_SHAPES_H
 

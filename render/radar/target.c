@@ -73,11 +73,19 @@ Status radar_target_create(RadarTarget **out, const Model *model, const RadarMat
     target->pose = calloc((size_t)model->node_count + 1, sizeof *target->pose);
     target->material = calloc((size_t)model->part_count + 1, sizeof *target->material);
     status = target->entity.node && target->pose && target->material ? measure_curve(target) : STATUS_NO_MEMORY;
+    const WedgeConfig edges = wedges_default_config();
+    if (status == STATUS_OK) status = wedges_find(&target->wedges, model, &edges);
     if (status != STATUS_OK) goto fail;
+    target->wedge = calloc((size_t)target->wedges.count + 1, sizeof *target->wedge);
+    if (!target->wedge) {
+        status = STATUS_NO_MEMORY;
+        goto fail;
+    }
     for (int p = 0; p < model->part_count && materials; p++) {
         target->material[p] = radar_materials_find(materials, model->part[p].material);
         if (target->material[p] < 0) {
-            log_error("radar: no radar material of this name: model=%s part=%s material=%s", model->name, model->part[p].name,
+            log_error("radar: no radar material of this name: model=%s part=%s material=%s", model->name,
+                      model->part[p].name,
                       model->part[p].material);
             status = STATUS_BAD_VALUE;
             goto fail;
@@ -99,7 +107,28 @@ void radar_target_destroy(RadarTarget *target)
     free(target->entity.node);
     free(target->pose);
     free(target->material);
+    free(target->wedge);
+    wedges_destroy(&target->wedges);
     free(target);
+}
+
+static bool is_metal(const RadarTarget *target, int part)
+{
+    if (!target->materials) return true;
+    const RadarSurfaceKind kind = target->materials->material[target->material[part]].kind;
+    return kind == RADAR_METAL || kind == RADAR_COATED;
+}
+
+static void place_wedges(RadarTarget *target, int damage)
+{
+    static const double origin[3] = {0, 0, 0};
+    wedges_place(target->wedge, &target->wedges, target->pose, origin);
+    target->wedge_count = 0;
+    for (int i = 0; i < target->wedges.count; i++) {
+        const int part = target->wedges.wedge[i].part;
+        if (!is_metal(target, part) || target->model->part[part].damage_hidden >> damage & 1) continue;
+        target->wedge[target->wedge_count++] = target->wedge[i];
+    }
 }
 
 void radar_target_pose(RadarTarget *target, const NodePose *pose, int damage)
@@ -110,9 +139,11 @@ void radar_target_pose(RadarTarget *target, const NodePose *pose, int damage)
     if (pose) memcpy(target->pose, pose, (size_t)target->model->node_count * sizeof *pose);
     else model_pose(target->pose, target->model, NULL);
     parts_pose(&target->entity, target->tracer, 0, target->pose, origin, attitude, damage);
+    place_wedges(target, damage);
 }
 
-void radar_antenna(ScatterAntenna *out, const double p_antenna[3], const double p_target[3], const double r_from_body[9])
+void radar_antenna(ScatterAntenna *out, const double p_antenna[3], const double p_target[3],
+                   const double r_from_body[9])
 {
     double from[3];
     v3_sub(from, p_antenna, p_target);

@@ -1,4 +1,5 @@
-/* render/radar/tubes.c: lays the grid of tubes and gathers their hits into one list; the tubes' own way is in tubes_trace.c. */
+/* render/radar/tubes.c: lays the grid of tubes and gathers their hits into one list; the tubes' own way is in
+ * tubes_trace.c. */
 #include "render/radar/tubes_private.h"
 
 #include <stdlib.h>
@@ -7,7 +8,8 @@ enum { round_tiles = 512 }; /* hits are gathered so often: bounds the memory of 
 
 TubeConfig tubes_default_config(double frequency_hz)
 {
-    return (TubeConfig){.frequency_hz = frequency_hz, .rays_per_wavelength = 1.25, .rays_per_radius = 128, .bounces = 8};
+    return (TubeConfig){.frequency_hz = frequency_hz, .rays_per_wavelength = 1.25, .rays_per_radius = 128,
+                        .bounces = 8};
 }
 
 void tubes_free(TubeHits *hits)
@@ -36,7 +38,8 @@ static uint64_t hash_look(const TubeConfig *config, const ScatterAntenna *tx)
     return hash;
 }
 
-/* Where the line from the transmitter through a point meets the grid's plane, in its axes. False: behind the transmitter. */
+/* Where the line from the transmitter through a point meets the grid's plane, in its axes. False: behind the
+ * transmitter. */
 static bool on_grid(double at_m[2], const TubeGrid *grid, const double p[3])
 {
     double from[3];
@@ -72,7 +75,8 @@ static Status lay_grid(TubeGrid *grid, const RadarTarget *target, const ScatterA
     const double       curve_m = config->curve_m > 0 ? config->curve_m : target->curve_m;
     const double       widest_m = fmax(sqrt(wavelength_m * curve_m / 16), wavelength_m / 8);
     const uint64_t     hash = hash_look(config, tx);
-    grid->spacing_m = fmin(fmin(wavelength_m / config->rays_per_wavelength, widest_m), entity->radius_m / config->rays_per_radius);
+    grid->spacing_m = fmin(fmin(wavelength_m / config->rays_per_wavelength, widest_m),
+                           entity->radius_m / config->rays_per_radius);
     memcpy(grid->centre, entity->centre_enu, sizeof grid->centre);
     grid->plane = isinf(tx->range_m);
     if (grid->plane) {
@@ -185,7 +189,7 @@ static Status gather(TubeHits *out, TubeWork *work, int threads, int count)
         if (work->piece[t].failed) return STATUS_NO_MEMORY;
         more += work->piece[t].count;
     }
-    const Status status = reserve(out, more);
+    const Status status = reserve(out, more + 1);
     if (status != STATUS_OK) return status;
     for (int t = 0; t < count; t++)
         if (work->piece[t].count)
@@ -206,10 +210,12 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
     TubeWork  work = {.target = target, .tx = *tx, .rx = *rx, .config = *config,
                       .k = 2 * pi_rad * config->frequency_hz / light_mps,
                       .monostatic = memcmp(tx->u, rx->u, sizeof tx->u) == 0 && tx->range_m == rx->range_m};
-    if (!antenna_is_good(tx) || !antenna_is_good(rx) || !(config->frequency_hz > 0) || !(config->rays_per_wavelength > 0) || !(config->rays_per_radius >= 0) ||
+    if (!antenna_is_good(tx) || !antenna_is_good(rx) || !(config->frequency_hz > 0) ||
+        !(config->rays_per_wavelength > 0) || !(config->rays_per_radius >= 0) ||
         isinf(config->frequency_hz) || config->bounces < 1 || config->bounces > 255) {
-        log_error("radar: an antenna or a number of the ray tubes is out of range: frequency_hz=%g rays_per_wavelength=%g "
-                  "bounces=%d", config->frequency_hz, config->rays_per_wavelength, config->bounces);
+        log_error("radar: an antenna or a number of the ray tubes is out of range: frequency_hz=%g "
+                  "rays_per_wavelength=%g bounces=%d", config->frequency_hz, config->rays_per_wavelength,
+                  config->bounces);
         return STATUS_BAD_VALUE;
     }
     out->count = 0;
@@ -236,6 +242,11 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
         status = gather(out, &work, threads, count);
     }
     if (status == STATUS_NO_MEMORY) log_error("radar: out of memory for the hits of ray tubes: rays=%lld", out->rays);
+    if (status == STATUS_OK && out->count > 0) {
+        static const TubeHit none;
+        append(out, &none, 1);
+        out->count--;
+    }
     close_work(&work, threads);
     return status;
 }

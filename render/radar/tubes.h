@@ -1,16 +1,18 @@
 /* render/radar/tubes.h: ray tubes: shooting and bouncing rays with physical optics, as a list of hits.
  *
- * A grid of tubes is shot from the transmitter over what it can see of the target; each facet that a tube meets, after up to
- * `bounces` mirrors, radiates physical-optics currents to the receiver if nothing is in between. The list holds what
- * frequency does not change, so field.h makes the field at many frequencies, and at small changes of aspect, from one list.
+ * A grid of tubes is shot from the transmitter over what it can see of the target; each facet that a tube meets,
+ * after up to `bounces` mirrors, radiates physical-optics currents to the receiver if nothing is in between. The list
+ * holds what frequency does not change, so field.h makes the field at many frequencies, and at small changes of
+ * aspect, from one list.
  *
- * Tubes carry ray differentials: their cross-section, its spreading (from the range, and from curved mirrors by the vertex
- * normals), caustics, and the slope of the phase over the footprint. Points and paths are double. The grid is turned and
- * shifted by a hash of the look, so no edge is ever along it. The same target, look and config give the same bits, for any
- * number of threads.
+ * Tubes carry ray differentials: their cross-section, its spreading (from the range, and from curved mirrors by the
+ * vertex normals), caustics, and the slope of the phase over the footprint. Points and paths are double. The grid is
+ * turned and shifted by a hash of the look, so no edge is ever along it. The same target, look and config give the
+ * same bits, for any number of threads.
  *
- * Left out: diffraction at edges (edges.h), creeping waves, what passes through thin materials; currents on the side that is
- * turned away from the receiver, so forward scatter (bistatic angles beyond some 120 degrees) is not computed.
+ * Left out: diffraction at edges (edges.h), creeping waves, what passes through thin materials; currents on the side
+ * that is turned away from the receiver, so forward scatter (bistatic angles beyond some 120 degrees) is not
+ * computed.
  *
  * Source: Ling, Chou & Lee, IEEE Trans. Antennas Propag. 37(2), 194, 1989; ray differentials: Igehy, SIGGRAPH 1999. */
 #ifndef RENDER_RADAR_TUBES_H
@@ -21,10 +23,10 @@
 typedef struct TubeConfig {
     double   frequency_hz;        /* of materials and spacing: the highest, or the centre, of those to come */
     double   rays_per_wavelength; /* 1.25: a sphere of ka 800 is within 0.1 dB; with 1 within 0.15 */
-    double   rays_per_radius;     /* at least this many over the radius of the target's sphere: edges are cut in steps of a
-                                   * tube, whose error is that of its share of the target; 128 */
-    double   curve_m;             /* smallest radius of curvature to resolve, spacing <= sqrt(lambda curve / 16), though not
-                                   * below lambda / 8; 0: the target's own */
+    double   rays_per_radius;     /* at least this many over the radius of the target's sphere: edges are cut in steps
+                                   * of a tube, whose error is that of its share of the target; 128 */
+    double   curve_m;             /* smallest radius of curvature to resolve, spacing <= sqrt(lambda curve / 16), though
+                                   * not below lambda / 8; 0: the target's own */
     int      bounces;             /* 8 */
     bool     last_only;           /* only the last mirror of a path radiates: the handbook's corner reflectors */
     bool     keep_hidden;         /* bistatic: receivers behind a part see it all the same; for tests */
@@ -38,7 +40,7 @@ typedef struct TubeHits {
     ScatterAntenna tx, rx;
     double    frequency_hz, spacing_m;
     long long rays;         /* shot */
-    size_t    count, capacity;
+    size_t    count, capacity; /* behind the last hit there is one more of no amplitude */
     double   *path_m;       /* two-way, less that over the phase centre; see scatter.h */
     float    *slope_m[2];   /* half the change of path over the footprint's sides */
     float    *amplitude[8]; /* real and imaginary of hh, hv, vh, vv, m^2 */
@@ -47,8 +49,8 @@ typedef struct TubeHits {
     uint16_t *part;         /* of the model, at the last point */
 } TubeHits;
 
-/* out: zeroed, or of an earlier call, whose memory is used again. rx may be tx. STATUS_BAD_VALUE, logged: an antenna within
- * the target, or a number that is not finite; STATUS_UNSUPPORTED, logged: more than 2^31 rays. */
+/* out: zeroed, or of an earlier call, whose memory is used again. rx may be tx. STATUS_BAD_VALUE, logged: an antenna
+ * within the target, or a number that is not finite; STATUS_UNSUPPORTED, logged: more than 2^31 rays. */
 Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
                    const TubeConfig *config, Pool *pool);
 void   tubes_free(TubeHits *hits);

@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 
-/* Rays leave a facet from this far above it, past faces of other parts that coincide with it (render/parts counts faces within
- * 0.1 mm as one); their length is taken from the facet itself. */
+/* Rays leave a facet from this far above it, past faces of other parts that coincide with it (render/parts counts
+ * faces within 0.1 mm as one); their length is taken from the facet itself. */
 static const double lift_m = 2e-4;
 static const double least_power = 1e-8; /* of the incident field's: weaker tubes end */
 
@@ -92,7 +92,8 @@ static void reflect_field(Field *out, const Field *e, const RadarSurface *surfac
     add_part(out, tm, e, in, away);
 }
 
-/* Twice the currents' far field towards s over -jk/4pi, less its part along s: n x (d x E + d_out x E') - (n x (E + E')) x s. */
+/* Twice the currents' far field towards s over -jk/4pi, less its part along s: n x (d x E + d_out x E') - (n x (E +
+ * E')) x s. */
 static void radiate(double out[3], const double e[3], const double e_out[3], const double n[3], const double d[3],
                     const double d_out[3], const double s[3])
 {
@@ -201,7 +202,8 @@ static void carry(Tube *tube, double t_m)
 }
 
 /* Place of the hit and the tube there. False: the ray, without its lift, meets the facet's plane behind it. */
-static bool arrive(Tube *tube, Facing *facing, const TubeTile *tile, const TubeWork *work, const PosedFacet *facet, int i)
+static bool arrive(Tube *tube, Facing *facing, const TubeTile *tile, const TubeWork *work, const PosedFacet *facet,
+                   int i)
 {
     const double o[3] = {tile->o[0][i], tile->o[1][i], tile->o[2][i]};
     parts_facet_normals(facing->n, facing->smooth, work->target->model, facet, o, tube->d, tile->range_m[i]);
@@ -256,7 +258,8 @@ static void mirror_direction(double out[3], const double d[3], const double n[3]
 }
 
 /* The tube's direction, spreading and field beyond the mirror. */
-static void leave(Tube *tube, const TubeWork *work, const PosedFacet *facet, const Facing *facing, const RadarSurface *surface,
+static void leave(Tube *tube, const TubeWork *work, const PosedFacet *facet, const Facing *facing,
+                  const RadarSurface *surface,
                   double complex te, double complex tm)
 {
     double        d_out[3];
@@ -415,7 +418,8 @@ static void find_next(TubeTile *tile, const TubeWork *work, const int *list, int
 
 static void open_tile(TubeTile *tile, const TubeWork *work, long long number)
 {
-    const int column = (int)(number % work->grid.tiles[0]) * tile_side, row = (int)(number / work->grid.tiles[0]) * tile_side;
+    const int column = (int)(number % work->grid.tiles[0]) * tile_side;
+    const int row = (int)(number / work->grid.tiles[0]) * tile_side;
     tile->count = 0;
     for (int y = row; y < row + tile_side && y < work->grid.count[1]; y++)
         for (int x = column; x < column + tile_side && x < work->grid.count[0]; x++) start_tube(tile, work, x, y);

@@ -1,4 +1,5 @@
-/* sensor/commands/rcs.c: `pitviper rcs`: the command line, the files and the summary of a target's radar cross section. */
+/* sensor/commands/rcs.c: `pitviper rcs`: the command line, the files and the summary of a target's radar cross
+ * section. */
 #include "sensor/commands/rcs.h"
 
 #include "sensor/commands/rcs_sweep.h"
@@ -9,13 +10,14 @@
 
 static const char help[] =
     "usage: pitviper rcs NAME|FILE|SHAPE [-o FOLDER] [--frequency GHZ[,GHZ...]] [--azimuth FROM:TO:STEP]\n"
-    "                    [--elevation DEG] [--range M] [--rays N] [--image DEG|none] [--cell M] [--overwrite]\n"
+    "                    [--elevation DEG] [--range M] [--rays N] [--no-edges] [--image DEG|none] [--cell M]\n"
+    "                    [--overwrite]\n"
     "\n"
-    "A target's radar cross section over azimuth, at full polarisation, by ray tubes and physical optics. Its joints are\n"
-    "at rest and it stands alone: no ground.\n"
+    "A target's radar cross section over azimuth, at full polarisation, by ray tubes, physical optics and edges. Its\n"
+    "joints are at rest and it stands alone: no ground.\n"
     "\n"
-    "NAME: a built-in model (tank, truck, helicopter ...). FILE: as `pitviper model show` takes it. SHAPE, of metal, in m:\n"
-    "sphere:R plate:AxB disc:R cylinder:RxL dihedral:AxB trihedral:A corner:A. Writes to FOLDER:\n"
+    "NAME: a built-in model (tank, truck, helicopter ...). FILE: as `pitviper model show` takes it. SHAPE, of metal,\n"
+    "in m: sphere:R plate:AxB disc:R cylinder:RxL dihedral:AxB trihedral:A corner:A. Writes to FOLDER:\n"
     "  rcs.csv    a row each look and frequency: dBsm and complex field, m, as received and transmitted polarisation\n"
     "  rcs.svg    a polar plot of HH and VV at the first frequency\n"
     "  isar.png   a picture by range and cross range at the first frequency, HH and HV: nose up, seen from above\n"
@@ -26,6 +28,7 @@ static const char help[] =
     "  --elevation DEG      upwards, -90 .. 90 (10)\n"
     "  --range M            from the body's origin; without it the far field\n"
     "  --rays N             ray tubes a wavelength, 0.25 .. 16 (1.25); the error of one number falls slowly with it\n"
+    "  --no-edges           without the diffraction at edges\n"
     "  --image DEG|none     azimuth at which the picture is taken (30)\n"
     "  --cell M             its resolution, 0.01 .. 10 (a sixtieth of the target, at least three wavelengths)\n"
     "  --overwrite          replace these files in FOLDER; without it that is an error\n";
@@ -75,7 +78,8 @@ static bool read_frequencies(RcsConfig *config, const char *text)
 static bool read_azimuth(RcsConfig *config, const char *text)
 {
     double number[3];
-    if (read_list(number, 3, text, ':') != 3 || !(fabs(number[0]) <= 720 && fabs(number[1]) <= 720) || !(number[2] > 0) ||
+    if (read_list(number, 3, text, ':') != 3 || !(fabs(number[0]) <= 720 && fabs(number[1]) <= 720) ||
+        !(number[2] > 0) ||
         !(number[1] >= number[0]))
         return false;
     const double looks = floor((number[1] - number[0]) / number[2] + 1e-9) + 1;
@@ -88,12 +92,16 @@ static bool read_azimuth(RcsConfig *config, const char *text)
 static int parse(RcsOptions *o, int argc, char **argv)
 {
     RcsConfig *c = &o->config;
-    *o = (RcsOptions){.config = {.step_deg = 1, .looks = 361, .elevation_deg = 10, .range_m = INFINITY, .frequencies = 1,
-                                 .frequency_hz = {10e9}, .image_deg = 30}};
+    *o = (RcsOptions){.config = {.step_deg = 1, .looks = 361, .elevation_deg = 10, .range_m = INFINITY,
+                                 .frequencies = 1, .frequency_hz = {10e9}, .image_deg = 30}};
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
         if (strcmp(option, "--overwrite") == 0) {
             o->overwrite = true;
+            continue;
+        }
+        if (strcmp(option, "--no-edges") == 0) {
+            c->no_edges = true;
             continue;
         }
         if (option[0] != '-') {
@@ -105,15 +113,18 @@ static int parse(RcsOptions *o, int argc, char **argv)
             if (!value || !*value) return refuse(option, "needs a folder");
             o->out = value;
         } else if (strcmp(option, "--frequency") == 0) {
-            if (!read_frequencies(c, value)) return refuse(option, "needs 1 to 64 numbers in 0.1 .. 300 GHz, separated by commas");
+            if (!read_frequencies(c, value))
+                return refuse(option, "needs 1 to 64 numbers in 0.1 .. 300 GHz, separated by commas");
         } else if (strcmp(option, "--azimuth") == 0) {
-            if (!read_azimuth(c, value)) return refuse(option, "needs FROM:TO:STEP in deg, rising, at most 36001 looks, as 0:360:1");
+            if (!read_azimuth(c, value))
+                return refuse(option, "needs FROM:TO:STEP in deg, rising, at most 36001 looks, as 0:360:1");
         } else if (strcmp(option, "--elevation") == 0) {
             if (!in_range(&c->elevation_deg, value, -90, 90)) return refuse(option, "needs an angle in -90 .. 90 deg");
         } else if (strcmp(option, "--range") == 0) {
             if (!in_range(&c->range_m, value, 1e-3, 1e9)) return refuse(option, "needs a distance in 0.001 .. 1e9 m");
         } else if (strcmp(option, "--rays") == 0) {
-            if (!in_range(&c->rays_per_wavelength, value, 0.25, 16)) return refuse(option, "needs a number in 0.25 .. 16");
+            if (!in_range(&c->rays_per_wavelength, value, 0.25, 16))
+                return refuse(option, "needs a number in 0.25 .. 16");
         } else if (strcmp(option, "--cell") == 0) {
             if (!in_range(&c->resolution_m, value, 0.01, 10)) return refuse(option, "needs a length in 0.01 .. 10 m");
         } else if (strcmp(option, "--image") == 0) {
@@ -171,17 +182,19 @@ static void print_summary(const RcsSweep *sweep, double seconds)
             const ScatterMatrix *s = &sweep->s[(size_t)look * (size_t)c->frequencies + (size_t)f];
             const double complex value[2] = {s->hh, s->vv};
             for (int p = 0; p < 2; p++) {
-                mean_m2[p] += 4 * pi_rad * (creal(value[p]) * creal(value[p]) + cimag(value[p]) * cimag(value[p])) / c->looks;
+                const double re = creal(value[p]), im = cimag(value[p]);
+                mean_m2[p] += 4 * pi_rad * (re * re + im * im) / c->looks;
                 if (value[p] != 0 && rcs_dbsm(value[p]) > most_dbsm)
                     most_dbsm = rcs_dbsm(value[p]), at_deg = rcs_look_deg(c, look);
             }
         }
-        log_print("%s at %g GHz: mean HH %.1f, VV %.1f dBsm; most %.1f dBsm at azimuth %g deg\n", sweep->model.model.name,
+        log_print("%s at %g GHz: mean HH %.1f, VV %.1f dBsm; most %.1f dBsm at azimuth %g deg\n",
+                  sweep->model.model.name,
                   c->frequency_hz[f] * 1e-9, mean_m2[0] > 0 ? 10 * log10(mean_m2[0]) : -INFINITY,
                   mean_m2[1] > 0 ? 10 * log10(mean_m2[1]) : -INFINITY, most_dbsm, at_deg);
     }
     if (!isnan(sweep->grid_db)) log_print("error of the grid of ray tubes, by another grid: %.0f dB\n", sweep->grid_db);
-    log_detail("rcs: %lld ray tubes, %lld hits, %.1f s\n", sweep->rays, sweep->hit_count, seconds);
+    log_detail("rcs: %lld ray tubes, %lld hits, %.1f s", sweep->rays, sweep->hit_count, seconds);
 }
 
 static Status make_picture(RcsSweep *sweep, const char *path)

@@ -61,37 +61,43 @@ static void draw_curve(FILE *to, const RcsSweep *sweep, const Rings *rings, int 
 {
     double    mean_m2 = 0;
     const int y = 96 + 22 * p;
-    fprintf(to, "<polyline fill=\"none\" stroke-width=\"1.2\" stroke-linejoin=\"round\" stroke=\"%s\" points=\"", colours[p]);
+    fprintf(to, "<polyline fill=\"none\" stroke-width=\"1.2\" stroke-linejoin=\"round\" stroke=\"%s\" points=\"",
+            colours[p]);
     for (int look = 0; look < sweep->config.looks; look++) {
         const double complex s = field_of(sweep, look, p);
-        const double az = rcs_look_deg(&sweep->config, look) * rad_per_deg, r = s == 0 ? 0 : radius_of(rings, rcs_dbsm(s));
+        const double az = rcs_look_deg(&sweep->config, look) * rad_per_deg;
+        const double r = s == 0 ? 0 : radius_of(rings, rcs_dbsm(s));
         fprintf(to, "%s%.1f,%.1f", look ? " " : "", middle_x + r * sin(az), middle_y - r * cos(az));
         mean_m2 += 4 * pi_rad * (creal(s) * creal(s) + cimag(s) * cimag(s)) / sweep->config.looks;
     }
     fprintf(to, "\"/>\n<path fill=\"none\" stroke-width=\"2\" stroke=\"%s\" d=\"M%d %dh22\"/>"
                 "<text class=\"t\" fill=\"#222\" x=\"%d\" y=\"%d\">%s, mean %.1f dBsm</text>\n",
-            colours[p], width_px - 168, y, width_px - 140, y + 4, names[p], mean_m2 > 0 ? 10 * log10(mean_m2) : -INFINITY);
+            colours[p], width_px - 168, y, width_px - 140, y + 4, names[p],
+            mean_m2 > 0 ? 10 * log10(mean_m2) : -INFINITY);
 }
 
 void rcs_plot(FILE *to, const RcsSweep *sweep)
 {
     const RcsConfig *config = &sweep->config;
     const Rings      rings = rings_of(sweep);
-    fprintf(to, "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvr\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+    fprintf(to,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvr\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
                 "role=\"img\">%s<title>", width_px, height_px, width_px, height_px, style);
     html_text(to, "radar cross section of %s", sweep->model.model.name);
     fprintf(to, "</title>\n<rect class=\"bg\" fill=\"#fff\" width=\"%d\" height=\"%d\"/>\n"
                 "<text class=\"h\" fill=\"#222\" font-weight=\"600\" x=\"14\" y=\"22\">", width_px, height_px);
     html_text(to, "%.60s: radar cross section, dBsm", sweep->model.model.name);
-    fprintf(to, "</text><text class=\"d\" fill=\"#666\" x=\"14\" y=\"40\">%g GHz, elevation %g deg, ", config->frequency_hz[0] * 1e-9,
+    fprintf(to, "</text><text class=\"d\" fill=\"#666\" x=\"14\" y=\"40\">%g GHz, elevation %g deg, ",
+            config->frequency_hz[0] * 1e-9,
             config->elevation_deg);
     if (isinf(config->range_m)) fputs("far field; ", to);
     else fprintf(to, "range %g m; ", config->range_m);
-    fputs("azimuth clockwise from the nose, deg; ray tubes and physical optics</text>\n", to);
+    fputs("azimuth clockwise from the nose, deg; ray tubes and edges</text>\n", to);
     draw_grid(to, &rings);
     for (int p = 0; p < 2; p++) draw_curve(to, sweep, &rings, p);
     if (!isnan(sweep->grid_db))
-        fprintf(to, "<text class=\"d\" fill=\"#666\" x=\"%d\" y=\"%d\">another grid of tubes: %.0f dB</text>\n", width_px - 168, 144,
+        fprintf(to, "<text class=\"d\" fill=\"#666\" x=\"%d\" y=\"%d\">another grid of tubes: %.0f dB</text>\n",
+                width_px - 168, 144,
                 sweep->grid_db);
     fputs("</svg>\n", to);
 }

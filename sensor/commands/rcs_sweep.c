@@ -23,7 +23,8 @@ Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
         out->tubes.rays_per_wavelength = config->rays_per_wavelength;
     }
     Status status = radar_materials_load(&out->materials);
-    if (status == STATUS_OK) status = radar_model_open(&out->model, config->name, &out->materials, radar_sag_m(highest));
+    if (status == STATUS_OK)
+        status = radar_model_open(&out->model, config->name, &out->materials, radar_sag_m(highest));
     if (status == STATUS_OK) status = pool_create(&out->pool, thread_processors());
     if (status == STATUS_OK) {
         out->s = calloc((size_t)config->looks * (size_t)config->frequencies, sizeof *out->s);
@@ -36,7 +37,7 @@ Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
 
 void rcs_sweep_close(RcsSweep *sweep)
 {
-    tubes_free(&sweep->hits);
+    total_field_free(&sweep->field);
     pool_destroy(sweep->pool);
     radar_model_close(&sweep->model);
     radar_materials_close(&sweep->materials);
@@ -51,11 +52,12 @@ static Status look_at(ScatterMatrix *s, RcsSweep *sweep, int look, uint64_t seed
     tubes.seed = seed;
     radar_look(&antenna, rcs_look_deg(&sweep->config, look) * rad_per_deg, sweep->config.elevation_deg * rad_per_deg,
                sweep->config.range_m);
-    Status status = tubes_trace(&sweep->hits, sweep->model.target, &antenna, &antenna, &tubes, sweep->pool);
-    sweep->rays += sweep->hits.rays;
-    sweep->hit_count += (long long)sweep->hits.count;
+    Status status = total_field_trace(&sweep->field, sweep->model.target, &antenna, &antenna, &tubes,
+                                      !sweep->config.no_edges, sweep->pool);
+    sweep->rays += sweep->field.hits.rays;
+    sweep->hit_count += (long long)sweep->field.hits.count;
     for (int f = 0; f < sweep->config.frequencies && status == STATUS_OK; f++)
-        status = field_at(&s[f], sweep->config.frequency_hz[f], &sweep->hits, sweep->pool);
+        status = total_field_sweep(&s[f], 1, sweep->config.frequency_hz[f], 0, &sweep->field, NULL, NULL, sweep->pool);
     return status;
 }
 
@@ -91,7 +93,7 @@ Status rcs_sweep_run(RcsSweep *sweep)
         status = look_at(sweep->s + (size_t)look * (size_t)sweep->config.frequencies, sweep, look, 0);
     }
     if (status == STATUS_OK) status = check_grid(sweep);
-    log_status("");
+    log_status(NULL);
     return status;
 }
 
@@ -104,13 +106,14 @@ static void write_dbsm(FILE *to, double complex s)
 void rcs_write_csv(FILE *to, const RcsSweep *sweep)
 {
     const RcsConfig *config = &sweep->config;
-    fputs("az_deg,el_deg,f_ghz,hh_dbsm,hv_dbsm,vh_dbsm,vv_dbsm,hh_re_m,hh_im_m,hv_re_m,hv_im_m,vh_re_m,vh_im_m,vv_re_m,vv_im_m\n",
-          to);
+    fputs("az_deg,el_deg,f_ghz,hh_dbsm,hv_dbsm,vh_dbsm,vv_dbsm,hh_re_m,hh_im_m,hv_re_m,hv_im_m,vh_re_m,vh_im_m,"
+          "vv_re_m,vv_im_m\n", to);
     for (int look = 0; look < config->looks; look++)
         for (int f = 0; f < config->frequencies; f++) {
             const ScatterMatrix *s = &sweep->s[(size_t)look * (size_t)config->frequencies + (size_t)f];
             const double complex value[4] = {s->hh, s->hv, s->vh, s->vv};
-            fprintf(to, "%.10g,%.10g,%.10g", rcs_look_deg(config, look), config->elevation_deg, config->frequency_hz[f] * 1e-9);
+            fprintf(to, "%.10g,%.10g,%.10g", rcs_look_deg(config, look), config->elevation_deg,
+                    config->frequency_hz[f] * 1e-9);
             for (int p = 0; p < 4; p++) write_dbsm(to, value[p]);
             for (int p = 0; p < 4; p++) fprintf(to, ",%.9g,%.9g", creal(value[p]), cimag(value[p]));
             fputc('\n', to);

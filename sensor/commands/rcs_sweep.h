@@ -2,8 +2,8 @@
 #ifndef SENSOR_COMMANDS_RCS_SWEEP_H
 #define SENSOR_COMMANDS_RCS_SWEEP_H
 
-#include "render/radar/field.h"
 #include "render/radar/radar_model.h"
+#include "render/radar/total_field.h"
 
 enum { rcs_most_frequencies = 64, rcs_most_looks = 36001 };
 
@@ -15,8 +15,9 @@ typedef struct RcsConfig {
     int         frequencies;
     double      frequency_hz[rcs_most_frequencies];
     double      rays_per_wavelength;     /* 0: the default */
+    bool        no_edges;
     double      image_deg;               /* azimuth of the picture's middle; NaN: none */
-    double      resolution_m;            /* of the picture; 0: a sixtieth of the target, not below three wavelengths / 8 */
+    double      resolution_m;            /* of the picture; 0: a sixtieth of the target, at least three wavelengths */
 } RcsConfig;
 
 typedef struct RcsSweep {
@@ -25,10 +26,10 @@ typedef struct RcsSweep {
     RadarModel     model;
     Pool          *pool;
     TubeConfig     tubes;
-    TubeHits       hits;                 /* of the last look */
+    TotalField     field;                /* of the last look */
     ScatterMatrix *s;                    /* [looks][frequencies] */
     long long      rays, hit_count;
-    double         grid_db;              /* power of the difference of two grids over that of one, some looks; NaN: none */
+    double         grid_db;              /* error by another grid of tubes, of the power, some looks; NaN: none */
 } RcsSweep;
 
 /* Logs what fails. */
@@ -41,13 +42,13 @@ void   rcs_write_csv(FILE *to, const RcsSweep *sweep);
 /* HH and VV of the first frequency over azimuth, polar: SVG. */
 void   rcs_plot(FILE *to, const RcsSweep *sweep);
 
-/* An inverse synthetic aperture picture: range by frequency, cross range by azimuth, on the plane through the middle of the
- * target's height. */
+/* An inverse synthetic aperture picture: range by frequency, cross range by azimuth, on the plane through the middle
+ * of the target's height. */
 typedef struct RcsImage {
     double   middle_deg, span_deg, frequency_hz, bandwidth_hz, resolution_m, side_m; /* side_m: of the square shown */
     double   centre[3];                  /* of the square, body axes */
     int      pulses, frequencies, pixels;
-    float   *hh_dbsm, *hv_dbsm;          /* [pixels][pixels]: rows from the nose backwards, columns from left to right */
+    float   *hh_dbsm, *hv_dbsm;          /* [pixels][pixels]: rows from the nose back, columns left to right */
 } RcsImage;
 
 Status rcs_image_make(RcsImage *out, RcsSweep *sweep);

@@ -1,4 +1,5 @@
-/* tests/render/radar_stage.h: a shape or model as a radar target, its field by one call, and figures against a reference. */
+/* tests/render/radar_stage.h: a shape or model as a radar target, its field by one call, and figures against a
+ * reference. */
 #ifndef TESTS_RENDER_RADAR_STAGE_H
 #define TESTS_RENDER_RADAR_STAGE_H
 

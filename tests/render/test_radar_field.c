@@ -1,5 +1,5 @@
-/* The field of ray tubes against answers from elsewhere: Mie's series for spheres, closed forms of physical optics for plates,
- * discs and cylinders, the handbook's corner reflectors. Each figure reached is printed. */
+/* The field of ray tubes against answers from elsewhere: Mie's series for spheres, closed forms of physical optics
+ * for plates, discs and cylinders, the handbook's corner reflectors. Each figure reached is printed. */
 #include "tests/render/radar_stage.h"
 
 static const double x_hz = 10e9, w_hz = 94e9;
@@ -116,7 +116,8 @@ static void patterns_equal_the_closed_forms(void **state)
             compare(&p, &m, x[cases[k].column]);
             if (r == 0) printf("%s: peak off by %.4f dB\n", cases[k].shape, decibels(sigma(m.hh) / p.peak));
         }
-        printf("%s: within %.2f dB down to -40 dB of the peak, amplitude %.1f dB below the peak's everywhere\n", cases[k].shape,
+        printf("%s: within %.2f dB down to -40 dB of the peak, amplitude %.1f dB below the peak's everywhere\n",
+               cases[k].shape,
                p.off_db, p.level_db);
         CHECK(p.off_db <= cases[k].off_db && p.level_db <= cases[k].level_db);
         stage_close(&s);
@@ -136,7 +137,8 @@ static void dihedral_turns_one_polarisation(void **state)
         s.config.last_only = last;
         const ScatterMatrix m = stage_look(&s, 0, 0, INFINITY);
         const double hh = decibels(sigma(m.hh) / want), vv = decibels(sigma(m.vv) / want), deg = phase_deg(m.hh, m.vv);
-        printf("dihedral, %s: hh %.3f, vv %.3f dB, phase %.2f deg apart\n", last ? "last mirror" : "all", hh, vv, fabs(deg));
+        printf("dihedral, %s: hh %.3f, vv %.3f dB, phase %.2f deg apart\n", last ? "last mirror" : "all", hh, vv,
+               fabs(deg));
         CHECK(fabs(hh) <= (last ? 0.05 : 0.15) && fabs(vv) <= (last ? 0.05 : 0.15));
         CHECK(fabs(fabs(deg) - 180) < 1);
         CHECK(cabs(m.hv) < 1e-4 * cabs(m.hh));
@@ -156,7 +158,8 @@ static void dihedral_turns_one_polarisation(void **state)
     stage_target(&s, x_hz);
     s.config.last_only = true;
     const ScatterMatrix m = stage_look(&s, 0, 0, INFINITY);
-    const double cross = decibels(sigma(m.hv) / want), co = fmax(decibels(sigma(m.hh) / want), decibels(sigma(m.vv) / want));
+    const double cross = decibels(sigma(m.hv) / want);
+    const double co = fmax(decibels(sigma(m.hh) / want), decibels(sigma(m.vv) / want));
     printf("dihedral rolled by 45 deg: cross %.3f dB, co %.1f dB, of the peak\n", cross, co);
     CHECK(fabs(cross) <= 0.05 && co < -43);
     CHECK_NEAR(decibels(sigma(m.vh) / want), cross, 0.01);
@@ -167,7 +170,8 @@ static void dihedral_turns_one_polarisation(void **state)
 static void trihedrals_equal_the_handbook(void **state)
 {
     (void)state;
-    static const struct { const char *shape; double factor; } cases[] = {{"trihedral:0.45", 4 / 3.0}, {"corner:0.45", 12}};
+    static const struct { const char *shape; double factor; } cases[] = {{"trihedral:0.45", 4 / 3.0},
+                                                                         {"corner:0.45", 12}};
     const double el_deg = atan(sqrt(0.5)) / rad_per_deg;
     for (int k = 0; k < 2; k++) {
         RadarStage   s;
@@ -179,7 +183,8 @@ static void trihedrals_equal_the_handbook(void **state)
         const ScatterMatrix all = stage_look(&s, 45, el_deg, INFINITY);
         s.config.rays_per_radius *= 4;
         const ScatterMatrix fine = stage_look(&s, 45, el_deg, INFINITY);
-        printf("%s: last mirror hh %.3f, vv %.3f dB; all %.3f, %.3f dB; with 16 times the tubes %.3f, %.3f dB\n", cases[k].shape,
+        printf("%s: last mirror hh %.3f, vv %.3f dB; all %.3f, %.3f dB; with 16 times the tubes %.3f, %.3f dB\n",
+               cases[k].shape,
                decibels(sigma(last.hh) / want), decibels(sigma(last.vv) / want), decibels(sigma(all.hh) / want),
                decibels(sigma(all.vv) / want), decibels(sigma(fine.hh) / want), decibels(sigma(fine.vv) / want));
         CHECK_NEAR(decibels(sigma(last.hh) / want), 0, 0.1);

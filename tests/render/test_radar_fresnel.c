@@ -1,5 +1,5 @@
-/* Fresnel reflection against the reference table (half space and slab), and identities: limits, energy, a coating that is air
- * or metal, and the roughness factor. */
+/* Fresnel reflection against the reference table (half space and slab), and identities: limits, energy, a coating
+ * that is air or metal, and the roughness factor. */
 #include "tests/check.h"
 
 #include "render/radar/fresnel.h"
@@ -9,7 +9,8 @@ static double worst(double complex got, double complex want, double so_far) { re
 static void half_spaces_and_slabs_equal_the_table(void **state)
 {
     (void)state;
-    static const char *const names[] = {"f_hz", "eps_re", "eps_im(e=re-j*im)", "incidence_deg", "gamma_TE_re", "gamma_TE_im",
+    static const char *const names[] = {"f_hz", "eps_re", "eps_im(e=re-j*im)", "incidence_deg", "gamma_TE_re",
+                                        "gamma_TE_im",
                                         "gamma_TM_re", "gamma_TM_im", "slab_d_m", "slabR_TE_re", "slabR_TE_im",
                                         "slabR_TM_re", "slabR_TM_im", "slabT2_TE", "slabT2_TM"};
     enum { columns = sizeof names / sizeof *names };
@@ -40,7 +41,8 @@ static void limits_hold(void **state)
     (void)state;
     double complex te, tm, te2, tm2, tte, ttm;
     for (int i = 0; i < 200; i++) {
-        const double cosine = random_uniform(1, 2, 3, (uint64_t)i) * 0.98 + 0.02, k = 200 + 10 * i, thick_m = 1e-5 * (1 + i);
+        const double cosine = random_uniform(1, 2, 3, (uint64_t)i) * 0.98 + 0.02, k = 200 + 10 * i;
+        const double thick_m = 1e-5 * (1 + i);
         const double complex eps = CMPLX(1 + 8 * random_uniform(1, 2, 4, (uint64_t)i), 0);
         /* no loss: what is not reflected passes, and a coating returns all */
         fresnel_slab(&te, &tm, &tte, &ttm, eps, thick_m, k, cosine);
@@ -70,8 +72,8 @@ static void limits_hold(void **state)
     }
 }
 
-/* By a boundary condition, not the formula: the fields of a coating met by a plane wave at right angles vanish on the wall
- * and are continuous at the face. Inside: a (exp(-j q z) - exp(j q (z - 2 d))). */
+/* By a boundary condition, not the formula: the fields of a coating met by a plane wave at right angles vanish on the
+ * wall and are continuous at the face. Inside: a (exp(-j q z) - exp(j q (z - 2 d))). */
 static void a_coating_keeps_the_boundary_conditions(void **state)
 {
     (void)state;

@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# `pitviper rcs` and `pitviper probe rcs`: a corner reflector's known peak, a sphere, a tank; files, and what is refused.
+. "$(dirname "$0")/common.sh"
+
+# cell FILE ROW COLUMN: row 1 is the first behind the header
+cell() {
+    awk -F, -v row="$2" -v name="$3" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i } NR == row + 1 { print $c }' "$1"
+}
+near() { check "$1: $2, want $3 +- $4" awk -v a="$2" -v b="$3" -v t="$4" 'BEGIN { d = a - b; exit !(a != "" && d <= t && -d <= t) }'; }
+
+# 12 pi 0.3^4 / lambda^2 at 10 GHz; 4 pi (0.3 0.2)^2 / lambda^2; pi 0.5^2
+cat >"$tmp/rows" <<'ROWS'
+target,f_ghz,az_deg,el_deg,range_m,rx_az_deg,rx_el_deg
+corner:0.3,10,45,35.26439,,,
+plate:0.3x0.2,10,0,0,,,
+sphere:0.5,10,20,5,,,
+sphere:0.5,10,20,5,,60,5
+plate:0.3x0.2,10,0,0,2000,,
+cube:1,10,0,0,,,
+plate:1x1,1000,0,0,,,
+sphere:0.5,10,0,0,0.1,,
+plate:1x1,10,0,95,,,
+plate:1x1,10,0,0,,20,
+ROWS
+"$pitviper" probe rcs <"$tmp/rows" >"$tmp/rcs" 2>"$tmp/stderr"
+near "square trihedral" "$(cell "$tmp/rcs" 1 hh_dbsm)" 25.308 0.1
+near "plate" "$(cell "$tmp/rcs" 2 vv_dbsm)" 17.019 0.01
+near "sphere" "$(cell "$tmp/rcs" 3 hh_dbsm)" -1.049 0.1
+near "sphere, bistatic" "$(cell "$tmp/rcs" 4 hh_dbsm)" -1.049 0.3
+near "plate at 2 km" "$(cell "$tmp/rcs" 5 vv_dbsm)" 17.019 0.02
+for row in 6 7 8 9 10; do check "row $row has an error" [ -n "$(cell "$tmp/rcs" $row error)" ]; done
+
+run rcs tank -o "$tmp/tank" --frequency 3,4 --azimuth -30:30:15 --elevation 10 --image 20 --cell 0.4
+check "rcs tank: exit code" [ $code = 0 ]
+for file in rcs.csv rcs.svg isar.png; do check "$file" [ -s "$tmp/tank/$file" ]; done
+check "nothing half written" [ -z "$(find "$tmp/tank" -name '*.part')" ]
+check "a row each look and frequency" [ "$(wc -l <"$tmp/tank/rcs.csv")" = 11 ]
+check "each row has all cells" [ "$(awk -F, '{ print NF }' "$tmp/tank/rcs.csv" | sort -u)" = 15 ]
+check "a tank is of 0 .. 50 dBsm" awk -F, 'NR > 1 && !($4 > 0 - 10 && $4 < 50) { exit 1 }' "$tmp/tank/rcs.csv"
+check "the summary" said 'tank at 4 GHz: mean HH [0-9.-]+, VV [0-9.-]+ dBsm'
+check "and the error of its grid" said 'another grid: -[0-9]+ dB'
+if command -v xmllint >/dev/null; then check "the plot is XML" xmllint --noout "$tmp/tank/rcs.svg"; fi
+if command -v file >/dev/null; then check "the picture is a PNG" grep -q PNG <<<"$(file "$tmp/tank/isar.png")"; fi
+
+run rcs sphere:0.3 -o "$tmp/ball" --azimuth 0:20:10 --image none
+check "a shape: exit code" [ $code = 0 ]
+check "without a picture" [ ! -e "$tmp/ball/isar.png" ]
+run rcs sphere:0.3 -o "$tmp/ball" --azimuth 0:20:10 --image none
+check "existing files: exit code" [ $code = 1 ]
+check "existing files: said" complained 'rcs\.csv exists already.*--overwrite'
+cp "$tmp/ball/rcs.csv" "$tmp/first"
+run rcs sphere:0.3 -o "$tmp/ball" --azimuth 0:20:10 --image none --overwrite
+check "--overwrite" [ $code = 0 ]
+check "the same again" cmp -s "$tmp/first" "$tmp/ball/rcs.csv"
+
+run rcs frigate9 -o "$tmp/none"
+check "no such model: exit code" [ $code = 1 ]
+check "no such model: said" complained "no built-in model of this name: 'frigate9'"
+check "no such model: nothing is made" [ ! -e "$tmp/none" ]
+while read -r named arguments; do
+    # shellcheck disable=SC2086
+    run rcs -o "$tmp/none" $arguments
+    check "rcs $arguments: exit code" [ $code = 2 ]
+    check "rcs $arguments: said" complained "$named"
+    check "rcs $arguments: nothing is made" [ ! -e "$tmp/none" ]
+done <<'WRONG'
+--frequency tank --frequency 0
+--frequency tank --frequency 10,x
+--frequency tank --frequency
+--azimuth tank --azimuth 0:360
+--azimuth tank --azimuth 10:0:1
+--azimuth tank --azimuth 0:360:0
+--azimuth tank --azimuth 0:360:0.001
+--elevation tank --elevation 91
+--elevation tank --elevation 90
+--range tank --range 0
+--rays tank --rays 100
+--image tank --image north
+--cell tank --cell 0
+target tank truck
+target --range 60
+option tank --frob
+WRONG
+finish
