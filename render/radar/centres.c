@@ -101,53 +101,97 @@ static void cells_of(Cells *cells, const ScatterAntenna *tx, const ScatterAntenn
 
 static int32_t cell_number(double x_m, double side_m) { return (int32_t)clamp(floor(x_m / side_m), -2e9, 2e9); }
 
-Status centres_make(Centres *out, const TubeHits *h, const ScatterAntenna *tx, const ScatterAntenna *rx,
+/* What one hit or edge adds. */
+typedef struct Share {
+    double         path_m, middle[3];
+    double complex s[4];       /* hh hv vh vv, without the phase of the path */
+    double         amplitude;
+    int            bounce, part;
+} Share;
+
+static Status add(CellTable *table, const Cells *cells, const Share *share, double k)
+{
+    const Key key = {cell_number(share->path_m, cells->path_m), cell_number(v3_dot(share->middle, cells->right), cells->across_m),
+                     cell_number(v3_dot(share->middle, cells->up), cells->across_m)};
+    ScatterCentre *c = find(table, key);
+    if (!c) return STATUS_NO_MEMORY;
+    c->path_m = (key.path + 0.5) * cells->path_m;
+    const double          phase = -k * (share->path_m - c->path_m);
+    const double complex  turn = CMPLX(cos(phase), sin(phase));
+    double complex *const to[4] = {&c->s.hh, &c->s.hv, &c->s.vh, &c->s.vv};
+    for (int p = 0; p < 4; p++) *to[p] += share->s[p] * turn;
+    for (int x = 0; x < 3; x++) c->p[x] += share->amplitude * share->middle[x];
+    c->weight += share->amplitude;
+    if (share->amplitude > c->strongest) {
+        c->strongest = share->amplitude;
+        c->bounce = share->bounce;
+        c->part = share->part;
+    }
+    return STATUS_OK;
+}
+
+static void share_of_hit(Share *out, const TubeHits *h, size_t i, double k, const ScatterAntenna *tx, const ScatterAntenna *rx)
+{
+    double       way[3], power = 0;
+    const double first[3] = {(double)h->first[0][i], (double)h->first[1][i], (double)h->first[2][i]};
+    const double last[3] = {(double)h->last[0][i], (double)h->last[1][i], (double)h->last[2][i]};
+    out->path_m = h->path_m[i];
+    if (tx != &h->tx || rx != &h->rx)
+        out->path_m += scatter_path(way, tx, first) - scatter_path(way, &h->tx, first) +
+                       (scatter_path(way, rx, last) - scatter_path(way, &h->rx, last));
+    for (int x = 0; x < 3; x++) out->middle[x] = 0.5 * (first[x] + last[x]);
+    /* -j k / 2 pi, and the footprint's share */
+    const double share = k / (2 * pi_rad) * sinc(k * (double)h->slope_m[0][i]) * sinc(k * (double)h->slope_m[1][i]);
+    for (int p = 0; p < 4; p++) {
+        const double re = (double)h->amplitude[2 * p][i], im = (double)h->amplitude[2 * p + 1][i];
+        out->s[p] = CMPLX(share * im, -share * re);
+        power += re * re + im * im;
+    }
+    out->amplitude = fabs(share) * sqrt(0.5 * power);
+    out->bounce = h->bounce[i];
+    out->part = h->part[i];
+}
+
+static void share_of_edge(Share *out, const EdgeSegment *e, const TubeHits *h, double k, const ScatterAntenna *tx,
+                          const ScatterAntenna *rx)
+{
+    double       way[3], power = 0;
+    const double share = sinc(0.5 * k * e->slope * e->length_m);
+    out->path_m = e->path_m;
+    if (tx != &h->tx || rx != &h->rx)
+        out->path_m += scatter_path(way, tx, e->p) - scatter_path(way, &h->tx, e->p) +
+                       (scatter_path(way, rx, e->p) - scatter_path(way, &h->rx, e->p));
+    memcpy(out->middle, e->p, sizeof e->p);
+    for (int p = 0; p < 4; p++) {
+        const double a = e->amplitude[p / 2][p % 2];
+        out->s[p] = share * a;
+        power += a * a;
+    }
+    out->amplitude = fabs(share) * sqrt(0.5 * power);
+    out->bounce = 0;
+    out->part = e->part;
+}
+
+Status centres_make(Centres *out, const TotalField *field, const ScatterAntenna *tx, const ScatterAntenna *rx,
                     const CentresConfig *config)
 {
-    const double k = 2 * pi_rad * config->frequency_hz / light_mps;
-    const bool   moved = tx || rx;
-    CellTable        table = {.centres = out};
-    Cells        cells;
-    Status       status = STATUS_OK;
+    const double    k = 2 * pi_rad * config->frequency_hz / light_mps;
+    const TubeHits *h = &field->hits;
+    CellTable       table = {.centres = out};
+    Cells           cells;
+    Share           share;
+    Status          status = STATUS_OK;
     out->count = out->slots = 0;
     if (!tx) tx = &h->tx;
     if (!rx) rx = &h->rx;
     cells_of(&cells, tx, rx, config);
-    for (size_t i = 0; i < h->count; i++) {
-        double       way[3], middle[3], path_m = h->path_m[i];
-        const double first[3] = {(double)h->first[0][i], (double)h->first[1][i], (double)h->first[2][i]};
-        const double last[3] = {(double)h->last[0][i], (double)h->last[1][i], (double)h->last[2][i]};
-        if (moved)
-            path_m += scatter_path(way, tx, first) - scatter_path(way, &h->tx, first) +
-                      (scatter_path(way, rx, last) - scatter_path(way, &h->rx, last));
-        for (int x = 0; x < 3; x++) middle[x] = 0.5 * (first[x] + last[x]);
-        const Key key = {cell_number(path_m, cells.path_m), cell_number(v3_dot(middle, cells.right), cells.across_m),
-                         cell_number(v3_dot(middle, cells.up), cells.across_m)};
-        ScatterCentre *c = find(&table, key);
-        if (!c) {
-            status = STATUS_NO_MEMORY;
-            break;
-        }
-        c->path_m = (key.path + 0.5) * cells.path_m;
-        /* -j k / 2 pi, the footprint's share, and the phase to the middle of the cell */
-        const double share = k / (2 * pi_rad) * sinc(k * (double)h->slope_m[0][i]) * sinc(k * (double)h->slope_m[1][i]);
-        const double phase = -k * (path_m - c->path_m);
-        const double complex turn = share * CMPLX(sin(phase), -cos(phase));
-        double complex *const to[4] = {&c->s.hh, &c->s.hv, &c->s.vh, &c->s.vv};
-        double                power = 0;
-        for (int p = 0; p < 4; p++) {
-            const double re = (double)h->amplitude[2 * p][i], im = (double)h->amplitude[2 * p + 1][i];
-            *to[p] += CMPLX(re, im) * turn;
-            power += re * re + im * im;
-        }
-        const double amplitude = fabs(share) * sqrt(0.5 * power);
-        for (int x = 0; x < 3; x++) c->p[x] += amplitude * middle[x];
-        c->weight += amplitude;
-        if (amplitude > c->strongest) {
-            c->strongest = amplitude;
-            c->bounce = h->bounce[i];
-            c->part = h->part[i];
-        }
+    for (size_t i = 0; i < h->count && status == STATUS_OK; i++) {
+        share_of_hit(&share, h, i, k, tx, rx);
+        status = add(&table, &cells, &share, k);
+    }
+    for (int i = 0; i < field->edges.count && status == STATUS_OK; i++) {
+        share_of_edge(&share, &field->edges.segment[i], h, k, tx, rx);
+        status = add(&table, &cells, &share, k);
     }
     for (int i = 0; i < out->count; i++)
         if (out->centre[i].weight > 0) v3_scale(out->centre[i].p, 1 / out->centre[i].weight, out->centre[i].p);

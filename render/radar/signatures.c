@@ -9,7 +9,7 @@ typedef struct Signature {
     int            model, damage;
     ScatterAntenna middle;
     double        *joint;     /* [node_count] */
-    TubeHits       hits;
+    TotalField     field;
     size_t         octets;
     uint64_t       used;      /* number of the call */
 } Signature;
@@ -69,7 +69,7 @@ Status signatures_create(Signatures **out, const SignatureConfig *config, const 
 static void forget(Signatures *s, int i)
 {
     s->octets -= s->list[i].octets;
-    tubes_free(&s->list[i].hits);
+    total_field_free(&s->list[i].field);
     free(s->list[i].joint);
     s->list[i] = s->list[--s->count];
     s->list[s->count] = (Signature){0};
@@ -86,9 +86,11 @@ void signatures_destroy(Signatures *s)
     free(s);
 }
 
-static size_t octets_of(const TubeHits *hits)
+static size_t octets_of(const TotalField *field)
 {
-    return hits->capacity * (sizeof(double) + (2 + 8 + 6) * sizeof(float) + sizeof(uint8_t) + sizeof(uint16_t));
+    const TubeHits *hits = &field->hits;
+    return (size_t)field->edges.capacity * sizeof *field->edges.segment +
+           hits->capacity * (sizeof(double) + (2 + 8 + 6) * sizeof(float) + sizeof(uint8_t) + sizeof(uint16_t));
 }
 
 /* Makes room for one more list. */
@@ -112,15 +114,15 @@ static Status make(Signature *out, Signatures *s, int model, const Model *of, in
     out->joint = malloc((size_t)of->node_count * sizeof *out->joint);
     if (!out->joint) return STATUS_NO_MEMORY;
     memcpy(out->joint, s->joint, (size_t)of->node_count * sizeof *out->joint);
-    const Status status = tubes_trace(&out->hits, s->target[model], middle, middle, &config, pool);
+    const Status status = total_field_trace(&out->field, s->target[model], middle, middle, &config, true, pool);
     s->counters.made++;
-    s->counters.rays += (uint64_t)out->hits.rays;
+    s->counters.rays += (uint64_t)out->field.hits.rays;
     s->counters.spent_s += wall_clock_s() - begun_s;
-    out->octets = octets_of(&out->hits);
+    out->octets = octets_of(&out->field);
     return status;
 }
 
-Status signatures_find(const TubeHits **out, Signatures *s, int model, const double *joint, int damage,
+Status signatures_find(const TotalField **out, Signatures *s, int model, const double *joint, int damage,
                        const ScatterAntenna *antenna, Pool *pool)
 {
     const Model   *of = catalog_model(s->catalog, model);
@@ -142,14 +144,14 @@ Status signatures_find(const TubeHits **out, Signatures *s, int model, const dou
             continue;
         l->used = s->calls;
         s->counters.reused++;
-        *out = &l->hits;
+        *out = &l->field;
         return STATUS_OK;
     }
     make_room(s);
     Signature *l = &s->list[s->count];
     status = make(l, s, model, of, damage, &middle, pool);
     if (status != STATUS_OK) {
-        tubes_free(&l->hits);
+        total_field_free(&l->field);
         free(l->joint);
         *l = (Signature){0};
         return status;
@@ -157,7 +159,7 @@ Status signatures_find(const TubeHits **out, Signatures *s, int model, const dou
     l->used = s->calls;
     s->octets += l->octets;
     s->count++;
-    *out = &l->hits;
+    *out = &l->field;
     return STATUS_OK;
 }
 

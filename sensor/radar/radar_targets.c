@@ -127,21 +127,21 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
 static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *truth)
 {
     const RadarPreset *p = m->preset;
-    const TubeHits    *hits;
+    const TotalField  *field;
     SeekerRadar       *r = m->radar;
     const double       interval_s = p->wave.pulses / p->wave.repeat_hz, pulse_s = 1 / p->wave.repeat_hz;
     double             across_mps[3], v[3];
     radar_antenna(&t->antenna, m->scene->view->p_enu, t->p_enu, t->r_enu_from_body);
     *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down,
                           .visible = visible_share(m, t, t->of)};
-    Status status = signatures_find(&hits, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &t->antenna, m->pool);
+    Status status = signatures_find(&field, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &t->antenna, m->pool);
     if (status != STATUS_OK) return status;
     t->pose = signatures_target(r->signatures)->pose;
 
     v3_sub(v, t->v_enu_mps, m->scene->v_enu_mps);
     v3_add_scaled(across_mps, v, -v3_dot(v, sight->d_enu), sight->d_enu);
     const double turn_rad = interval_s * (v3_length(across_mps) / sight->range_m + v3_length(t->entity->w_body_rps));
-    status = centres_make(&r->centres, hits, &t->antenna, &t->antenna,
+    status = centres_make(&r->centres, field, &t->antenna, &t->antenna,
                           &(CentresConfig){.frequency_hz = p->wave.centre_hz, .bandwidth_hz = p->wave.bandwidth_hz,
                                            .turn_rad = turn_rad, .phase_rad = 0.1});
     if (status != STATUS_OK) return status;

@@ -1,8 +1,7 @@
-/* Scattering centres against the list of hits that they stand for: the field over a band, and from antennas that have moved on. */
+/* Scattering centres against the hits and edges that they stand for: the field over a band, and from antennas that have moved on. */
 #include "tests/check.h"
 
 #include "render/radar/centres.h"
-#include "render/radar/field.h"
 
 enum { hits = 20000, frequencies = 33 };
 
@@ -57,7 +56,7 @@ static void error_at(double phase_rad, double *of_band, double *of_turn, int *co
     const double         turn_rad = 2e-4, step_hz = band_hz / (frequencies - 1);
     const TubeHits       h = some_hits();
     Centres              centres = {0};
-    CHECK(centres_make(&centres, &h, NULL, NULL,
+    CHECK(centres_make(&centres, &(TotalField){.hits = h}, NULL, NULL,
                        &(CentresConfig){.frequency_hz = centre_hz, .bandwidth_hz = band_hz, .turn_rad = turn_rad,
                                         .phase_rad = phase_rad}) == STATUS_OK);
     double error = 0, power = 0;
@@ -109,7 +108,7 @@ static void middle_is_exact(void **state)
     Centres        centres = {0};
     ScatterMatrix  want;
     double complex got = 0;
-    CHECK(centres_make(&centres, &h, NULL, NULL,
+    CHECK(centres_make(&centres, &(TotalField){.hits = h}, NULL, NULL,
                        &(CentresConfig){.frequency_hz = centre_hz, .bandwidth_hz = 1e6, .turn_rad = 1e-6, .phase_rad = 0.5}) ==
           STATUS_OK);
     CHECK(field_at(&want, centre_hz, &h, NULL) == STATUS_OK);
@@ -120,11 +119,50 @@ static void middle_is_exact(void **state)
     centres_free(&centres);
 }
 
+/* Edges among the hits, of one antenna and of one that has moved: as total_field_sweep adds them. */
+static void edges_are_centres_too(void **state)
+{
+    (void)state;
+    enum { edges = 300 };
+    static EdgeSegment   segment[edges];
+    const ScatterAntenna now = {.u = {0.8, 0.3601, 0.479925}, .range_m = 2990};
+    TotalField           field = {.hits = some_hits(), .edges = {.count = edges, .segment = segment}};
+    ScatterMatrix        want;
+    Centres              centres = {0};
+    double complex       got = 0;
+    field.hits.count = 1000;
+    for (int i = 0; i < edges; i++) {
+        EdgeSegment *e = &segment[i];
+        double       way[2][3];
+        e->length_m = 0.05;
+        e->part = 3;
+        for (int x = 0; x < 3; x++) e->p[x] = 4 * (random_uniform(5, (uint32_t)x, 0, (uint64_t)i) - 0.5);
+        e->path_m = scatter_path(way[0], &antenna, e->p) + scatter_path(way[1], &antenna, e->p);
+        e->slope = 0.02 * random_uniform(5, 4, 0, (uint64_t)i);
+        memcpy(e->u[0], way[0], sizeof way[0]);
+        memcpy(e->u[1], way[1], sizeof way[1]);
+        for (int c = 0; c < 4; c++) e->amplitude[c / 2][c % 2] = 0.01 * random_normal(6, (uint32_t)c, 0, (uint64_t)i);
+    }
+    CHECK(total_field_sweep(&want, 1, centre_hz, 0, &field, &now, &now, NULL) == STATUS_OK);
+    CHECK(centres_make(&centres, &field, &now, &now,
+                       &(CentresConfig){.frequency_hz = centre_hz, .bandwidth_hz = band_hz, .turn_rad = 1e-4, .phase_rad = 0.1}) ==
+          STATUS_OK);
+    int of_edges = 0;
+    for (int i = 0; i < centres.count; i++) {
+        got += centres.centre[i].s.hv * cexp(-I * 2 * pi_rad * centre_hz / light_mps * centres.centre[i].path_m);
+        of_edges += centres.centre[i].bounce == 0 && centres.centre[i].part == 3;
+    }
+    CHECK(cabs(want.hv) > 1e-3 && cabs(got - want.hv) < 1e-6 * cabs(want.hv));
+    CHECK(of_edges > edges / 2);
+    centres_free(&centres);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(centres_have_the_field_of_their_hits),
         cmocka_unit_test(middle_is_exact),
+        cmocka_unit_test(edges_are_centres_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Kept lists of hits: bins hold what they should, a list serves its bin to the error stated, and neither order nor lack of room
+/* Kept fields of targets: bins hold what they should, a field serves its bin to the error stated, and neither order nor lack of room
  * changes a bit. */
 #include "tests/check.h"
 
@@ -53,10 +53,10 @@ static Signatures *open(Catalog **catalog, int *model, RadarMaterials *materials
 
 static ScatterMatrix look(Signatures *s, int model, const double *joint, const ScatterAntenna *a)
 {
-    const TubeHits *hits;
-    ScatterMatrix   m;
-    CHECK(signatures_find(&hits, s, model, joint, 0, a, NULL) == STATUS_OK);
-    CHECK(field_sweep(&m, 1, frequency_hz, 0, hits, a, a, NULL) == STATUS_OK);
+    const TotalField *field;
+    ScatterMatrix     m;
+    CHECK(signatures_find(&field, s, model, joint, 0, a, NULL) == STATUS_OK);
+    CHECK(total_field_sweep(&m, 1, frequency_hz, 0, field, a, a, NULL) == STATUS_OK);
     return m;
 }
 
@@ -122,7 +122,7 @@ static void a_list_serves_its_bin(void **state)
     int            model;
     Signatures    *s = open(&catalog, &model, &materials, 1 << 30);
     double         error = 0, grid = 0, power = 0;
-    TubeHits       own = {0};
+    TotalField     own = {0};
     for (int i = 0; i < 12; i++) {
         const ScatterAntenna a = at(30 * i + 0.28 * random_uniform(2, 0, 0, (uint64_t)i),
                                     12.05 + 0.2 * random_uniform(2, 1, 0, (uint64_t)i), 2000);
@@ -131,8 +131,8 @@ static void a_list_serves_its_bin(void **state)
         for (int turned = 0; turned < 2; turned++) {
             TubeConfig tubes = tubes_default_config(frequency_hz);
             tubes.seed = (uint64_t)turned;
-            CHECK(tubes_trace(&own, signatures_target(s), &a, &a, &tubes, NULL) == STATUS_OK);
-            CHECK(field_at(&want[turned], frequency_hz, &own, NULL) == STATUS_OK);
+            CHECK(total_field_trace(&own, signatures_target(s), &a, &a, &tubes, true, NULL) == STATUS_OK);
+            CHECK(total_field_sweep(&want[turned], 1, frequency_hz, 0, &own, NULL, NULL, NULL) == STATUS_OK);
         }
         error += pow(cabs(got.vv - want[0].vv), 2) + pow(cabs(got.hh - want[0].hh), 2);
         grid += pow(cabs(want[1].vv - want[0].vv), 2) + pow(cabs(want[1].hh - want[0].hh), 2);
@@ -141,7 +141,7 @@ static void a_list_serves_its_bin(void **state)
     printf("a truck at 5 GHz, from lists of bins of 0.3 degrees: %.1f dB; another turn of the grid: %.1f dB\n",
            10 * log10(error / power), 10 * log10(grid / power));
     CHECK(error < 1.5 * grid);
-    tubes_free(&own);
+    total_field_free(&own);
     signatures_destroy(s);
     radar_materials_close(&materials);
     catalog_close(catalog);
