@@ -53,7 +53,8 @@ typedef struct VehicleHeatWorld {
 } VehicleHeatWorld;
 
 typedef struct VehicleHeatCounters {
-    uint64_t steps, begun, left_out, failed; /* failed: steps that the solver gave up; the entity stays as it was */
+    uint64_t steps, begun, left_out, neighbours_left_out; /* neighbours_left_out: at looks for them, once a second */
+    uint64_t failed; /* failed: steps that the solver gave up; the entity stays as it was */
     double   spent_s, longest_s;             /* wall clock; of the longest tick */
 } VehicleHeatCounters;
 
