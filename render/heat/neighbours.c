@@ -2,6 +2,7 @@
 #include "render/heat/neighbours.h"
 
 static const double least_share = 0.005;  /* a quarter of one of the 48 rays of a patch */
+static const double seen_radii = 15;      /* beyond the entity's own, at which they fill less */
 static const double sun_radius = 0.00465; /* tangent of the sun's half width: what is smaller hides none of it whole */
 static const double resting_mps = 1;
 
@@ -11,14 +12,14 @@ typedef struct Ranks {
     Neighbour of[near_seen_most];
 } Ranks;
 
-static void rank(Ranks *r, int body, double share)
+static void rank(Ranks *r, int body, double share, double fill)
 {
     int at = r->count;
     while (at > 0 && r->of[at - 1].share < share) at--;
     if (r->count == r->most) r->left_out++;
     else r->count++;
     for (int k = r->count - 1; k > at; k--) r->of[k] = r->of[k - 1];
-    if (at < r->count) r->of[at] = (Neighbour){body, 0, share};
+    if (at < r->count) r->of[at] = (Neighbour){body, 0, share, fill};
 }
 
 static void merge(Neighbours *out, const Ranks *r, unsigned why)
@@ -52,14 +53,16 @@ void neighbours_find(Neighbours *out, const NearBody *body, int count, int me, c
         v3_sub(to, b->p_enu, mine->p_enu);
         v3_sub(flow, b->v_enu_mps, mine->v_enu_mps);
         if (resting && !(v3_dot(flow, flow) < resting_mps * resting_mps)) continue;
-        const double away_m = v3_length(to), gap_m = fmax(away_m - mine->radius_m, b->radius_m);
-        const double ratio = b->radius_m / gap_m, share = ratio * ratio, along_m = v3_dot(to, sun_d_enu);
-        const double both_m = b->radius_m + mine->radius_m;
-        if (share >= least_share) rank(&seen, i, share);
-        if (sun_d_enu[2] > 0 && ratio > sun_radius && along_m > -both_m &&
-            v3_dot(to, to) - along_m * along_m < both_m * both_m)
-            rank(&sun, i, share);
-        if (b->jet_m > 0 && away_m - mine->radius_m < b->jet_m) rank(&jet, i, share);
+        const double both_m = b->radius_m + mine->radius_m, m2 = v3_dot(to, to), along_m = v3_dot(to, sun_d_enu);
+        const bool   shades = sun_d_enu[2] > 0 && along_m > -both_m && m2 - along_m * along_m < both_m * both_m;
+        const double far_m = mine->radius_m + fmax(seen_radii * b->radius_m, b->jet_m);
+        if (!shades && m2 > far_m * far_m) continue; /* most of a large crowd */
+        const double away_m = sqrt(m2), gap_m = fmax(away_m - mine->radius_m, b->radius_m);
+        const double ratio = b->radius_m / gap_m, share = ratio * ratio;
+        const double fill = m2 > 0 ? b->radius_m * b->radius_m / m2 : INFINITY;
+        if (share >= least_share) rank(&seen, i, share, fill);
+        if (shades && ratio > sun_radius) rank(&sun, i, share, fill);
+        if (b->jet_m > 0 && away_m - mine->radius_m < b->jet_m) rank(&jet, i, share, fill);
     }
     merge(out, &seen, NEAR_SEEN);
     merge(out, &sun, NEAR_SUN);

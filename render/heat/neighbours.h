@@ -24,7 +24,7 @@ typedef struct NearBody {
 typedef struct Neighbour {
     int      body;
     unsigned why;                  /* NearWhy */
-    double   share;
+    double   share, fill;          /* at most, of a view; (radius / distance of origins)^2 */
 } Neighbour;
 
 typedef struct Neighbours {

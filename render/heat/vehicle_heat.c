@@ -17,6 +17,7 @@ struct VehicleHeat {
     VehicleState      **due;      /* [room]: those whose work waits, of a tick */
     NearBody           *body;     /* [room] */
     NearScene           near;     /* of a tick */
+    bool                bodied;   /* its bodies are filled in */
     double              tick, spent_us[window_ticks]; /* the last, of 10 ms; work of those up to it, in turn */
     bool                started, metered; /* metered: after the first tick */
     Arena              *arena;    /* of one entity's step */
@@ -86,7 +87,7 @@ const VehicleHeatCounters *vehicle_heat_counters(const VehicleHeat *h) { return 
  * same time (`bench speed` holds them against the clock). */
 static const double look_us = 45; /* of a patch */
 static const double pose_us = 10, jet_us = 60; /* of a neighbour: posed; its exhaust followed */
-static const double near_us = 8, near_all_us = 120; /* of a patch that looks at neighbours: at all; where they fill its view */
+static const double near_us = 3, near_fill_us = 12; /* of a patch that looks at neighbours: at all; by what they fill */
 
 static double past_us(const VehicleShape *shape) { return 2.0 * shape->patches->count + 0.6 * shape->nodes; }
 
@@ -366,7 +367,7 @@ static bool look_about(Status *status, VehicleHeat *h, VehicleState *s, const Ve
     if (!take(h, pose_us * s->near->next_seen)) return false;
     *status = vehicle_near_pose(pose, &h->near, s, m, h->arena);
     while (*status == STATUS_OK && vehicle_near_waits(s, m->shape)) {
-        if (!take(h, near_us + near_all_us * fmin(s->near->share, 1))) return false;
+        if (!take(h, near_us + near_fill_us * s->near->fill)) return false;
         vehicle_near_look(s, m, pose);
     }
     return true;
@@ -408,6 +409,12 @@ static Status work_on(VehicleHeat *h, VehicleState *s)
     return status;
 }
 
+static void need_bodies(VehicleHeat *h)
+{
+    if (!h->bodied) near_scene_bodies(&h->near);
+    h->bodied = true;
+}
+
 /* Its neighbours, once a second. */
 static Status check_neighbours(VehicleHeat *h, int at)
 {
@@ -418,6 +425,7 @@ static Status check_neighbours(VehicleHeat *h, int at)
     int           left_out;
     if ((h->count < 2 && !s->near) || t_s - s->checked_s < 1) return STATUS_OK;
     s->checked_s = t_s;
+    need_bodies(h);
     Status status = h->config.place(&place, h->config.user, h->config.unix_s + t_s, h->body[at].p_enu, false);
     if (status == STATUS_OK) status = vehicle_near_check(&changed, &left_out, &h->near, at, place.sun_d_enu);
     if (status != STATUS_OK) return status;
@@ -521,7 +529,7 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
     if (status != STATUS_OK) return status;
     status  = meet(h, snapshot);
     h->near = (NearScene){snapshot, h->world.tracer, h->shape, h->world.frame, h->world.given, h->state, h->body, h->count};
-    if (h->count > 1 || (h->count == 1 && h->state[0]->near)) near_scene_bodies(&h->near);
+    h->bodied = false;
     for (int i = 0; i < h->count && status == STATUS_OK; i++) {
         VehicleState *s = h->state[i];
         status = check_neighbours(h, i);
@@ -533,6 +541,7 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
     open_window(h, t_s);
     h->waiting = 0;
     for (int i = 0; i < due && status == STATUS_OK; i++) {
+        need_bodies(h);
         if (h->waiting == 0) status = work_on(h, h->due[i]);
         h->waiting += h->due[i]->waits_s < INFINITY;
     }

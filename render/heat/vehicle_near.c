@@ -56,14 +56,16 @@ static VehicleNear *new_near(int patches)
     return n;
 }
 
+static const double most_fill = 4; /* of one, in the account of work */
+
 /* Its views are to be of what it sees of them. */
 static void start_looking(VehicleNear *near, const Neighbours *found, const NearScene *scene, int patches)
 {
-    near->next_seen = 0, near->looked = 0, near->share = 0;
+    near->next_seen = 0, near->looked = 0, near->fill = 0;
     for (int k = 0; k < found->count; k++) {
         if (!(found->of[k].why & NEAR_SEEN)) continue;
         near->next_id[near->next_seen++] = scene->body[found->of[k].body].id;
-        near->share += found->of[k].share;
+        near->fill += fmin(found->of[k].fill, most_fill);
     }
     if (near->next_seen > 0) return;
     near->seen = 0, near->looked = patches;

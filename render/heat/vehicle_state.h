@@ -23,7 +23,7 @@ typedef struct VehicleNear {
     int         looked;                 /* patches of next; all: view is of the keys' poses */
     NearKey     key[near_most];
     DisEntityId id[near_seen_most], next_id[near_seen_most]; /* others of view, of next */
-    double      share;                  /* of next: the sum of what they fill at most */
+    double      fill;                   /* of next: the sum of their (radius / distance)^2, what rays cost */
     NearView   *view, *next;            /* [patches] */
 } VehicleNear;
 
