@@ -2,10 +2,9 @@
 #include "render/heat/vehicle_heat.h"
 
 #include "render/heat/vehicle_near.h"
+#include "render/heat/work_window.h"
 
 #include <stdlib.h>
-
-enum { window_ticks = 10 }; /* of 10 ms */
 
 struct VehicleHeat {
     VehicleHeatConfig   config;
@@ -18,8 +17,7 @@ struct VehicleHeat {
     NearBody           *body;     /* [room] */
     NearScene           near;     /* of a tick */
     bool                bodied;   /* its bodies are filled in */
-    double              tick, spent_us[window_ticks]; /* the last, of 10 ms; work of those up to it, in turn */
-    bool                started, metered; /* metered: after the first tick */
+    WorkWindow          window;
     Arena              *arena;    /* of one entity's step */
     VehicleHeatCounters counters;
 };
@@ -73,7 +71,8 @@ size_t vehicle_heat_bytes(const VehicleHeat *h)
 {
     size_t bytes = sizeof *h + (size_t)h->room * (sizeof *h->state + sizeof *h->body);
     for (int i = 0; i < h->count; i++)
-        bytes += vehicle_state_bytes(h->state[i], &h->shape[h->state[i]->model], tracer_model(h->world.tracer, h->state[i]->model));
+        bytes += vehicle_state_bytes(h->state[i], &h->shape[h->state[i]->model],
+                                     tracer_model(h->world.tracer, h->state[i]->model));
     return bytes;
 }
 
@@ -93,30 +92,8 @@ static double past_us(const VehicleShape *shape) { return 2.0 * shape->patches->
 
 static double advance_us(const VehicleShape *shape) { return 3.0 * shape->patches->count + shape->nodes; }
 
-static int window_place(double tick) { return ((int)fmod(tick, window_ticks) + window_ticks) % window_ticks; }
-
-static void open_window(VehicleHeat *h, double t_s)
-{
-    const double tick = floor(t_s * 100 + 0.5);
-    h->metered = h->metered || (h->started && tick != h->tick);
-    h->started = true;
-    if (tick - h->tick >= window_ticks) memset(h->spent_us, 0, sizeof h->spent_us);
-    for (double k = fmax(h->tick + 1, tick - window_ticks + 1); k <= tick; k++) h->spent_us[window_place(k)] = 0;
-    h->tick = tick;
-}
-
-/* Whether there is room for a piece in this tick; in an empty window there always is. */
-static bool take(VehicleHeat *h, double us)
-{
-    double spent_us = 0;
-    for (int k = 0; k < window_ticks; k++) spent_us += h->spent_us[k];
-    if (h->metered && spent_us > 0 && spent_us + us > h->config.window_us) return false;
-    h->spent_us[window_place(h->tick)] += us;
-    return true;
-}
-
-/* Of a piece that is done: what its neighbours made of it. */
-static void spend(VehicleHeat *h, double us) { h->spent_us[window_place(h->tick)] += us; }
+/* Whether there is room for a piece. */
+static bool take(VehicleHeat *h, double us) { return work_window_take(&h->window, us, h->config.window_us); }
 
 /* ---- an entity now ------------------------------------------------------------------------ */
 
@@ -161,10 +138,11 @@ static Status find_place(VehicleMoment *m, VehicleHeat *h, const VehicleState *s
     NearWork work = {0};
     Status   status = find_ground(m, h, h->config.unix_s + t_s, present);
     if (status == STATUS_OK && h->near.count > 1)
-        status = vehicle_near_moment(&work, m, &h->near, vehicle_state_find(h->state, h->count, s->id), t_s, !present, lately, h->arena);
+        status = vehicle_near_moment(&work, m, &h->near, vehicle_state_find(h->state, h->count, s->id), t_s, !present, lately,
+                                     h->arena);
     if (status != STATUS_OK) return status;
     patch_view_sun(m->lit, &m->pose, m->place.sun_d_enu, m->shade, m->shades);
-    spend(h, pose_us * work.poses + jet_us * work.jets);
+    work_window_spend(&h->window, pose_us * work.poses + jet_us * work.jets);
     return STATUS_OK;
 }
 
@@ -243,8 +221,8 @@ static const double past_span_s[] = {10800, 10800, 10800, 10800, 7200, 7200, 720
 enum { past_steps = sizeof past_span_s / sizeof *past_span_s };
 
 /* Drives d for span_s, from loads of the middle of that. */
-static Status live_through(VehicleHeat *h, VehicleState *s, VehicleMoment *m, const EntityDrives *d, double middle_s, double span_s,
-                           bool lately)
+static Status live_through(VehicleHeat *h, VehicleState *s, VehicleMoment *m, const EntityDrives *d, double middle_s,
+                           double span_s, bool lately)
 {
     double      *scratch = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *scratch);
     const Status status = scratch ? find_place(m, h, s, middle_s, false, lately) : STATUS_NO_MEMORY;
@@ -282,7 +260,8 @@ static Status live_since(VehicleHeat *h, VehicleState *s, VehicleMoment *m, cons
 {
     const double since_s = kept->unix_s - h->config.unix_s, span_s = (s->seen_s - since_s) / past_steps;
     if (!(s->temp_k[0] > 0)) memcpy(s->temp_k, kept->temp_k, (size_t)kept->nodes * sizeof *s->temp_k);
-    const Status status = span_s > 0 ? live_through(h, s, m, &s->drives, since_s + (s->lived + 0.5) * span_s, span_s, true) : STATUS_OK;
+    const double middle_s = since_s + (s->lived + 0.5) * span_s;
+    const Status status = span_s > 0 ? live_through(h, s, m, &s->drives, middle_s, span_s, true) : STATUS_OK;
     s->lived++;
     return status;
 }
@@ -443,7 +422,8 @@ static bool is_due(VehicleState *s, const VehicleHeat *h)
     if (!s->shown) return true;
     m3_tmul(r_enu_from_body, h->world.frame->r_ecef_from_enu, e->r_ecef_from_body);
     s->changed = s->changed || vehicle_state_changed(s, e, r_enu_from_body);
-    return s->changed || h->near.snapshot->t_s >= s->next_s || s->looked < shape->patches->count || vehicle_near_waits(s, shape);
+    return s->changed || h->near.snapshot->t_s >= s->next_s || s->looked < shape->patches->count ||
+           vehicle_near_waits(s, shape);
 }
 
 /* Those that have waited longest, first. */
@@ -538,7 +518,7 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
         h->due[due++] = s;
     }
     if (due > 1) qsort(h->due, (size_t)due, sizeof(VehicleState *), by_wait);
-    open_window(h, t_s);
+    work_window_open(&h->window, t_s);
     h->waiting = 0;
     for (int i = 0; i < due && status == STATUS_OK; i++) {
         need_bodies(h);

@@ -56,7 +56,7 @@ static void add_inside(NetworkLoad *load, const PartRow *row, const MachineRow *
     }
 }
 
-/* Shares of a patch's hemisphere. own: of its partners', the part that is left; near: of its neighbours, all that they take. */
+/* Shares of a patch's hemisphere. own: of its partners', the part that is left; near: all that its neighbours take. */
 typedef struct Hemisphere {
     double sky, ground, under, own, near;
 } Hemisphere;
@@ -98,8 +98,10 @@ static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchVie
                             p->ground_rho * level_w_m2 * left.ground + (m->near ? left.near * (double)m->near_sun_w_m2[i] : 0);
     double around_w_m2 = p->longwave_w_m2 * left.sky + stefan_w_m2k4 * pow(p->ground_k, 4) * left.ground +
                          stefan_w_m2k4 * pow(p->under_k, 4) * left.under;
-    for (int k = 0; k < view->partners; k++)
-        around_w_m2 += left.own * (double)view->share[k] * stefan_w_m2k4 * pow(temp_k[m->shape->skin[view->partner[k]].surface], 4);
+    for (int k = 0; k < view->partners; k++) {
+        const double other_k = temp_k[m->shape->skin[view->partner[k]].surface];
+        around_w_m2 += left.own * (double)view->share[k] * stefan_w_m2k4 * pow(other_k, 4);
+    }
     if (m->near) around_w_m2 += left.near * (double)m->near_w_m2[i];
     m->sent_w_m2[i] = (float)((1 - skin->absorptance) * sun_w_m2);
     at->heat_w += area * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame_w_m2 * (double)d->burning);

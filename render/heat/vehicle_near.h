@@ -1,8 +1,8 @@
 /* render/heat/vehicle_near.h: what entities do to each other's heat: they stand in each other's sun, take each other's sky and
  * ground, and their exhaust blows on each other.
  *
- * Who is a neighbour: neighbours.h; once a second it is looked for anew, and a step of the entity ends when one came, went, moved
- * by 0.3 m (and by a twentieth of its distance, where it is seen alone) or turned by 10 degrees against it. What is seen is a
+ * Who is a neighbour: neighbours.h; once a second it is looked for anew, and a step of the entity ends when one came, went,
+ * moved by 0.3 m (and by a twentieth of its distance, where it is seen alone) or turned by 10 degrees against it. Seen is a
  * patch of the neighbour, black in the longwave as an entity's own are, as warm as it was shown when the tick began, with the
  * sunlight that it reflected at its own last time; one that is not shown yet, and any neighbour in the past before an entity's
  * first report, is as warm as the air and as bright as the ground. Munitions and expendables have no neighbours and are none.

@@ -18,8 +18,8 @@ static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const 
 /* All around, air too, at one temperature; no sun. */
 static void enclose(double temp_k)
 {
-    weather = (PlaceHeat){.air_k = temp_k, .air_density = 1, .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4), .ground_k = temp_k,
-                          .under_k = temp_k, .sun_d_enu = {0, 0, 1}};
+    weather = (PlaceHeat){.air_k = temp_k, .air_density = 1, .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4),
+                          .ground_k = temp_k, .under_k = temp_k, .sun_d_enu = {0, 0, 1}};
 }
 
 static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0}, truck = {1, 1, 222, 2, 6, 0, 0}, building = {5, 0, 0, 0, 0, 0, 0},
@@ -54,7 +54,8 @@ static int stand(Crowd *c, DisEntityType type, double east_m, double north_m, do
 
 static VehicleHeat *start(void)
 {
-    return stage_start(&(VehicleHeatConfig){.step_s = 30, .window_us = INFINITY, .place = everywhere, .capacity = crowd_most}, NULL);
+    const VehicleHeatConfig config = {.step_s = 30, .window_us = INFINITY, .place = everywhere, .capacity = crowd_most};
+    return stage_start(&config, NULL);
 }
 
 /* Ticks each second. */
@@ -138,7 +139,8 @@ static void plates_see_each_other_as_published(void **state)
             share += patches.patch[i].area_m2 * all / (patch_points * patch_near_rays), m2 += patches.patch[i].area_m2;
             miss2 += 0.05 * 0.05 * patches.patch[i].area_m2 * patches.patch[i].area_m2;
         }
-        print_message("plates of %g m, %g m apart, %d patches: %.4f, published %.4f\n", side_m[c], away_m[c], patches.count, share / m2, want);
+        print_message("plates of %g m, %g m apart, %d patches: %.4f, published %.4f\n", side_m[c], away_m[c], patches.count,
+                      share / m2, want);
         CHECK_NEAR(share / m2, want, 2 * sqrt(miss2) / m2); /* 0.05 of a share a patch, twice */
         patches_destroy(&patches);
         tracer_destroy(tracer);
@@ -238,8 +240,8 @@ static void a_hot_wreck_warms_as_its_view_factor_says(void **state)
         pose(&posed[0], &c, 0), pose(&posed[1], &c, 1);
         double want_w = 0;
         for (int i = 0; i < posed[0].pose.patches->count; i++)
-            want_w += after.shape->skin[i].emissivity * posed[0].pose.patches->patch[i].area_m2 * taken(&posed[0], &posed[1], i) *
-                      stefan_w_m2k4 * (pow(wreck_k, 4) - pow(air_k, 4));
+            want_w += after.shape->skin[i].emissivity * posed[0].pose.patches->patch[i].area_m2 *
+                      taken(&posed[0], &posed[1], i) * stefan_w_m2k4 * (pow(wreck_k, 4) - pow(air_k, 4));
         const double got_w = (after.heat_in_j - from_j) / (after.t_s - from_s);
         print_message("wreck of 900 K %g m away: %.1f kW, by many rays %.1f kW\n", away_m[k], 1e-3 * got_w, 1e-3 * want_w);
         CHECK_NEAR(got_w / want_w, 1, 0.06); /* 96 rays a patch, of which few meet what is far */
@@ -302,7 +304,8 @@ static void a_wall_sends_light(void **state)
         patch_view_normal(n_enu, &house.pose, i);
         if (!(house.pose.patches->patch[i].facing > 0.5 && n_enu[0] < -0.8)) continue;
         patch_view_look(&view, &house.pose, i);
-        sent_w_m2 += house.pose.patches->patch[i].area_m2 * (1 - of[1].shape->skin[i].absorptance) * sky_w_m2 * (double)view.sky;
+        const double rho = 1 - of[1].shape->skin[i].absorptance;
+        sent_w_m2 += house.pose.patches->patch[i].area_m2 * rho * sky_w_m2 * (double)view.sky;
         m2 += house.pose.patches->patch[i].area_m2;
     }
     sent_w_m2 /= m2;
@@ -463,7 +466,8 @@ static void a_jet_warms_what_is_behind_it(void **state)
 {
     (void)state;
     static const double      front[3] = {1, 0, 0};
-    static const ExhaustJet  outlet = {.at_body = {-5, 0, -1.2}, .d_body = {-1, 0, 0}, .radius_m = 0.4, .speed_mps = 300, .excess_k = 500};
+    static const ExhaustJet  outlet = {.at_body = {-5, 0, -1.2}, .d_body = {-1, 0, 0}, .radius_m = 0.4, .speed_mps = 300,
+                                       .excess_k = 500};
     double                   front_k[4];
     for (int k = 0; k < 4; k++) { /* behind; no outlet; engine off; beside */
         Crowd        c = {0};
@@ -476,8 +480,8 @@ static void a_jet_warms_what_is_behind_it(void **state)
         front_k[k] = side_k(&c, 0, front);
         vehicle_heat_destroy(heat);
     }
-    print_message("front of a truck 20 m behind a jet %.1f K; without one %.2f, stopped %.2f, beside it %.2f K\n", front_k[0], front_k[1],
-                  front_k[2], front_k[3]);
+    print_message("front of a truck 20 m behind a jet %.1f K; without one %.2f, stopped %.2f, beside it %.2f K\n", front_k[0],
+                  front_k[1], front_k[2], front_k[3]);
     CHECK(front_k[0] > 288 + 20 && front_k[0] < 288 + 500);
     CHECK_NEAR(front_k[1], 288, 1);
     CHECK_NEAR(front_k[2], 288, 0.1);
@@ -529,8 +533,8 @@ static void who_comes_is_felt_and_who_leaves_is_not(void **state)
     c.snapshot.count = 1;
     run(heat, &c, 501, 3000);
     side[3] = side_k(&c, 0, right);
-    print_message("side of a truck: %.2f K, after 4 s by a wreck %.2f, after 200 s %.2f, 40 minutes after it left %.2f K\n", side[0], side[1], side[2],
-                  side[3]);
+    print_message("side of a truck: %.2f K, after 4 s by a wreck %.2f, after 200 s %.2f, 40 minutes after it left %.2f K\n",
+                  side[0], side[1], side[2], side[3]);
     CHECK_NEAR(side[0], 288, 1e-3);
     CHECK(side[1] > 288.1 && side[2] > side[1] + 10);
     CHECK(side[3] < 288 + 0.2 * (side[2] - 288));
