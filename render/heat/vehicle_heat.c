@@ -508,7 +508,7 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
     int          due = 0;
     if (status != STATUS_OK) return status;
     status  = meet(h, snapshot);
-    h->near = (NearScene){snapshot, h->world.tracer, h->shape, h->world.frame, h->world.given, h->state, h->body, h->count};
+    h->near = (NearScene){snapshot, h->world.tracer, h->shape, h->world.frame, h->state, h->body, h->count};
     h->bodied = false;
     for (int i = 0; i < h->count && status == STATUS_OK; i++) {
         VehicleState *s = h->state[i];

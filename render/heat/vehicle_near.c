@@ -184,7 +184,7 @@ static Status shine(VehicleMoment *m, const NearScene *scene, const VehicleState
             const VehicleState *o = other[view->slot[k]];
             double              temp_k = p->air_k, sent_w_m2 = bright_w_m2;
             if (o && view->patch[k] < scene->shape[o->model].patches->count &&
-                !vehicle_state_then(&temp_k, &sent_w_m2, o, scene->given, view->patch[k], t_s))
+                !vehicle_state_then(&temp_k, &sent_w_m2, o, view->patch[k], t_s))
                 temp_k = p->air_k, sent_w_m2 = bright_w_m2;
             longwave_w_m2 += view->rays[k] * stefan_w_m2k4 * pow(temp_k, 4);
             sun_w_m2 += view->rays[k] * sent_w_m2;

@@ -3,7 +3,7 @@
  *
  * Who is a neighbour: neighbours.h; once a second it is looked for anew, and a step of the entity ends when one came, went,
  * moved by 0.3 m (and by a twentieth of its distance, where it is seen alone) or turned by 10 degrees against it. Seen is a
- * patch of the neighbour, black in the longwave as an entity's own are, as warm as it was shown when the tick began, with the
+ * patch of the neighbour, black in the longwave as an entity's own are, as warm as its network had it when the tick began, with the
  * sunlight that it reflected at its own last time; one that is not shown yet, and any neighbour in the past before an entity's
  * first report, is as warm as the air and as bright as the ground. Munitions and expendables have no neighbours and are none.
  *
@@ -19,7 +19,6 @@ typedef struct NearScene {
     const Tracer        *tracer;
     const VehicleShape  *shape;  /* [models] */
     const LocalFrame    *frame;
-    const GivenHeat     *given;
     VehicleState *const *state;  /* [count], by id */
     NearBody            *body;   /* [count]: near_scene_bodies fills them */
     int                  count;

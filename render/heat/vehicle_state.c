@@ -72,26 +72,31 @@ void vehicle_state_given(VehicleState *s, const GivenHeat *given, const Patches 
     }
 }
 
-double vehicle_state_k(const VehicleState *s, const GivenHeat *given, int patch, double t_s)
+/* On the straight line between its own two times. */
+static float between(const VehicleState *s, int patch, double t_s)
 {
     const float share = s->next_s > s->t_s ? (float)clamp((t_s - s->t_s) / (s->next_s - s->t_s), 0, 1) : 0;
-    if (s->given[patch] >= 0) return (double)(float)given_heat_k(given, s->given[patch], t_s);
-    return (double)(s->now_k[patch] + share * (s->next_k[patch] - s->now_k[patch]));
+    return s->now_k[patch] + share * (s->next_k[patch] - s->now_k[patch]);
 }
 
-bool vehicle_state_then(double *temp_k, double *sent_w_m2, const VehicleState *s, const GivenHeat *given, int patch, double t_s)
+double vehicle_state_k(const VehicleState *s, const GivenHeat *given, int patch, double t_s)
+{
+    if (s->given[patch] >= 0) return (double)(float)given_heat_k(given, s->given[patch], t_s);
+    return (double)between(s, patch, t_s);
+}
+
+bool vehicle_state_then(double *temp_k, double *sent_w_m2, const VehicleState *s, int patch, double t_s)
 {
     const bool was = s->was_s == t_s;
     if (was ? !s->was_shown : !s->shown) return false;
     *sent_w_m2 = (double)(was ? s->was_sent_w_m2 : s->sent_w_m2)[patch];
-    *temp_k = was && s->given[patch] < 0 ? (double)s->was_k[patch] : vehicle_state_k(s, given, patch, t_s);
+    *temp_k = (double)(was ? s->was_k[patch] : between(s, patch, t_s));
     return true;
 }
 
 void vehicle_state_remember(VehicleState *s, int patches, double t_s)
 {
-    const float share = s->next_s > s->t_s ? (float)clamp((t_s - s->t_s) / (s->next_s - s->t_s), 0, 1) : 0;
-    for (int i = 0; i < patches; i++) s->was_k[i] = s->now_k[i] + share * (s->next_k[i] - s->now_k[i]);
+    for (int i = 0; i < patches; i++) s->was_k[i] = between(s, i, t_s);
     memcpy(s->was_sent_w_m2, s->sent_w_m2, (size_t)patches * sizeof *s->sent_w_m2);
     s->was_s = t_s, s->was_shown = s->shown;
 }

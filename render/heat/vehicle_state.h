@@ -65,9 +65,8 @@ void vehicle_state_given(VehicleState *state, const GivenHeat *given, const Patc
 
 /* Temperature of a patch at t_s, of its own past or given. */
 double vehicle_state_k(const VehicleState *state, const GivenHeat *given, int patch, double t_s);
-/* As it was when the tick of t_s began; false: it was not shown. sent_w_m2: of sunlight. */
-bool   vehicle_state_then(double *temp_k, double *sent_w_m2, const VehicleState *state, const GivenHeat *given, int patch,
-                          double t_s);
+/* Of its own past, as it was when the tick of t_s began; false: it was not shown. sent_w_m2: of sunlight. */
+bool   vehicle_state_then(double *temp_k, double *sent_w_m2, const VehicleState *state, int patch, double t_s);
 /* Before its first work of a tick. */
 void   vehicle_state_remember(VehicleState *state, int patches, double t_s);
 

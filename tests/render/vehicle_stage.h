@@ -15,7 +15,6 @@ typedef struct Stage {
     PatchSet   patches;
     LocalFrame frame;
     Arena     *arena;
-    const GivenHeat *given; /* shown instead; NULL: nothing is given */
 } Stage;
 static Stage stage;
 
@@ -50,7 +49,7 @@ static inline VehicleHeat *stage_start(const VehicleHeatConfig *about, const Kep
 {
     VehicleHeat           *heat;
     VehicleHeatConfig      config = *about;
-    const VehicleHeatWorld world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches, stage.given, kept};
+    const VehicleHeatWorld world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches, NULL, kept};
     config.first_step_s = 1;
     if (config.capacity == 0) config.capacity = 8;
     CHECK(vehicle_heat_create(&heat, &config, &world) == STATUS_OK);
