@@ -56,21 +56,54 @@ static void add_inside(NetworkLoad *load, const PartRow *row, const MachineRow *
     }
 }
 
+/* Shares of a patch's hemisphere. own: of its partners', the part that is left; near: all that its neighbours take. */
+typedef struct Hemisphere {
+    double sky, ground, under, own, near;
+} Hemisphere;
+
+/* The share that so many rays take, but not more than there is. */
+static void take(double *share, double *taken, int rays)
+{
+    static const double each = 1.0 / (patch_points * patch_near_rays);
+    const double        away = fmin(*share, rays * each);
+    *share -= away, *taken += away;
+}
+
+static Hemisphere left_of(const PatchView *view, const NearView *near)
+{
+    Hemisphere h = {(double)view->sky, (double)view->ground, (double)view->under, 1, 0};
+    double     own = 0;
+    if (!near || near->partners == 0) return h;
+    for (int k = 0; k < view->partners; k++) own += (double)view->share[k];
+    take(&h.sky, &h.near, near->sky);
+    take(&h.ground, &h.near, near->ground);
+    take(&h.under, &h.near, near->under);
+    double left = own;
+    take(&left, &h.near, near->own);
+    if (own > 0) h.own = left / own;
+    return h;
+}
+
 static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchView *view, const double *temp_k, int i, const EntityDrives *d)
 {
     const Patch     *patch = &m->shape->patches->patch[i];
     const SkinNode  *skin = &m->shape->skin[i];
     const PlaceHeat *p = &m->place;
     const double     area = patch->area_m2, e = skin->emissivity, speed_mps = air_speed(m, patch, d);
+    const Hemisphere left = left_of(view, m->near ? &m->near[i] : NULL);
     NetworkLoad     *at = &load[skin->surface];
 
     const double level_w_m2 = p->direct_w_m2 * fmax(p->sun_d_enu[2], 0) + p->diffuse_w_m2;
-    const double sun_w_m2 = p->direct_w_m2 * (double)m->lit[i] + p->diffuse_w_m2 * (double)view->sky +
-                            p->ground_rho * level_w_m2 * (double)view->ground;
-    double around_w_m2 = p->longwave_w_m2 * (double)view->sky + stefan_w_m2k4 * pow(p->ground_k, 4) * (double)view->ground +
-                         stefan_w_m2k4 * pow(p->under_k, 4) * (double)view->under;
-    for (int k = 0; k < view->partners; k++)
-        around_w_m2 += (double)view->share[k] * stefan_w_m2k4 * pow(temp_k[m->shape->skin[view->partner[k]].surface], 4);
+    const double sun_w_m2 = p->direct_w_m2 * (double)m->lit[i] + p->diffuse_w_m2 * left.sky +
+                            p->ground_rho * level_w_m2 * left.ground + (m->near ? left.near * (double)m->near_sun_w_m2[i] : 0);
+    double around_w_m2 = p->longwave_w_m2 * left.sky + stefan_w_m2k4 * pow(p->ground_k, 4) * left.ground +
+                         stefan_w_m2k4 * pow(p->under_k, 4) * left.under;
+    for (int k = 0; k < view->partners; k++) {
+        const double other_k = temp_k[m->shape->skin[view->partner[k]].surface];
+        around_w_m2 += left.own * (double)view->share[k] * stefan_w_m2k4 * pow(other_k, 4);
+    }
+    if (m->near) around_w_m2 += left.near * (double)m->near_w_m2[i];
+    m->sent_w_m2[i] = (float)((1 - skin->absorptance) * sun_w_m2);
     at->heat_w += area * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame_w_m2 * (double)d->burning);
     at->emits_m2 = e * area;
     add_film(at, area * film_at(fmax(speed_mps, (double)m->gas_mps[i]), p->air_density),
@@ -84,21 +117,39 @@ static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchVie
     add_inside(&load[skin->row.inside == INSIDE_GRAIN ? skin->surface : skin->inner], &skin->row, &m->shape->machine, d, area, p->air_k);
 }
 
-/* Its own exhaust past its patches. */
+static void add_gas(VehicleMoment *m, const JetPath *path)
+{
+    for (int i = 0; i < m->shape->patches->count; i++) {
+        float gas_k, gas_mps;
+        patch_view_gas(&gas_k, &gas_mps, &m->pose, i, path);
+        if (gas_k > m->gas_k[i]) m->gas_k[i] = gas_k, m->gas_mps[i] = gas_mps;
+    }
+}
+
+/* Exhaust past its patches: the warmest of its own and of its neighbours'. */
 static void find_gas(VehicleMoment *m, const EntityDrives *d)
 {
-    const SnapshotEntity *e = m->entity;
-    const int             patches = m->shape->patches->count;
-    double                at_enu[3], d_enu[3], flow[3];
-    JetPath               path;
-    memset(m->gas_k, 0, (size_t)patches * sizeof *m->gas_k);
-    memset(m->gas_mps, 0, (size_t)patches * sizeof *m->gas_mps);
-    if (!e->exhaust || !(d->engine > 0)) return;
-    m3_mul_v3(at_enu, m->pose.r_enu_from_body, e->exhaust->at_body);
-    m3_mul_v3(d_enu, m->pose.r_enu_from_body, e->exhaust->d_body);
-    v3_sub(flow, m->place.wind_enu_mps, m->v_enu_mps);
-    jet_path(&path, e->exhaust, at_enu, d_enu, flow, m->place.air_k);
-    for (int i = 0; i < patches; i++) patch_view_gas(&m->gas_k[i], &m->gas_mps[i], &m->pose, i, &path);
+    const size_t octets = (size_t)m->shape->patches->count * sizeof *m->gas_k;
+    JetPath      path;
+    memset(m->gas_k, 0, octets);
+    memset(m->gas_mps, 0, octets);
+    if (m->entity->exhaust && d->engine > 0) {
+        static const double origin[3] = {0, 0, 0};
+        vehicle_jet(&path, m->entity->exhaust, origin, m->pose.r_enu_from_body, m->v_enu_mps, &m->place);
+        add_gas(m, &path);
+    }
+    for (int n = 0; n < m->jets; n++) add_gas(m, m->jet[n]);
+}
+
+void vehicle_jet(JetPath *out, const ExhaustJet *exhaust, const double p_enu[3], const double r_enu_from_body[9],
+                 const double v_enu_mps[3], const PlaceHeat *place)
+{
+    double at_enu[3], d_enu[3], flow[3];
+    m3_mul_v3(at_enu, r_enu_from_body, exhaust->at_body);
+    m3_mul_v3(d_enu, r_enu_from_body, exhaust->d_body);
+    v3_add(at_enu, at_enu, p_enu);
+    v3_sub(flow, place->wind_enu_mps, v_enu_mps);
+    jet_path(out, exhaust, at_enu, d_enu, flow, place->air_k);
 }
 
 void vehicle_loads(NetworkLoad *load, VehicleMoment *m, const PatchView *view, const double *temp_k, const EntityDrives *d)

@@ -1,9 +1,9 @@
 /* render/heat/vehicle_load.h: what heats and cools the nodes of an entity at a moment.
  *
- * At a patch: sun by rays past its own parts, with the ground's shade; sky and ground light; longwave of sky, of ground (in
- * the open, and in its own shade below it) and of its other patches, at their temperatures of the step's beginning;
- * convection by wind and its own speed, to the air's recovery temperature, and where its own exhaust flows past it, to that
- * (jet_path.h); what is behind it (etc/heat.csv).
+ * At a patch: sun by rays past its own parts and its neighbours, with the ground's shade; sky and ground light; longwave of
+ * sky, of ground (in the open, and in its own shade below it), of its other patches, at their temperatures of the step's
+ * beginning, and of its neighbours (vehicle_near.h); convection by wind and its own speed, to the air's recovery temperature,
+ * and where an exhaust flows past it, its own or a neighbour's, to that (jet_path.h); what is behind it (etc/heat.csv).
  *
  *     film plate_film_w_m2k (surface_flux.h), with air density^0.8 above
  *     recovery 0.85 v^2 / (2 cp): between the laminar sqrt(Pr) = 0.84 and the turbulent Pr^(1/3) = 0.89 */
@@ -11,6 +11,7 @@
 #define RENDER_HEAT_VEHICLE_LOAD_H
 
 #include "entities/table/snapshot.h"
+#include "render/heat/neighbours.h"
 #include "render/heat/patch_view.h"
 #include "render/heat/vehicle_shape.h"
 
@@ -36,7 +37,13 @@ typedef struct VehicleMoment {
     double               *joint;
     double                p_enu[3], v_enu_mps[3];
     float                *lit;      /* [patches]: patch_view_sun */
-    float                *gas_k, *gas_mps; /* [patches]: of its own exhaust that flows past, over the air; vehicle_loads fills them */
+    float                *gas_k, *gas_mps; /* [patches]: of exhaust that flows past, over the air; vehicle_loads fills them */
+    float                *sent_w_m2; /* [patches]: sunlight that they reflect; vehicle_loads fills it */
+    const NearView       *near;     /* [patches]: what its neighbours take of its views; NULL: nothing */
+    float                *near_w_m2, *near_sun_w_m2; /* [patches]: of what is seen of them, on average: longwave, sunlight */
+    const JetPath        *jet[near_jet_most];        /* of neighbours; from its own origin */
+    const PosedEntity    *shade[near_sun_most];      /* neighbours before its sun; likewise */
+    int                   jets, shades;
     PlaceHeat             place;
 } VehicleMoment;
 
@@ -44,6 +51,9 @@ typedef struct VehicleMoment {
 void vehicle_loads(NetworkLoad *load, VehicleMoment *moment, const PatchView *view, const double *temp_k, const EntityDrives *drives);
 /* Sets the conductances of the shape's network to engine and cabin. */
 void vehicle_links(const VehicleShape *shape, const EntityDrives *drives);
+/* Exhaust of an entity whose origin is at p_enu. */
+void vehicle_jet(JetPath *out, const ExhaustJet *exhaust, const double p_enu[3], const double r_enu_from_body[9],
+                 const double v_enu_mps[3], const PlaceHeat *place);
 /* Of the air that is stopped at a surface, over the air. */
 double vehicle_recovery_k(double speed_mps);
 

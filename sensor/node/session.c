@@ -437,6 +437,9 @@ static void report_vehicles(const Session *s)
     log_detail("heat of vehicles: %llu begun, %llu steps, %.0f ms in all, %.1f ms the longest tick, %.2f MB",
                (unsigned long long)c->begun, (unsigned long long)c->steps, 1e3 * c->spent_s, 1e3 * c->longest_s,
                1e-6 * (double)vehicle_heat_bytes(heat));
+    if (c->neighbours_left_out > 0)
+        log_detail("heat of vehicles: %llu times a neighbour was one too many for another entity's heat",
+                   (unsigned long long)c->neighbours_left_out);
     if (c->left_out > 0)
         log_warn("heat of vehicles: too many entities: those with the highest ids were as warm as the air (entities.shown)");
     if (c->failed > 0)
