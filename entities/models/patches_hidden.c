@@ -9,7 +9,7 @@
  *
  * Lines are parallel to the axes of one turned frame, so that each is a cell of a grid of the triangles as they are projected
  * along it, and no plane of a model lies along one. A line is of both ways at once. Points are spread over a triangle by
- * Roberts's R2 sequence, more over large ones. */
+ * Roberts's R2 sequence, more over large ones; it goes on from one triangle to the next, so that errors of like ones cancel. */
 #include "entities/models/patches_private.h"
 
 #include <stdlib.h>
@@ -40,7 +40,7 @@ struct Hidden {
     Solid       *solid;         /* [triangle_count] */
     float       *open;          /* [triangle_count] */
     Grid         grid[3];
-    double       tests;
+    double       tests, points; /* so far */
 };
 
 /* ---- the grids -------------------------------------------------------------------------------- */
@@ -249,8 +249,8 @@ static float open_share(Hidden *h, int t, double all_m2)
     const int steep = fabs(n[0]) > fabs(n[1]) ? fabs(n[0]) > fabs(n[2]) ? 0 : 2 : fabs(n[1]) > fabs(n[2]) ? 1 : 2;
     const int points = 1 + (int)lesser(points_of_model * area_m2 / all_m2, points_of_triangle - 1);
     for (int k = 0; k < points; k++) {
-        double u = fmod(0.5 + k * r2[0], 1), v = fmod(0.5 + k * r2[1], 1), q[3];
-        if (points == 1) u = v = 1.0 / 3;
+        double u = fmod(0.5 + h->points * r2[0], 1), v = fmod(0.5 + h->points * r2[1], 1), q[3];
+        h->points++;
         if (u + v > 1) u = 1 - u, v = 1 - v;
         u += shrink * (1.0 / 3 - u), v += shrink * (1.0 / 3 - v); /* off its edges */
         for (int i = 0; i < 3; i++) q[i] = s->q[0][i] + u * (s->q[1][i] - s->q[0][i]) + v * (s->q[2][i] - s->q[0][i]);
