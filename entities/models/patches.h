@@ -12,9 +12,8 @@
  * then bodies are groups of one node and role, at last of one role.
  *
  * Faces that lie inside closed parts are no outer surface (patches_hidden.c): those by which parts join, and the inner faces of a
- * hull made of slices. They still decide how a model is cut. A part counts as hidden by parts of its own node, and of nodes
- * fixed to it, alone: a hull's roof under a turret is outside, as are faces about a cavity and before open shells. A patch with
- * less than 1 % of it outside is inside as a whole. Error: some 1 % of the outer area (tests/entities/test_patches.c).
+ * hull made of slices. They still decide how a model is cut. Where a joint is between, they must be inside at every value of
+ * it. Faces about a cavity and before open shells are outside. A patch with less than 1 % of it outside is inside as a whole. Error: some 1 % of the outer area (tests/entities/test_patches.c).
  *
  * Geometry alone, from the model at rest, and immutable: any number of threads may read it. The model may go. Built-in
  * models of 15 k triangles take about 10 ms. A coarse and a fine build of a model may differ by some

@@ -7,6 +7,10 @@
  *
  * Of faces at one place that look the same way, as of boxes flush with one another, the first in the model is outside.
  *
+ * Parts of another node hide a face where it is inside them at each of eight values of the joint between the two: a turret's floor
+ * in the hull, and what of the roof it always covers. Parts that are two joints apart hide nothing of each other, nor do parts
+ * that damage takes away.
+ *
  * Lines are parallel to the axes of one turned frame, so that each is a cell of a grid of the triangles as they are projected
  * along it, and no plane of a model lies along one. A line is of both ways at once. Points are spread over a triangle by
  * Roberts's R2 sequence, more over large ones; it goes on from one triangle to the next, so that errors of like ones cancel. */
@@ -14,7 +18,7 @@
 
 #include <stdlib.h>
 
-enum { cells_least = 4, cells_side_most = 128, points_of_triangle = 400 };
+enum { hinge_values = 8, cells_least = 4, cells_side_most = 128, points_of_triangle = 400 };
 static const double leave_m = 2e-3;       /* a point stands so far before its triangle: gaps of welded faces are narrower */
 static const double points_of_model = 5000; /* by area, besides one of each triangle */
 static const double entries_most = 64;    /* of cells, a triangle, before the grid is made coarser */
@@ -33,15 +37,30 @@ typedef struct Grid {
     int    *triangle;
 } Grid;
 
+/* A joint between what carries and what it moves, in the turned frame. */
+typedef struct Hinge {
+    int    group, carrier;
+    bool   slides;
+    double pivot[3], axis[3], reach_m; /* reach_m: of the moved group from the pivot */
+    int    values;
+    double value[hinge_values];
+} Hinge;
+
 struct Hidden {
     const Model *model;
     int         *group;         /* [node_count]: the node that carries it without a joint between */
     double       turn[9];
+    int          hinges;
+    Hinge       *hinge;         /* [node_count] */
     Solid       *solid;         /* [triangle_count] */
     float       *open;          /* [triangle_count] */
     Grid         grid[3];
     double       tests, points; /* so far */
 };
+
+/* As fmin and fmax of finite numbers, which the compiler calls. */
+static double lesser(double a, double b) { return a < b ? a : b; }
+static double larger(double a, double b) { return a > b ? a : b; }
 
 /* ---- the grids -------------------------------------------------------------------------------- */
 
@@ -78,14 +97,39 @@ static void place_solids(Hidden *h, const NodePose *pose)
     }
 }
 
-/* As fmin and fmax of finite numbers, which the compiler calls. */
-static double lesser(double a, double b) { return a < b ? a : b; }
-static double larger(double a, double b) { return a > b ? a : b; }
-
 static int cell_of(const Grid *g, int k, double at)
 {
     const double cell = (at - g->low[k]) * g->per_m[k];
     return cell > 0 ? cell < g->side ? (int)cell : g->side - 1 : 0;
+}
+
+/* Poses of joints at which what they part must be inside: free ones every 45 degrees, others over their range. */
+static void find_hinges(Hidden *h, const NodePose *pose)
+{
+    const Model *m = h->model;
+    for (int n = 0; n < m->node_count; n++) {
+        const ModelNode *node = &m->node[n];
+        Hinge           *hinge = &h->hinge[h->hinges];
+        double           axis_body[3];
+        if (h->group[n] != n || node->parent < 0) continue;
+        const bool ranges = node->low <= node->high && node->high - node->low < 2 * pi_rad;
+        *hinge = (Hinge){.group = n, .carrier = h->group[node->parent], .slides = node->joint == JOINT_TRANSLATION, .values = hinge_values};
+        if (hinge->slides && !(node->low <= node->high)) continue; /* anywhere */
+        for (int k = 0; k < hinge_values; k++)
+            hinge->value[k] = ranges || hinge->slides ? node->low + (node->high - node->low) * k / (hinge_values - 1)
+                                                      : 2 * pi_rad * k / hinge_values;
+        m3_mul_v3(hinge->pivot, h->turn, pose[n].p_body);
+        m3_mul_v3(axis_body, pose[n].r_body_from_node, node->axis);
+        m3_mul_v3(hinge->axis, h->turn, axis_body);
+        for (int t = 0; t < m->triangle_count; t++)
+            for (int k = 0; k < 3 && h->solid[t].group == n; k++) {
+                double d[3];
+                v3_sub(d, h->solid[t].q[k], hinge->pivot);
+                hinge->reach_m = larger(hinge->reach_m, v3_length(d));
+            }
+        if (hinge->slides) hinge->reach_m += larger(fabs(node->low), fabs(node->high));
+        h->hinges++;
+    }
 }
 
 /* First and last row of cells that a triangle meets, seen along an axis. */
@@ -198,15 +242,56 @@ static bool is_within(Hidden *h, int axis, const double q[3], int group)
     return out[0] > 0 && out[1] > 0;
 }
 
+static bool is_inside(Hidden *h, const double q[3], int group)
+{
+    return is_within(h, 0, q, group) && is_within(h, 1, q, group) && is_within(h, 2, q, group);
+}
+
+/* Where a point of the moved group is at a value of its joint. */
+static void moved(double out[3], const Hinge *hinge, const double q[3], double value)
+{
+    double d[3], side[3];
+    v3_sub(d, q, hinge->pivot);
+    if (hinge->slides) {
+        v3_add_scaled(out, q, value, hinge->axis);
+        return;
+    }
+    v3_cross(side, hinge->axis, d);
+    v3_scale(out, cos(value), d);
+    v3_add_scaled(out, out, sin(value), side);
+    v3_add_scaled(out, out, (1 - cos(value)) * v3_dot(hinge->axis, d), hinge->axis);
+    v3_add(out, out, hinge->pivot);
+}
+
+/* Whether a point before a face of a group is inside that group, or at every value of a joint inside what carries it or what it
+ * carries. */
+static bool is_covered(Hidden *h, const double q[3], int group)
+{
+    if (is_inside(h, q, group)) return true;
+    for (int j = 0; j < h->hinges; j++) {
+        const Hinge *hinge = &h->hinge[j];
+        double       d[3];
+        if (hinge->group != group && hinge->carrier != group) continue;
+        v3_sub(d, q, hinge->pivot);
+        if (hinge->carrier == group && v3_dot(d, d) > hinge->reach_m * hinge->reach_m) continue;
+        int k = 0;
+        for (; k < hinge->values; k++) {
+            double there[3];
+            moved(there, hinge, q, hinge->group == group ? hinge->value[k] : -hinge->value[k]);
+            if (!is_inside(h, there, hinge->group == group ? hinge->carrier : hinge->group)) break;
+        }
+        if (k == hinge->values) return true;
+    }
+    return false;
+}
+
 bool hidden_at(Hidden *h, int triangle, const double p_body[3], const double n_body[3])
 {
     const int group = h->group[h->model->part[h->model->triangle_part[triangle]].node];
     double    before[3], q[3];
     v3_add_scaled(before, p_body, leave_m, n_body);
     m3_mul_v3(q, h->turn, before);
-    for (int axis = 0; axis < 3; axis++)
-        if (!is_within(h, axis, q, group)) return false;
-    return true;
+    return is_covered(h, q, group);
 }
 
 /* Whether a triangle before it in the model has the same place and side there: of equal ones the first is seen. */
@@ -256,7 +341,7 @@ static float open_share(Hidden *h, int t, double all_m2)
         for (int i = 0; i < 3; i++) q[i] = s->q[0][i] + u * (s->q[1][i] - s->q[0][i]) + v * (s->q[2][i] - s->q[0][i]);
         const bool twice = is_double(h, steep, q, t, group, n[steep]);
         v3_add_scaled(q, q, leave_m, n);
-        hidden += twice || (is_within(h, 0, q, group) && is_within(h, 1, q, group) && is_within(h, 2, q, group));
+        hidden += twice || is_covered(h, q, group);
     }
     return 1 - (float)hidden / (float)points;
 }
@@ -289,11 +374,13 @@ Status hidden_create(Hidden **out, const Model *model, const NodePose *pose)
     h->group = calloc((size_t)model->node_count + 1, sizeof *h->group);
     h->solid = calloc(triangles, sizeof *h->solid);
     h->open  = calloc(triangles, sizeof *h->open);
-    Status status = h->group && h->solid && h->open ? STATUS_OK : STATUS_NO_MEMORY;
+    h->hinge = calloc((size_t)model->node_count + 1, sizeof *h->hinge);
+    Status status = h->group && h->hinge && h->solid && h->open ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         find_groups(h);
         find_turn(h->turn);
         place_solids(h, pose);
+        find_hinges(h, pose);
     }
     for (int axis = 0; axis < 3 && status == STATUS_OK; axis++) status = fill_grid(&h->grid[axis], h, axis);
     if (status != STATUS_OK) {
@@ -313,6 +400,7 @@ void hidden_destroy(Hidden *h)
         free(h->grid[axis].triangle);
     }
     free(h->group);
+    free(h->hinge);
     free(h->solid);
     free(h->open);
     free(h);

@@ -63,7 +63,7 @@ void facet_point(double p[3], const Facet *facet, const double at[3]);
 /* pose: of the nodes at rest. It keeps model, not pose. STATUS_NO_MEMORY. */
 Status hidden_create(Hidden **out, const Model *model, const NodePose *pose);
 void   hidden_destroy(Hidden *hidden); /* accepts NULL */
-/* Share of a triangle that is not inside parts that always move with it, 0 .. 1. */
+/* Share of a triangle that is not inside parts in every pose, 0 .. 1. */
 double hidden_open(const Hidden *hidden, int triangle);
 /* Whether a point of a triangle, with its unit normal, is. */
 bool   hidden_at(Hidden *hidden, int triangle, const double p_body[3], const double n_body[3]);
