@@ -86,12 +86,14 @@ static double water_film_w_m2k(double speed_mps) { return 200 + 1500 * pow(speed
 /* Heat that the ground under a track or wheel takes, W/K. */
 static double ground_w_k(const SkinNode *skin, const VehicleMoment *m, const EntityDrives *d)
 {
-    static const double near_m = 0.5, longest_s = 3600, soil = 1000; /* J/(m2 K s^1/2): 620 dry, 1400 moist; estimate */
+    static const double near_m = 0.5, longest_s = 3600;
+    static const double soil = 1000;    /* J/(m2 K s^1/2): 620 dry, 1400 moist; estimate */
+    static const double gaps_w_m2k = 200; /* 0.13 mm of air and grit between; estimate */
     if (d->flying > 0 || !(fabs(m->place.above_m) < near_m) || !(skin->rolls_m2 > 0)) return 0;
     const bool   moves = (double)d->speed_mps > moving_mps;
     const double t_s = moves ? fmin(skin->print_m / (double)d->speed_mps, longest_s) : longest_s;
-    const double together = skin->effusivity * soil / (skin->effusivity + soil);
-    return (moves ? skin->rolls_m2 : skin->ground_m2) * 2 * together / sqrt(pi_rad * t_s);
+    const double bodies = 2 * skin->effusivity * soil / (skin->effusivity + soil) / sqrt(pi_rad * t_s);
+    return (moves ? skin->rolls_m2 : skin->ground_m2) / (1 / bodies + 1 / gaps_w_m2k);
 }
 
 static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchView *view, const double *temp_k, int i, const EntityDrives *d)

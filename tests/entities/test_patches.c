@@ -218,6 +218,27 @@ static void a_wheel_has_three(void **state)
     model_destroy(&m);
 }
 
+/* A tyre of 0.5 m on the ground: what is lower than 2 cm is 0.28 m long and as wide as the tyre. */
+static void a_tyre_stands_on_its_print(void **state)
+{
+    (void)state;
+    MeshBuilder *b = begin();
+    const int    node = mesh_node(b, "wheel", 0, 0, 0, -0.5);
+    mesh_joint(b, node, 0, -1, 0, 0, 0, 1, -1);
+    mesh_node_get(b, node)->roll_radius_m = 0.5;
+    mesh_part(b, 0, "axle", "steel_worn", HEAT_HULL);
+    mesh_box(b, place_at(0, 0, -0.5), -0.1, -0.5, -0.1, 0.1, 0.5, 0.1);
+    mesh_part(b, node, "tyre", "rubber_black", HEAT_WHEEL);
+    mesh_cylinder(b, place_axis(0, 0, 0, 0, 1, 0), 0.2, 0.5, 0.5);
+    Model   m = finish(b);
+    Patches s = cut(&m);
+    double  ground_m2 = 0;
+    for (int i = 0; i < s.count; i++) ground_m2 += s.patch[i].ground_m2;
+    CHECK_NEAR(ground_m2 / (0.3 * 2 * 0.5 * acos(0.48 / 0.5)), 1, 0.15); /* facets lie within 5 mm of the round */
+    patches_destroy(&s);
+    model_destroy(&m);
+}
+
 /* 2000 parts; on one node, or on 200, of 50 materials and several roles. */
 static void many_parts_stay_within_the_limit(void **state)
 {
@@ -459,6 +480,7 @@ int main(void)
         cmocka_unit_test(every_model_is_cut),
         cmocka_unit_test(a_long_box),
         cmocka_unit_test(a_wheel_has_three),
+        cmocka_unit_test(a_tyre_stands_on_its_print),
         cmocka_unit_test(many_parts_stay_within_the_limit),
         cmocka_unit_test(glued_boxes_are_one),
         cmocka_unit_test(a_block_covers_what_it_stands_on),
