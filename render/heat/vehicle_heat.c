@@ -290,8 +290,8 @@ static Status predict(VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
 /* ---- work, in pieces ---------------------------------------------------------------------- */
 
 /* A day without its engine, an hour as it is now: steps that shorten towards the present. */
-static const double past_span_s[] = {10800, 10800, 10800, 10800, 7200, 7200, 7200, 3600, 3600, 3600, 3600, 3600, 1200, 1200,
-                                     600, 600};
+static const double past_span_s[] = {10800, 10800, 10800, 10800, 7200, 7200, 7200, 3600, 3600, 3600, 3600, 3600, 120, 480,
+                                     900, 900, 600, 300, 300};
 enum { past_steps = sizeof past_span_s / sizeof *past_span_s };
 
 /* What pieces cost, microseconds of one core of 2024: units of account, so that every machine does the same work at the

@@ -1,7 +1,6 @@
 /* render/heat/vehicle_load.c: see vehicle_load.h. */
 #include "render/heat/vehicle_load.h"
 
-#include "dis/enumerations.h"
 #include "render/heat/jet_path.h"
 #include "render/heat/surface_flux.h"
 
@@ -76,9 +75,9 @@ static double wet_share(const VehicleMoment *m, const Patch *patch)
 static bool is_afloat(const VehicleMoment *m)
 {
     const DisEntityType *type = &m->entity->type;
-    if (type->kind != dis_kind_platform) return false;
-    return type->domain == dis_domain_surface || type->domain == dis_domain_subsurface ||
-           (type->domain == dis_domain_land && m->place.water);
+    enum { platform = 1, land = 1, surface = 3, subsurface = 4 }; /* of DIS */
+    if (type->kind != platform) return false;
+    return type->domain == surface || type->domain == subsurface || (type->domain == land && m->place.water);
 }
 
 static double water_film_w_m2k(double speed_mps) { return 200 + 1500 * pow(speed_mps, 0.8); }
