@@ -17,8 +17,8 @@
  * whole. Error: some 1.6 % of the outer area (tests/entities/test_patches.c).
  *
  * Geometry alone, from the model at rest, and immutable: any number of threads may read it. The model may go. Built-in
- * models of 12 k triangles take about 35 ms, a ship of 39 k 300 ms, most of it to find what is inside. A coarse and a fine build of a model may differ by some
- * patches. */
+ * models of 12 k triangles take about 35 ms, a ship of 39 k 300 ms, a file of 97 k dense ones 0.9 s, most of it to find what
+ * is inside. A coarse and a fine build of a model may differ by some patches. */
 #ifndef ENTITIES_MODELS_PATCHES_H
 #define ENTITIES_MODELS_PATCHES_H
 

@@ -18,11 +18,11 @@
 
 #include <stdlib.h>
 
-enum { hinge_values = 8, cells_least = 4, cells_side_most = 128, points_of_triangle = 400 };
+enum { hinge_values = 8, cells_least = 4, cells_side_most = 256, points_of_triangle = 400 };
 static const double leave_m = 2e-3;       /* a point stands so far before its triangle: gaps of welded faces are narrower */
 static const double points_of_model = 5000; /* by area, besides one of each triangle */
 static const double entries_most = 64;    /* of cells, a triangle, before the grid is made coarser */
-static const double tests_most = 1e9;     /* of lines with triangles, some seconds: beyond it nothing counts as hidden */
+static const double tests_most = 2e8;     /* of lines with triangles, some 3 s: beyond it nothing counts as hidden */
 
 /* A triangle at rest, in the turned frame. */
 typedef struct Solid {
@@ -113,7 +113,8 @@ static void find_hinges(Hidden *h, const NodePose *pose)
         double           axis_body[3];
         if (h->group[n] != n || node->parent < 0) continue;
         const bool ranges = node->low <= node->high && node->high - node->low < 2 * pi_rad;
-        *hinge = (Hinge){.group = n, .carrier = h->group[node->parent], .slides = node->joint == JOINT_TRANSLATION, .values = hinge_values};
+        *hinge = (Hinge){.group = n, .carrier = h->group[node->parent], .slides = node->joint == JOINT_TRANSLATION,
+                         .values = hinge_values};
         if (hinge->slides && !(node->low <= node->high)) continue; /* anywhere */
         for (int k = 0; k < hinge_values; k++)
             hinge->value[k] = ranges || hinge->slides ? node->low + (node->high - node->low) * k / (hinge_values - 1)

@@ -7,7 +7,8 @@
  *
  * Tracks and wheels that stand touch the ground as two bodies do that are brought together (Carslaw & Jaeger 2.4, contact of
  * half-spaces): 2 e / sqrt(pi t) W/(m2 K), e of skin and ground in series, t the time that ground has been under it: the print's
- * length over the speed, an hour for one that stands; in series with gaps between. In motion all of a track or tyre has its share of the print.
+ * length over the speed, an hour for one that stands; in series with gaps between. In motion all of a track or tyre has its
+ * share of the print.
  *
  * Ships and submarines, and vehicles in water, meet it below its surface, at its temperature, by a film of natural convection and
  * of a turbulent plate 10 m long (Incropera & DeWitt 9.6, 7.2: Nu = 0.1 Ra^(1/3), 0.037 Re^0.8 Pr^(1/3), water of 288 K), instead of
