@@ -65,6 +65,7 @@ typedef struct ModelPart {
     int      node;
     char     material[32];      /* a row of etc/materials.csv */
     HeatRole role;
+    double   thickness_m;      /* of its skin; 0: by role */
     int      first_triangle, triangle_count;
     /* Effect of damage, by the damage state of the appearance ([0] is not used): hidden (bit
      * 1 << state), or of another material (empty: the same). Parametric models have none; a sidecar may. */

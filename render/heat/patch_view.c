@@ -55,6 +55,7 @@ static int patch_met(const PatchPose *pose, const PartHit *hit, const double p_e
     m3_tmul_v3(b_node, node->r_enu_from_node, back);
     for (int i = patches->first_of_body[body]; i < patches->first_of_body[body + 1]; i++) {
         double away[3];
+        if (!(patches->patch[i].open_share > 0)) continue; /* it is inside */
         v3_sub(away, patches->patch[i].p_node, p_node);
         const double facing = v3_dot(patches->patch[i].n_node, b_node), d2 = v3_dot(away, away) + (facing > 0 ? 0 : 1e3);
         if (d2 < best) best = d2, found = i;
@@ -80,6 +81,7 @@ void patch_view_look(PatchView *out, const PatchPose *pose, int patch)
     uint16_t           met[patches_most] = {0};
     int                others = 0;
     *out = (PatchView){0};
+    if (!(pose->patches->patch[patch].open_share > 0)) return; /* inside: it meets nothing */
     for (int point = 0; point < patch_points; point++) {
         double o_enu[3], n_enu[3];
         stand(o_enu, n_enu, pose, patch, point);
@@ -185,8 +187,9 @@ void patch_view_near(NearView *out, const PatchPose *pose, int patch, const Patc
 void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3], const PosedEntity *const *other, int others)
 {
     for (int i = 0; i < pose->patches->count; i++) {
-        double sum = 0;
-        for (int point = 0; point < patch_points && sun_d_enu[2] > 0; point++) {
+        double     sum = 0;
+        const bool outside = pose->patches->patch[i].open_share > 0;
+        for (int point = 0; point < patch_points && sun_d_enu[2] > 0 && outside; point++) {
             double o_enu[3], n_enu[3];
             stand(o_enu, n_enu, pose, i, point);
             const double cosine = v3_dot(n_enu, sun_d_enu);
@@ -200,8 +203,9 @@ void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3]
 
 void patch_view_gas(float *excess_k, float *speed_mps, const PatchPose *pose, int patch, const JetPath *path)
 {
-    double sum_k = 0, sum_mps = 0;
-    for (int point = 0; point < patch_points; point++) {
+    double     sum_k = 0, sum_mps = 0;
+    const bool outside = pose->patches->patch[patch].open_share > 0;
+    for (int point = 0; point < patch_points && outside; point++) {
         double  o_enu[3], n_enu[3], from_enu[3], way[3], here_k, here_mps;
         PartHit hit;
         stand(o_enu, n_enu, pose, patch, point);

@@ -3,7 +3,8 @@
  *
  * Shares are of the hemisphere over the patch, weighted by the cosine: 12 rays from each of four points, the same for every
  * entity. Error: some 0.05 of a share (tests/render/test_vehicle_heat.c). What other entities take of that is seen apart from
- * it, by the same rays: tests/render/test_vehicle_neighbours.c. */
+ * it, by the same rays: tests/render/test_vehicle_neighbours.c. A patch that lies inside the model (open_share 0) sees nothing:
+ * all its shares are 0. */
 #ifndef RENDER_HEAT_PATCH_VIEW_H
 #define RENDER_HEAT_PATCH_VIEW_H
 

@@ -188,7 +188,7 @@ static void take_shots(VehicleHeat *h, VehicleState *s, const EntityDrives *d)
         const int    body = shape->gun_body[large];
         if (!(kg > 0) || body < 0) continue;
         for (int i = shape->patches->first_of_body[body]; i < shape->patches->first_of_body[body + 1]; i++) {
-            const double j = kg * shape->skin[i].row.drive_value * shape->patches->patch[i].area_m2 / shape->gun_m2[large];
+            const double j = kg * shape->skin[i].row.drive_value * shape->skin[i].area_m2 / shape->gun_m2[large];
             const int    node = shape->skin[i].inner;
             s->temp_k[node] = fmin(s->temp_k[node] + j / shape->capacity_j_k[node], 2000);
             s->heat_in_j += j;
@@ -216,8 +216,8 @@ static Status predict(VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
 /* ---- the past ----------------------------------------------------------------------------- */
 
 /* A day without its engine, an hour as it is now: steps that shorten towards the present. */
-static const double past_span_s[] = {10800, 10800, 10800, 10800, 7200, 7200, 7200, 3600, 3600, 3600, 3600, 3600, 1200, 1200,
-                                     600, 600};
+static const double past_span_s[] = {10800, 10800, 10800, 10800, 7200, 7200, 7200, 3600, 3600, 3600, 3600, 3600, 120, 480,
+                                     900, 900, 600, 300, 300};
 enum { past_steps = sizeof past_span_s / sizeof *past_span_s };
 
 /* Drives d for span_s, from loads of the middle of that. */
@@ -537,11 +537,11 @@ static const VehicleState *find_state(const VehicleHeat *h, DisEntityId id)
     return at < 0 ? NULL : h->state[at];
 }
 
-/* By area. */
+/* By outer area. */
 static double mean_of(const Patches *p, const float *value)
 {
     double sum = 0, m2 = 0;
-    for (int i = 0; i < p->count; i++) sum += p->patch[i].area_m2 * (double)value[i], m2 += p->patch[i].area_m2;
+    for (int i = 0; i < p->count; i++) sum += patch_open_m2(&p->patch[i]) * (double)value[i], m2 += patch_open_m2(&p->patch[i]);
     return m2 > 0 ? sum / m2 : 0;
 }
 

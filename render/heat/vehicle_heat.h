@@ -84,7 +84,7 @@ Status vehicle_heat_keep(const VehicleHeat *heat, const char *path);
 
 /* Error that steps and the past's single steps leave in a patch's temperature, K, rms: within a factor of 2 of a solution in
  * small steps in nine of ten (tests/render/test_vehicle_heat_error.c). */
-static inline double vehicle_heat_error_k(double temp_k, double air_k) { return 0.048 + 0.006 * fabs(temp_k - air_k); }
+static inline double vehicle_heat_error_k(double temp_k, double air_k) { return 0.038 + 0.0045 * fmax(fabs(temp_k - air_k) - 15, 0); }
 
 bool vehicle_heat_nodes(VehicleNodes *out, const VehicleHeat *heat, DisEntityId id);
 

@@ -5,6 +5,7 @@
 #include "render/heat/surface_flux.h"
 
 static const double leak_s = 25000;        /* engine that has stopped, and a cabin: to the air through its bay; estimate */
+static const double moving_mps = 0.3;      /* above the jitter of reports of a vehicle that stands */
 static const double flame_w_m2 = 20e3;     /* into the skin of what burns: fires of fuel and rubber inside; estimate */
 
 double vehicle_recovery_k(double speed_mps)
@@ -84,12 +85,51 @@ static Hemisphere left_of(const PatchView *view, const NearView *near)
     return h;
 }
 
+/* Share of a patch that is below the water's surface. */
+static double wet_share(const VehicleMoment *m, const Patch *patch)
+{
+    const NodePose *node = &m->pose.node[patch->node];
+    const double   *up = m->pose.r_enu_from_body + 6;
+    int             wet = 0;
+    for (int k = 0; k < patch_points; k++) {
+        double p_body[3];
+        m3_mul_v3(p_body, node->r_body_from_node, patch->point_node[k]);
+        v3_add(p_body, p_body, node->p_body);
+        wet += v3_dot(up, p_body) < -m->place.above_m;
+    }
+    return (double)wet / patch_points;
+}
+
+static bool is_afloat(const VehicleMoment *m)
+{
+    const DisEntityType *type = &m->entity->type;
+    enum { platform = 1, land = 1, surface = 3, subsurface = 4 }; /* of DIS */
+    if (type->kind != platform) return false;
+    return type->domain == surface || type->domain == subsurface || (type->domain == land && m->place.water);
+}
+
+static double water_film_w_m2k(double speed_mps) { return 200 + 1500 * pow(speed_mps, 0.8); }
+
+/* Heat that the ground under a track or wheel takes, W/K. */
+static double ground_w_k(const SkinNode *skin, const VehicleMoment *m, const EntityDrives *d)
+{
+    static const double near_m = 0.5, longest_s = 3600;
+    static const double soil = 1000;    /* J/(m2 K s^1/2): 620 dry, 1400 moist; estimate */
+    static const double gaps_w_m2k = 200; /* 0.13 mm of air and grit between; estimate */
+    if (d->flying > 0 || !(fabs(m->place.above_m) < near_m) || !(skin->rolls_m2 > 0)) return 0;
+    const bool   moves = (double)d->speed_mps > moving_mps;
+    const double t_s = moves ? fmin(skin->print_m / (double)d->speed_mps, longest_s) : longest_s;
+    const double bodies = 2 * skin->effusivity * soil / (skin->effusivity + soil) / sqrt(pi_rad * t_s);
+    return (moves ? skin->rolls_m2 : skin->ground_m2) / (1 / bodies + 1 / gaps_w_m2k);
+}
+
 static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchView *view, const double *temp_k, int i, const EntityDrives *d)
 {
     const Patch     *patch = &m->shape->patches->patch[i];
     const SkinNode  *skin = &m->shape->skin[i];
     const PlaceHeat *p = &m->place;
-    const double     area = patch->area_m2, e = skin->emissivity, speed_mps = air_speed(m, patch, d);
+    const double     area = skin->area_m2, e = skin->emissivity, speed_mps = air_speed(m, patch, d);
+    const double     wet = m->afloat ? wet_share(m, patch) : 0, open = (1 - wet) * skin->open_m2;
     const Hemisphere left = left_of(view, m->near ? &m->near[i] : NULL);
     NetworkLoad     *at = &load[skin->surface];
 
@@ -104,10 +144,12 @@ static void load_patch(NetworkLoad *load, const VehicleMoment *m, const PatchVie
     }
     if (m->near) around_w_m2 += left.near * (double)m->near_w_m2[i];
     m->sent_w_m2[i] = (float)((1 - skin->absorptance) * sun_w_m2);
-    at->heat_w += area * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame_w_m2 * (double)d->burning);
-    at->emits_m2 = e * area;
-    add_film(at, area * film_at(fmax(speed_mps, (double)m->gas_mps[i]), p->air_density),
+    at->heat_w += open * (skin->absorptance * sun_w_m2 + e * around_w_m2 + flame_w_m2 * (double)d->burning);
+    at->emits_m2 = e * open;
+    add_film(at, open * film_at(fmax(speed_mps, (double)m->gas_mps[i]), p->air_density),
              p->air_k + vehicle_recovery_k(speed_mps) + (double)m->gas_k[i]);
+    add_film(at, wet * skin->open_m2 * water_film_w_m2k((double)d->speed_mps), p->water_k);
+    if (!m->afloat) add_film(at, ground_w_k(skin, m, d), (double)d->speed_mps > moving_mps ? p->ground_k : p->under_k);
     if (skin->row.drive == PART_DRIVE_MOTION && !(d->flying > 0)) {
         const double w = area * skin->friction * skin->row.drive_value * clamp((double)d->speed_mps / 10, 0, 2);
         at->heat_w += 0.5 * w;
@@ -157,6 +199,7 @@ void vehicle_loads(NetworkLoad *load, VehicleMoment *m, const PatchView *view, c
     const VehicleShape *shape = m->shape;
     const MachineRow   *machine = &shape->machine;
     find_gas(m, d);
+    m->afloat = is_afloat(m);
     for (int n = 0; n < shape->nodes; n++) load[n] = (NetworkLoad){.fluid_k = m->place.air_k};
     for (int i = 0; i < shape->patches->count; i++) load_patch(load, m, &view[i], temp_k, i, d);
     if (shape->engine >= 0) { /* the thermostat's radiator takes what the engine gives at its temperature */
@@ -177,7 +220,8 @@ void vehicle_links(const VehicleShape *shape, const EntityDrives *d)
         const SkinNode *skin = &shape->skin[i];
         if (skin->inside_link < 0) continue;
         const double w_m2k = skin->row.inside_w_m2k + (skin->row.running_w_m2k - skin->row.inside_w_m2k) * (double)d->engine;
-        shape->conductance_w_k[skin->inside_link] = w_m2k * shape->patches->patch[i].area_m2;
+        shape->conductance_w_k[skin->inside_link] = w_m2k * skin->area_m2;
     }
+    if (shape->fuel_link >= 0) shape->conductance_w_k[shape->fuel_link] = shape->machine.fuel_w_k * (double)d->engine;
     network_conductances(shape->network, shape->conductance_w_k);
 }

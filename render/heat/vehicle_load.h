@@ -5,6 +5,15 @@
  * beginning, and of its neighbours (vehicle_near.h); convection by wind and its own speed, to the air's recovery temperature,
  * and where an exhaust flows past it, its own or a neighbour's, to that (jet_path.h); what is behind it (etc/heat.csv).
  *
+ * Tracks and wheels that stand touch the ground as two bodies do that are brought together (Carslaw & Jaeger 2.4, contact of
+ * half-spaces): 2 e / sqrt(pi t) W/(m2 K), e of skin and ground in series, t the time that ground has been under it: the print's
+ * length over the speed, an hour for one that stands; in series with gaps between. In motion all of a track or tyre has its
+ * share of the print.
+ *
+ * Ships and submarines, and vehicles in water, meet it below its surface, at its temperature, by a film of natural convection and
+ * of a turbulent plate 10 m long (Incropera & DeWitt 9.6, 7.2: Nu = 0.1 Ra^(1/3), 0.037 Re^0.8 Pr^(1/3), water of 288 K), instead of
+ * air, sun and radiation.
+ *
  *     film plate_film_w_m2k (surface_flux.h), with air density^0.8 above
  *     recovery 0.85 v^2 / (2 cp): between the laminar sqrt(Pr) = 0.84 and the turbulent Pr^(1/3) = 0.89 */
 #ifndef RENDER_HEAT_VEHICLE_LOAD_H
@@ -23,7 +32,9 @@ typedef struct PlaceHeat {
     double sun_d_enu[3];
     double ground_k, under_k;          /* in the open; in the shade of the entity */
     double ground_rho;                 /* reflectance for sunlight */
-    double above_m;                    /* of the place over the ground */
+    double above_m;                    /* of the place over the ground or the water */
+    double water_k;                    /* surface of water there, or of the sea nearby */
+    bool   water;                      /* it is water */
 } PlaceHeat;
 
 /* An entity as it is posed at a time, with what is about it. */
@@ -45,6 +56,7 @@ typedef struct VehicleMoment {
     const PosedEntity    *shade[near_sun_most];      /* neighbours before its sun; likewise */
     int                   jets, shades;
     PlaceHeat             place;
+    bool                  afloat;   /* in water, as vehicle_loads finds it */
 } VehicleMoment;
 
 /* load[shape->nodes]. view[patches]; temp_k[shape->nodes]: of the patches that others see. */

@@ -22,7 +22,7 @@ static void enclose(double temp_k)
 {
     sun_up_s = 0, ground_k_m = ground_k_s = 0;
     weather = (PlaceHeat){.air_k = temp_k, .air_density = 1, .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4), .ground_k = temp_k,
-                          .under_k = temp_k, .ground_rho = 0.2, .sun_d_enu = {0, 0, 1}};
+                          .under_k = temp_k, .water_k = temp_k, .ground_rho = 0.2, .sun_d_enu = {0, 0, 1}};
 }
 
 static const KeptHeat *last_run; /* NULL: none */
@@ -62,8 +62,8 @@ static double mean_k(const VehicleHeat *heat, Scene *s, HeatRole role, const dou
     for (int i = 0; i < p->count; i++) {
         if (p->patch[i].role != role) continue;
         if (n && !(p->patch[i].facing * v3_dot(p->patch[i].n_node, n) > 0.5 && v3_dot(p->patch[i].p_node, n) > 0)) continue;
-        sum += p->patch[i].area_m2 * (double)s->snapshot.patch_k[i];
-        m2 += p->patch[i].area_m2;
+        sum += patch_open_m2(&p->patch[i]) * (double)s->snapshot.patch_k[i];
+        m2 += patch_open_m2(&p->patch[i]);
     }
     return m2 > 0 ? sum / m2 : NAN;
 }
@@ -156,14 +156,15 @@ static void engines_warm_and_stay_warm(void **state)
     vehicle_heat_destroy(heat);
 }
 
-/* The nodes of a step keep the heat that came from outside. */
-/* A jet that blows on the hull's rear warms it, and the turret's front hardly; away from the entity it warms nothing, nor does an engine that is off. */
+
+/* A jet as wide as the points of a patch lie apart, on the hull's rear, warms it, and the turret's front hardly; away from the entity it warms
+ * nothing, nor does an engine that is off. */
 static void exhaust_warms_what_it_blows_on(void **state)
 {
     (void)state;
     static const double back[3] = {-1, 0, 0}, front[3] = {1, 0, 0};
-    const ExhaustJet    across = {.at_body = {-5.5, 0, -0.95}, .d_body = {1, 0, 0}, .radius_m = 0.3, .speed_mps = 30, .excess_k = 300};
-    const ExhaustJet    away = {.at_body = {-5.5, 0, -0.95}, .d_body = {-1, 0, 0}, .radius_m = 0.3, .speed_mps = 30, .excess_k = 300};
+    const ExhaustJet    across = {.at_body = {-5.5, 0, -0.95}, .d_body = {1, 0, 0}, .radius_m = 0.5, .speed_mps = 30, .excess_k = 300};
+    const ExhaustJet    away = {.at_body = {-5.5, 0, -0.95}, .d_body = {-1, 0, 0}, .radius_m = 0.5, .speed_mps = 30, .excess_k = 300};
     double              back_k[4], front_k[4];
     enclose(288);
     for (int c = 0; c < 4; c++) { /* none, across, away, across without its engine */
