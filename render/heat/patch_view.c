@@ -142,6 +142,7 @@ void patch_view_near(NearView *out, const PatchPose *pose, int patch, const Patc
     bool passes[patch_others];
     int  kinds = 0;
     *out = (NearView){0};
+    if (!(pose->patches->patch[patch].open_share > 0)) return; /* inside: it meets nothing */
     for (int point = 0; point < patch_points; point++) {
         double o_enu[3], n_enu[3];
         bool   any = false;

@@ -358,7 +358,7 @@ static void contrast_is_to_the_ground_below(void **state)
         const Patches *p = &stage.patches.of[s.entity.model];
         double         sum = 0, m2 = 0;
         for (int i = 0; i < p->count; i++)
-            sum += p->patch[i].area_m2 * (double)s.snapshot.patch_k[i], m2 += p->patch[i].area_m2;
+            sum += patch_open_m2(&p->patch[i]) * (double)s.snapshot.patch_k[i], m2 += patch_open_m2(&p->patch[i]);
         CHECK_NEAR((double)s.entity.dt_k, sum / m2 - (290 + 0.02 * 8 * t_s - 1e-3 * t_s), 2e-5);
         CHECK(vehicle_heat_nodes(&nodes, heat, s.entity.id));
         most_lag_k = fmax(most_lag_k, (0.02 * 8 - 1e-3) * (t_s - nodes.t_s));
@@ -405,7 +405,11 @@ static void crowds_wait(void **state)
     enclose(288);
     weather.sun_d_enu[1] = 0.6, weather.sun_d_enu[2] = 0.8, weather.direct_w_m2 = 800;
     place(&s, tank, (EntityDrives){.engine = 0.6f});
-    for (int i = 0; i < many; i++) entity[i] = s.entity, entity[i].id.entity = (uint16_t)(i + 1);
+    for (int i = 0; i < many; i++) { /* 100 m apart: none is the other's neighbour */
+        const double p_enu[3] = {100 * i, 0, 0};
+        entity[i] = s.entity, entity[i].id.entity = (uint16_t)(i + 1);
+        ecef_from_enu(entity[i].p_ecef, &stage.frame, p_enu);
+    }
     Snapshot all = {.count = many, .entity = entity, .joints = joints};
     heat[0] = start(30), heat[1] = start_limited(30, 3500);
     for (int k = 0; k < 2; k++) CHECK(vehicle_heat_tick(heat[k], &none) == STATUS_OK);

@@ -107,7 +107,7 @@ static double side_k(const Crowd *c, int at, const double way[3])
     for (int i = 0; i < p->count; i++) {
         const Patch *q = &p->patch[i];
         if (!(q->facing * v3_dot(q->n_node, way) > 0.5 && v3_dot(q->p_node, way) > 0)) continue;
-        sum += q->area_m2 * (double)c->snapshot.patch_k[e->first_patch + i], m2 += q->area_m2;
+        sum += patch_open_m2(q) * (double)c->snapshot.patch_k[e->first_patch + i], m2 += patch_open_m2(q);
     }
     return sum / m2;
 }
@@ -250,7 +250,7 @@ static double facing_k4(const Crowd *c, int at, const double way_enu[3])
     pose(&posed, c, at);
     for (int i = 0; i < posed.pose.patches->count; i++) {
         double       n_enu[3];
-        const double area_m2 = posed.pose.patches->patch[i].area_m2;
+        const double area_m2 = patch_open_m2(&posed.pose.patches->patch[i]);
         patch_view_normal(n_enu, &posed.pose, i);
         if (!(v3_dot(n_enu, way_enu) > 0.5)) continue;
         sum += area_m2 * pow((double)c->snapshot.patch_k[c->entity[at].first_patch + i], 4), m2 += area_m2;
@@ -284,11 +284,12 @@ static void a_hot_wreck_warms_as_its_view_factor_says(void **state)
         double       want_w = 0;
         CHECK(wreck_k4 > pow(0.99 * wreck_k, 4) && wreck_k4 < pow(wreck_k, 4));
         for (int i = 0; i < posed[0].pose.patches->count; i++)
-            want_w += after.shape->skin[i].emissivity * posed[0].pose.patches->patch[i].area_m2 *
+            want_w += after.shape->skin[i].emissivity * patch_open_m2(&posed[0].pose.patches->patch[i]) *
                       taken(&posed[0], &posed[1], i) * stefan_w_m2k4 * (wreck_k4 - pow(air_k, 4));
         const double got_w = (after.heat_in_j - from_j) / (after.t_s - from_s);
         print_message("wreck of 500 K %g m away: %.1f kW, by many rays %.1f kW\n", away_m[k], 1e-3 * got_w, 1e-3 * want_w);
-        CHECK_NEAR(got_w / want_w, 1, 0.06); /* 96 rays a patch, of which few meet what is far */
+        /* 96 rays a patch: some 400, 100, 40 of all meet it, evenly spread at 4 m; else two of their standard errors */
+        CHECK_NEAR(got_w / want_w, 1, ((double[]){0.06, 0.2, 0.32})[k]);
         vehicle_heat_destroy(heat);
     }
     forget(kept);
@@ -342,13 +343,13 @@ static void a_wall_sends_light(void **state)
         if (!(house.pose.patches->patch[i].facing > 0.5 && n_enu[0] < -0.8)) continue;
         patch_view_look(&view, &house.pose, i);
         const double rho = 1 - of[1].shape->skin[i].absorptance;
-        sent_w_m2 += house.pose.patches->patch[i].area_m2 * rho * sky_w_m2 * (double)view.sky;
-        m2 += house.pose.patches->patch[i].area_m2;
+        sent_w_m2 += patch_open_m2(&house.pose.patches->patch[i]) * rho * sky_w_m2 * (double)view.sky;
+        m2 += patch_open_m2(&house.pose.patches->patch[i]);
     }
     sent_w_m2 /= m2;
     pose(&house, &c, 1);
     for (int i = 0; i < own.pose.patches->count; i++) {
-        const double m2_taking = own.pose.patches->patch[i].area_m2 * of[0].shape->skin[i].absorptance;
+        const double m2_taking = patch_open_m2(&own.pose.patches->patch[i]) * of[0].shape->skin[i].absorptance;
         want_w += m2_taking * taken(&own, &house, i) * sent_w_m2;
     }
     vehicle_heat_destroy(heat);
@@ -389,7 +390,7 @@ static void what_one_loses_the_other_gains(void **state)
                 NearView view;
                 patch_view_near(&view, &own.pose, i, near, 1);
                 const int all = view.sky + view.ground + view.under + view.own;
-                m2[side] += own.pose.patches->patch[i].area_m2 * all / (patch_points * patch_near_rays);
+                m2[side] += patch_open_m2(&own.pose.patches->patch[i]) * all / (patch_points * patch_near_rays);
             }
         }
         print_message("area times share: %.2f there, %.2f m2 back\n", m2[0], m2[1]);
@@ -441,7 +442,7 @@ static void shade_is_as_no_sun(void **state)
     print_message("in a house's shadow: east side %.2f, without sun %.2f, in the sun %.2f K; sides differ by %.1e K\n",
                   side_k(&crowd[0], 0, right), side_k(&crowd[1], 0, right), side_k(&crowd[2], 0, right), worst_k);
     CHECK(side_k(&crowd[2], 0, right) > side_k(&crowd[1], 0, right) + 8);
-    CHECK(worst_k < 0.02);
+    CHECK(worst_k < 0.05); /* the house's wall, 0.6 K warmer by the sun behind it, gives its east side 0.02 K; other sides 0.003 K */
     const double shaded_k = side_k(&crowd[0], 0, right);
     const size_t near_bytes = vehicle_heat_bytes(heat[0]);
     crowd[0].snapshot.count = 1;
