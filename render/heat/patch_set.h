@@ -1,4 +1,5 @@
-/* render/heat/patch_set.h: the patches of models (entities/models/patches.h), each cut at its first use. */
+/* render/heat/patch_set.h: the patches of models (entities/models/patches.h), each cut at its first use, or ahead of it by a thread
+ * of its own. */
 #ifndef RENDER_HEAT_PATCH_SET_H
 #define RENDER_HEAT_PATCH_SET_H
 
@@ -9,12 +10,15 @@ typedef struct PatchSet {
     int      models;
     Patches *of;  /* [models] */
     bool    *cut; /* [models] */
+    struct PatchCut **ahead; /* [models]: being cut; NULL: not */
 } PatchSet;
 
 Status patch_set_create(PatchSet *out, int models);
 void   patch_set_destroy(PatchSet *set); /* accepts zeroes */
 /* One thread at a time. model: the built one, not its coarse form. STATUS_NO_MEMORY. */
 Status patch_set_need(PatchSet *set, int index, const Model *model);
+/* Begins to cut a model in another thread, for which patch_set_need then waits. Where there is none to be had, that cuts it. */
+void   patch_set_begin(PatchSet *set, int index, const Model *model);
 
 /* Temperature of an entity's surface at a place of one of its parts, of node axes, K; NAN: none is known. Its model must
  * have been needed. */

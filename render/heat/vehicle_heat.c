@@ -11,6 +11,7 @@ struct VehicleHeat {
     VehicleHeatWorld    world;
     VehicleShape       *shape;    /* [models] */
     bool               *shaped;
+    double             *met_s;    /* [models]: when it was first met, while its patches are cut; NAN: not */
     int                 models, count, room, waiting;
     VehicleState      **state, **was; /* [count], by id; of the tick before */
     VehicleState      **due;      /* [room]: those whose work waits, of a tick */
@@ -31,11 +32,13 @@ Status vehicle_heat_create(VehicleHeat **out, const VehicleHeatConfig *config, c
     h->models = catalog_model_count(world->catalog);
     h->shape  = calloc((size_t)h->models + 1, sizeof *h->shape);
     h->shaped = calloc((size_t)h->models + 1, sizeof *h->shaped);
+    h->met_s  = malloc(((size_t)h->models + 1) * sizeof *h->met_s);
     h->arena  = arena_create();
-    if (!h->shape || !h->shaped || !h->arena) {
+    if (!h->shape || !h->shaped || !h->met_s || !h->arena) {
         vehicle_heat_destroy(h);
         return STATUS_NO_MEMORY;
     }
+    for (int m = 0; m <= h->models; m++) h->met_s[m] = NAN;
     *out = h;
     return STATUS_OK;
 }
@@ -52,6 +55,7 @@ void vehicle_heat_destroy(VehicleHeat *h)
     free(h->body);
     free(h->shape);
     free(h->shaped);
+    free(h->met_s);
     free(h);
 }
 
@@ -65,6 +69,23 @@ static Status need_shape(VehicleHeat *h, int m)
                                       h->world.table, h->world.materials);
     h->shaped[m] = status == STATUS_OK;
     return status;
+}
+
+/* The network of a model that is met at t_s. After the first tick its patches are cut by another thread while entities wait, for a
+ * time that follows from its size: some 10 us a triangle (entities/models/patches.h), and half as much again. */
+static Status shape_at(bool *ready, VehicleHeat *h, int m, double t_s)
+{
+    *ready = true;
+    if (!h->shaped[m] && h->window.metered && isfinite(h->config.window_us)) {
+        if (isnan(h->met_s[m])) {
+            const Status status = tracer_need(h->world.tracer, m);
+            if (status != STATUS_OK) return status;
+            h->met_s[m] = t_s;
+            patch_set_begin(h->world.patches, m, tracer_model(h->world.tracer, m));
+        }
+        *ready = t_s >= h->met_s[m] + 0.1 + 15e-6 * tracer_model(h->world.tracer, m)->triangle_count;
+    }
+    return *ready ? need_shape(h, m) : STATUS_OK;
 }
 
 size_t vehicle_heat_bytes(const VehicleHeat *h)
@@ -475,6 +496,7 @@ static Status meet(VehicleHeat *h, const Snapshot *snapshot)
     const int      before = h->count;
     Status         status = STATUS_OK;
     int            at = 0;
+    h->waiting = 0;
     if (before > 0) memcpy(was, h->state, (size_t)before * sizeof *was);
     h->count = 0;
     for (int i = 0; i < snapshot->count; i++) {
@@ -491,8 +513,11 @@ static Status meet(VehicleHeat *h, const Snapshot *snapshot)
             vehicle_state_destroy(s);
             continue;
         }
-        if (!s && status == STATUS_OK) status = need_shape(h, e->model);
-        if (!s && status == STATUS_OK && h->shape[e->model].patches->count > 0) status = first_sight(&s, h, e, snapshot->t_s);
+        bool ready = true;
+        if (!s && status == STATUS_OK) status = shape_at(&ready, h, e->model, snapshot->t_s);
+        h->waiting += !ready;
+        if (!s && ready && status == STATUS_OK && h->shape[e->model].patches->count > 0)
+            status = first_sight(&s, h, e, snapshot->t_s);
         if (!s) continue;
         s->index = i;
         h->state[h->count++] = s;
@@ -507,6 +532,7 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
     Status       status = make_room(h, snapshot->count < h->config.capacity ? snapshot->count : h->config.capacity);
     int          due = 0;
     if (status != STATUS_OK) return status;
+    work_window_open(&h->window, t_s);
     status  = meet(h, snapshot);
     h->near = (NearScene){snapshot, h->world.tracer, h->shape, h->world.frame, h->state, h->body, h->count};
     h->bodied = false;
@@ -518,13 +544,13 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
         h->due[due++] = s;
     }
     if (due > 1) qsort(h->due, (size_t)due, sizeof(VehicleState *), by_wait);
-    work_window_open(&h->window, t_s);
-    h->waiting = 0;
+    int left = 0;
     for (int i = 0; i < due && status == STATUS_OK; i++) {
         need_bodies(h);
-        if (h->waiting == 0) status = work_on(h, h->due[i]);
-        h->waiting += h->due[i]->waits_s < INFINITY;
+        if (left == 0) status = work_on(h, h->due[i]);
+        left += h->due[i]->waits_s < INFINITY;
     }
+    h->waiting += left;
     const double spent_s = wall_clock_s() - began_s;
     h->counters.spent_s += spent_s;
     h->counters.longest_s = fmax(h->counters.longest_s, spent_s);

@@ -437,9 +437,42 @@ static void crowds_wait(void **state)
     for (int k = 0; k < 2; k++) vehicle_heat_destroy(heat[k]);
 }
 
+/* A model that is met after the first tick: its patches are cut by another thread, and its entity waits for a time that depends on
+ * nothing but its size; then it begins as one whose patches were there. One that goes before that is no trouble. */
+static void a_new_model_is_cut_meanwhile(void **state)
+{
+    (void)state;
+    static PatchSet  own; /* of this world: nothing is cut yet */
+    Scene            s;
+    Snapshot         none = {0};
+    VehicleHeat     *heat[2];
+    const PatchSet   before = stage.patches;
+    enclose(288);
+    place(&s, tank, (EntityDrives){.engine = 1});
+    CHECK(patch_set_create(&own, catalog_model_count(stage.catalog)) == STATUS_OK);
+    stage.patches = own;
+    heat[0] = start_limited(30, 3500), heat[1] = start_limited(30, 3500);
+    for (int k = 0; k < 2; k++) CHECK(vehicle_heat_tick(heat[k], &none) == STATUS_OK);
+    const double wait_s = 0.1 + 15e-6 * catalog_model(stage.catalog, s.entity.model)->triangle_count;
+    for (int tick = 1; tick <= 20; tick++) {
+        s.snapshot.t_s = tick / 10.0;
+        CHECK(vehicle_heat_tick(heat[0], &s.snapshot) == STATUS_OK && vehicle_heat_show(heat[0], &s.snapshot, stage.arena) == STATUS_OK);
+        if (s.snapshot.t_s < 0.1 + wait_s - 1e-9) CHECK(s.entity.first_patch == -1 && vehicle_heat_waits(heat[0]));
+    }
+    CHECK(s.entity.first_patch >= 0 && !vehicle_heat_waits(heat[0]));
+    s.snapshot.t_s = 0.1; /* the other world meets it, and it goes at once */
+    CHECK(vehicle_heat_tick(heat[1], &s.snapshot) == STATUS_OK);
+    none.t_s = 5;
+    CHECK(vehicle_heat_tick(heat[1], &none) == STATUS_OK);
+    for (int k = 0; k < 2; k++) vehicle_heat_destroy(heat[k]);
+    patch_set_destroy(&stage.patches);
+    stage.patches = before;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_new_model_is_cut_meanwhile),
         cmocka_unit_test(an_enclosure_stays_as_it_is), cmocka_unit_test(the_side_of_the_sun_is_warm),
         cmocka_unit_test(engines_warm_and_stay_warm),  cmocka_unit_test(exhaust_warms_what_it_blows_on),
         cmocka_unit_test(a_restart_goes_on),
