@@ -4,7 +4,10 @@
 
 #include <stdlib.h>
 
-enum { round_tiles = 512 }; /* hits are gathered so often: bounds the memory of workers */
+enum {
+    round_tiles = 512, /* hits are gathered so often: bounds the memory of workers */
+    most_rays = 1 << 28, most_hits = 1 << 26 /* 5 GB */
+};
 
 TubeConfig tubes_default_config(double frequency_hz)
 {
@@ -108,7 +111,7 @@ static Status lay_grid(TubeGrid *grid, const RadarTarget *target, const ScatterA
         grid->first_m[i] = low_m[i] - grid->spacing_m * random_uniform(hash, 94, 0, 1 + (uint64_t)i);
         grid->tiles[i] = (grid->count[i] + tile_side - 1) / tile_side;
     }
-    return (double)grid->count[0] * grid->count[1] < 0x1p31 ? STATUS_OK : STATUS_UNSUPPORTED;
+    return (double)grid->count[0] * grid->count[1] <= most_rays ? STATUS_OK : STATUS_UNSUPPORTED;
 }
 
 /* ---- the list --------------------------------------------------------------------------------------- */
@@ -189,6 +192,11 @@ static Status gather(TubeHits *out, TubeWork *work, int threads, int count)
         if (work->piece[t].failed) return STATUS_NO_MEMORY;
         more += work->piece[t].count;
     }
+    if (out->count + more > most_hits) {
+        log_error("radar: more than %d hits of ray tubes: rays=%lld; take a lower frequency", (int)most_hits,
+                  out->rays);
+        return STATUS_UNSUPPORTED;
+    }
     const Status status = reserve(out, more + 1);
     if (status != STATUS_OK) return status;
     for (int t = 0; t < count; t++)
@@ -226,7 +234,7 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
     Status status = lay_grid(&work.grid, target, tx, config);
     if (status != STATUS_OK) {
         log_error(status == STATUS_BAD_VALUE ? "radar: the transmitter is within the target: range_m=%g"
-                                             : "radar: more than 2^31 ray tubes: range_m=%g; take a lower frequency",
+                                             : "radar: more than 2^28 ray tubes: range_m=%g; take a lower frequency",
                   tx->range_m);
         return status;
     }

@@ -50,7 +50,7 @@ typedef struct TubeHits {
 } TubeHits;
 
 /* out: zeroed, or of an earlier call, whose memory is used again. rx may be tx. STATUS_BAD_VALUE, logged: an antenna
- * within the target, or a number that is not finite; STATUS_UNSUPPORTED, logged: more than 2^31 rays. */
+ * within the target, or a number that is not finite; STATUS_UNSUPPORTED, logged: more than 2^28 rays or 2^26 hits. */
 Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
                    const TubeConfig *config, Pool *pool);
 void   tubes_free(TubeHits *hits);
