@@ -1,4 +1,6 @@
-/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere and heat for rows of CSV. */
+/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere, heat and radar for rows of CSV. */
+/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere, heat and radar clutter for rows of
+ * CSV. */
 #include "render/probe.h"
 
 #include "entities/import/model_import.h"
@@ -199,6 +201,21 @@ const Probe render_probes[] = {
              "(0); weather as of `weather`",
      .in = "unix_s,model$,part$?,heading_deg?,engine?,speed_mps?", .out = "temp_k,low_k,high_k,air_k,ground_k",
      .open = heat_node_probe_open, .row = heat_node_probe_row, .close = heat_node_probe_close},
+    {.name = "propagation", .arguments = "[MODEL]",
+     .help = "what air, rain, fog and cloud take from a radio wave on a straight path, one way (ITU-R P.676-13, P.838-3, "
+             "P.840-9), and its two-way factor; MODEL: of etc/atmosphere (us1976), for temperatures; heights above its "
+             "ground; tilt: of the polarisation, 0 horizontal, 90 vertical, 45 circular too; visibility: fog from 1000 m "
+             "down, below fog_top_m (empty: everywhere); the figures per km are those at from_m",
+     .in = "frequency_ghz,from_m,to_m,range_m,air_temp_k?,pressure_mbar?,humidity?,rain_mm_h?,tilt_deg?,visibility_m?,"
+           "fog_top_m?,cloud_low_m?,cloud_high_m?,cloud_g_m3?",
+     .out = "gas_db,rain_db,cloud_db,two_way_db,amplitude,phase_rad,dry_db_km,wet_db_km,rain_db_km,cloud_db_km,"
+            "rain_top_m,vapour_g_m3,fog_g_m3",
+     .open = propagation_probe_open, .row = propagation_probe_row, .close = propagation_probe_close},
+    {.name = "radar-equation",
+     .help = "power of an echo, thermal noise at 290 K and their ratio; loss: both ways, of the system and of the "
+             "air together",
+     .in = "power_w,gain_db,frequency_ghz,rcs_dbsm,range_m,bandwidth_hz,noise_figure_db,loss_db?",
+     .out = "received_dbw,noise_dbw,snr_db", .row = radar_equation_probe_row},
     {.name = "rcs",
      .help = "scattered field and radar cross section of a target by ray tubes, physical optics and edges, as received and transmitted "
              "polarisation; target: a built-in model, a file, or sphere:R, plate:AxB, disc:R, cylinder:RxL, dihedral:AxB, "
@@ -207,5 +224,19 @@ const Probe render_probes[] = {
      .in = "target$,f_ghz,az_deg,el_deg,range_m?,rx_az_deg?,rx_el_deg?",
      .out = "hh_dbsm,hv_dbsm,vh_dbsm,vv_dbsm,hh_re_m,hh_im_m,hv_re_m,hv_im_m,vh_re_m,vh_im_m,vv_re_m,vv_im_m",
      .open = rcs_probe_open, .row = rcs_probe_row, .close = rcs_probe_close},
+    {.name = "clutter",
+     .help = "what ground sends back to a radar, by etc/radar/clutter.csv: backscatter by area, shape of the texture (0: "
+             "Rayleigh), internal motion in wind (share of the power that is still, spread of the exponential spectrum, rms "
+             "Doppler width of the moving part), loss of a path through foliage (1 m), one way, and its backscatter by volume",
+     .in = "surface$,frequency_ghz,grazing_deg,wind_mps?,depth_m?",
+     .out = "sigma0_vv_db,sigma0_hh_db,sigma0_hv_db,rho,nu,texture_m,still,spread_mps,width_hz,foliage_db,volume_1_m",
+     .open = clutter_probe_open, .row = clutter_probe_row, .close = clutter_probe_close},
+    {.name = "clutter-cell",
+     .help = "scattering of one resolution cell of level ground, the square of side_m (1) that holds x, y, summed over its 16 "
+             "scatterers about its middle, m; relative: intensity over its mean. A row a place for the distribution, a row a "
+             "time or azimuth (of the antenna, clockwise from north) for the correlation",
+     .in = "surface$,frequency_ghz,grazing_deg,x_m,y_m,side_m?,azimuth_deg?,wind_mps?,t_s?,seed?",
+     .out = "vv_re,vv_im,hh_re,hh_im,hv_re,hv_im,relative",
+     .open = clutter_probe_open, .row = clutter_cell_probe_row, .close = clutter_probe_close},
 };
 const int render_probe_count = sizeof render_probes / sizeof *render_probes;

@@ -115,8 +115,8 @@ static bool part_k(ProbeValue *out, const NodeProbe *p, const Snapshot *snapshot
             wanted = patches->body_of_part[k] == b && strcmp(model->part[k].name, part) == 0;
         for (int i = patches->first_of_body[b]; i < patches->first_of_body[b + 1] && wanted; i++) {
             const double k = (double)snapshot->patch_k[snapshot->entity[0].first_patch + i];
-            sum_k += patches->patch[i].area_m2 * k;
-            area_m2 += patches->patch[i].area_m2;
+            sum_k += patch_open_m2(&patches->patch[i]) * k;
+            area_m2 += patch_open_m2(&patches->patch[i]);
             low_k = fmin(low_k, k), high_k = fmax(high_k, k);
         }
     }

@@ -90,6 +90,7 @@ static void print_parts(const Model *m)
         const ModelPart *part = &m->part[i];
         text_print(stdout, "  %3d %s on %s, %s, heat %s, %d triangles", i, part->name, m->node[part->node].name,
                    part->material, heat_role_name(part->role), part->triangle_count);
+        if (part->thickness_m > 0) text_print(stdout, ", skin %g mm", 1e3 * part->thickness_m);
         for (int state = 1; state < model_damage_states; state++) {
             if (part->damage_hidden >> state & 1)
                 text_print(stdout, ", damage %d: hidden", state);

@@ -12,6 +12,7 @@ static const double full_climb_mps = 1.2, full_turn_rps = 1;
 static const double burn_s = 2;             /* a TOW's launch and flight motors together: under 2 s */
 static const double flare_s = 4;            /* decoy flares of the MJU class burn for 3 .. 5 s; estimate */
 static const double wreck_s = 600;          /* fuel, rubber and ammunition of a vehicle burn out; estimate */
+static const float  smoulder = 0.1f;        /* of what flames give: a fire inside that is not seen; estimate */
 static const double most_fired_kg = 1e9;
 
 /* Two bits, 3 = destroyed, in the same place for every platform domain, for buildings, and (fatally injured) for
@@ -34,6 +35,7 @@ static void take(DriveState *state, const DriveEvidence *evidence, double t_s)
 {
     const bool platform = evidence->type.kind == dis_kind_platform,
                air = platform && evidence->type.domain == dis_domain_air;
+    const int  smoke = (int)(evidence->appearance >> dis_appearance_smoke_shift & 3); /* 1: a plume from it, 2: engine smoke */
     const bool works = !is_destroyed(evidence), was_moving = state->moving;
     const bool lives = evidence->type.kind == dis_kind_life_form || evidence->type.kind == dis_kind_cultural_feature;
 
@@ -46,13 +48,14 @@ static void take(DriveState *state, const DriveEvidence *evidence, double t_s)
     else if (air) state->engine.value = 1;
     else if (state->moving)
         state->engine.value = drives_idle + (1 - drives_idle) * load_of(evidence, state->speed_mps);
-    else if (platform && evidence->appearance >> dis_appearance_power_plant_bit & 1) state->engine.value = drives_idle;
+    else if (platform && (evidence->appearance >> dis_appearance_power_plant_bit & 1 || smoke & 2)) state->engine.value = drives_idle;
     else if (platform && t_s < state->moved_s + engine_after_stop_s)
         state->engine = (DriveUntil){drives_idle, state->moved_s + engine_after_stop_s};
 
     state->flying = air && works;
     state->alive = lives && works;
     state->flaming = platform && evidence->appearance >> dis_appearance_flaming_bit & 1;
+    state->smoulders = platform && smoke & 1 && (evidence->appearance >> dis_appearance_damage_shift & 3) != 0;
     state->destroyed = platform && !works; /* only machines burn out */
 }
 
@@ -85,7 +88,7 @@ void drives_at(EntityDrives *out, const DriveState *state, double t_s)
 {
     *out = (EntityDrives){.since_s = state->since_s, .engine = now(state->engine, t_s),
                           .speed_mps = (float)state->speed_mps, .flying = state->flying, .alive = state->alive,
-                          .burning = fmaxf(state->flaming, now(state->wreck, t_s)), .motor = now(state->motor, t_s),
+                          .burning = fmaxf(fmaxf(state->flaming, state->smoulders ? smoulder : 0), now(state->wreck, t_s)), .motor = now(state->motor, t_s),
                           .flare = now(state->flare, t_s), .fired_kg = {state->fired_kg[0], state->fired_kg[1]}};
 }
 

@@ -1,8 +1,11 @@
 /* entities/effects/drives.h: what an entity does that heats it: its engine, its motion, its shots, flames.
  *
  * Evidence is the appearance word *and* the observed motion: VR-Forces flies helicopters and drives tanks without ever
- * setting the power-plant bit. Between reports every drive is constant or ends at a known time, so drives at a time are a
- * function of the reports and of that time. What they do to temperatures: render/heat/vehicle_heat.h. */
+ * setting the power-plant bit. Engine smoke says that the engine runs, as of a vehicle that makes its own screen. A plume of
+ * smoke from one that is damaged says that it smoulders; from one that is not, a screen, it warms nothing. Flames need no smoke.
+ * Between reports every drive is constant or ends at a known time, so drives at a time are a function of the reports and of that
+ * time. What they do to temperatures: render/heat/vehicle_heat.h.
+ */
 #ifndef ENTITIES_EFFECTS_DRIVES_H
 #define ENTITIES_EFFECTS_DRIVES_H
 
@@ -16,7 +19,7 @@ typedef struct EntityDrives {
     float  speed_mps;    /* as reported; 0 when frozen */
     float  flying;       /* 1: an air platform that is not destroyed */
     float  alive;        /* 1: a life form alive; a building not destroyed */
-    float  burning;      /* 1: in flames, or destroyed before our eyes in the last ten minutes */
+    float  burning;      /* 1: in flames, or destroyed before our eyes in the last ten minutes; 0.1: damaged, a plume of smoke from it */
     float  motor;        /* 1: a munition's motor burns, in its first two seconds */
     float  flare;        /* 1: an expendable's grain burns, in its first four seconds */
     double fired_kg[2];  /* propellant of all its shots: of small guns (below drives_large_kg a shot), of large ones */
@@ -33,7 +36,7 @@ typedef struct DriveState {
     double     since_s, speed_mps;
     DriveUntil engine, motor, flare, wreck;
     double     moved_s;  /* when it was last known to move; -INFINITY: never */
-    bool       moving, flying, alive, flaming, destroyed;
+    bool       moving, flying, alive, flaming, smoulders, destroyed;
     double     fired_kg[2];
 } DriveState;
 

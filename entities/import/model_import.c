@@ -207,6 +207,7 @@ static void warn_unused(const Build *b)
     } list[] = {{&b->sidecar->drop, "drop"},
                 {&b->sidecar->node_materials, "node_materials"},
                 {&b->sidecar->roles, "roles"},
+                {&b->sidecar->thickness, "thickness_mm"},
                 {&b->sidecar->damage_hide, "damage.hide"},
                 {&b->sidecar->damage_materials, "damage.materials"},
                 {&b->sidecar->materials, "materials"}};
@@ -244,6 +245,9 @@ static void surface_part(Build *b, ModelPart *part, const ImportMesh *mesh)
 
     const SidecarRule *role = import_rule(&b->sidecar->roles, b->scene, place, mesh->node, 0);
     if (!role || !heat_role_find(&part->role, role->value)) part->role = import_role_guess(place[mesh->node].path);
+    const SidecarRule *skin = import_rule(&b->sidecar->thickness, b->scene, place, mesh->node, 0);
+    double             thickness_mm;
+    if (skin && text_to_double(&thickness_mm, skin->value)) part->thickness_m = 1e-3 * thickness_mm;
     for (int state = 1; state < model_damage_states; state++) {
         const SidecarRule *other = import_rule(&b->sidecar->damage_materials, b->scene, place, mesh->node, state);
         if (import_rule(&b->sidecar->damage_hide, b->scene, place, mesh->node, state))

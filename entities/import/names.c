@@ -101,7 +101,7 @@ void import_warn_names(const ImportScene *scene, const ImportPlace *place, const
         for (int p = 0; p < sidecar->joint[j].pattern_count && !sidecar->joint[j].each; p++)
             if (!strpbrk(sidecar->joint[j].pattern[p], "*?"))
                 warn_duplicate(scene, sidecar, &sidecar->joint[j], sidecar->joint[j].pattern[p], place);
-    const bool by_name = sidecar->joint_count || sidecar->roles.count || sidecar->node_materials.count ||
+    const bool by_name = sidecar->joint_count || sidecar->roles.count || sidecar->thickness.count || sidecar->node_materials.count ||
                          sidecar->drop.count || sidecar->damage_hide.count;
     for (int m = 0; m < scene->mesh_count; m++, meshes++) unnamed += is_unnamed(scene->node[scene->mesh[m].node].name);
     if (by_name && unnamed > 0)

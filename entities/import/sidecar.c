@@ -298,6 +298,7 @@ static Status top_own(const char **complaint, void *out, const Setting *row, Set
 {
     Sidecar *s = out;
     HeatRole role;
+    double   thickness_mm;
     switch (row->offset) {
     case offsetof(Sidecar, has_axes): return (s->has_axes = read_axes(s, value->text)) ? STATUS_OK : STATUS_BAD_VALUE;
     case offsetof(Sidecar, has_origin):
@@ -307,6 +308,10 @@ static Status top_own(const char **complaint, void *out, const Setting *row, Set
     case offsetof(Sidecar, roles):
         if (heat_role_find(&role, value->text)) break;
         *complaint = heat_roles();
+        return STATUS_BAD_VALUE;
+    case offsetof(Sidecar, thickness):
+        if (read_numbers(&thickness_mm, 1, value->text, 0.1, 1000)) break;
+        *complaint = "not a thickness in 0.1 .. 1000 mm";
         return STATUS_BAD_VALUE;
     }
     return add_rule(complaint, (SidecarRules *)(void *)((char *)out + row->offset), value, (int)row->low);
@@ -337,6 +342,8 @@ static const Setting top_keys[] = {
     {"node_materials", RULES(SETTING_MAP, node_materials, 0), NAMES, "", "by node, before materials"},
     {"roles", RULES(SETTING_MAP, roles, 0), "`pattern: name` for each, a row of etc/heat.csv", "",
      "what warms the part"},
+    {"thickness_mm", RULES(SETTING_MAP, thickness, 0), "`pattern: number` for each, 0.1 .. 1000 mm", "mm",
+     "of the part's skin, by node; else by role, as etc/heat.csv says"},
     DAMAGE("slight", 1), DAMAGE("moderate", 2), DAMAGE("destroyed", 3),
 };
 static const SettingList  lists[] = {{"joints", &joint_table, add_joint}};
@@ -352,8 +359,8 @@ Sidecar sidecar_default(void) { return (Sidecar){.crease_rad = crease_deg * rad_
 
 void sidecar_close(Sidecar *s)
 {
-    SidecarRules *rules[] = {&s->drop,  &s->materials,   &s->node_materials,
-                             &s->roles, &s->damage_hide, &s->damage_materials};
+    SidecarRules *rules[] = {&s->drop,      &s->materials,   &s->node_materials,  &s->roles,
+                             &s->thickness, &s->damage_hide, &s->damage_materials};
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) free(rules[i]->rule);
     free(s->joint);
     memset(s, 0, sizeof *s);

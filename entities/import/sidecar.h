@@ -14,6 +14,7 @@
  *     materials: {"*olive*": paint_olive, "*": paint_sand}    # of the file -> row of etc/materials.csv
  *     node_materials: {"window_*": glass_window}              # the same by part, before the above
  *     roles: {"hull*": hull, "*exhaust*": exhaust}           # heat, a row of etc/heat.csv
+ *     thickness_mm: {"hull*": 12}                            # of the skin; conductivity and density are the material's
  *     damage: {destroyed: {hide: [antenna], materials: {"*": metal_dark}}}
  *
  * A pattern is matched (`*` and `?`, slashes too, case counts) against a node's own name and against its
@@ -72,7 +73,7 @@ typedef struct Sidecar {
     double crease_rad;
     int    joint_count;
     SidecarJoint *joint;
-    SidecarRules  drop, materials, node_materials, roles, damage_hide, damage_materials;
+    SidecarRules  drop, materials, node_materials, roles, thickness, damage_hide, damage_materials;
 } Sidecar;
 
 /* What holds without a sidecar. */

@@ -28,7 +28,7 @@ typedef struct GroundBlow {
 typedef struct GroundStand {
     double   p_ecef[3];            /* the model's origin (base centre), as reported: not clamped to the ground */
     double   r_ecef_from_body[9];
-    float    low_m[3], high_m[3];  /* bounding box of the model at rest, body axes, from that origin */
+    float    low_m[3], high_m[3];  /* box of the model at rest without guns and rotors, body axes, from that origin */
     double   from_s, to_s;         /* exercise time; to_s INFINITY: still there */
     uint64_t owner;                /* entity_key + 1 */
     GroundBlow blow;

@@ -155,6 +155,27 @@ static double farthest(const Model *model, int index, Drum drum, int samples)
     return drum_reach(&drum);
 }
 
+void model_box_without(double low[3], double high[3], const Model *model, uint32_t without)
+{
+    bool any = false;
+    for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+    for (int p = 0; p < model->part_count; p++) {
+        const ModelPart *part = &model->part[p];
+        if (without >> part->role & 1) continue;
+        for (int c = 0; c < 3 * part->triangle_count; c++) {
+            double at[3], turned[3];
+            memcpy(at, model->vertex[model->triangle[part->first_triangle + c / 3][c % 3]], sizeof at);
+            for (int node = part->node; node >= 0; node = model->node[node].parent) {
+                m3_mul_v3(turned, model->node[node].r_parent_from_node, at);
+                v3_add(at, turned, model->node[node].p_parent);
+            }
+            for (int k = 0; k < 3; k++) low[k] = fmin(low[k], at[k]), high[k] = fmax(high[k], at[k]);
+            any = true;
+        }
+    }
+    if (!any) memcpy(low, model->box_low, sizeof model->box_low), memcpy(high, model->box_high, sizeof model->box_high);
+}
+
 Status model_measure(Model *model)
 {
     NodePose *pose = calloc((size_t)(model->node_count ? model->node_count : 1), sizeof *pose);

@@ -65,6 +65,7 @@ typedef struct ModelPart {
     int      node;
     char     material[32];      /* a row of etc/materials.csv */
     HeatRole role;
+    double   thickness_m;      /* of its skin; 0: by role */
     int      first_triangle, triangle_count;
     /* Effect of damage, by the damage state of the appearance ([0] is not used): hidden (bit
      * 1 << state), or of another material (empty: the same). Parametric models have none; a sidecar may. */
@@ -100,6 +101,8 @@ void model_pose(NodePose *pose, const Model *model, const double *value);
  * calls last. radius_m is exact for what is fixed, and an upper bound within a few per cent for what moves.
  * STATUS_NO_MEMORY: nothing is filled in. */
 Status model_measure(Model *model);
+/* Bounding box at rest of the parts whose role is not in `without` (1 << role); of all parts where no other is left. */
+void model_box_without(double low[3], double high[3], const Model *model, uint32_t without);
 void model_destroy(Model *model); /* frees and zeroes; accepts zeroes */
 
 /* Figures of a model at rest, m; 0: left open, in proportion to those that are given. length, width: of the bounding

@@ -11,6 +11,9 @@ static const double small_m2         = 0.01;  /* and those below this beside lar
 static const double prefer_axis      = 1.03;  /* an extent is longer when it is by this: x before y before z */
 static const double facing_least     = 1e-6;  /* mean normals shorter than this have no direction */
 static const double better           = 0.9;   /* what fits better by less, as mirrored cells may, fits as well */
+static const double open_least       = 0.01;  /* of a patch; with less of it outside, none of it is */
+static const double sinkage_m        = 0.02;  /* what is lower than this over the base, and faces the ground by a cosine of */
+static const double facing_ground    = 0.5;   /* this, touches it: a tyre of 0.5 m radius over 0.28 m; estimate */
 enum { candidates = 16 };                     /* points of a patch among which some are chosen */
 
 /* Ways to group parts, from fine to coarse. */
@@ -33,11 +36,11 @@ typedef struct Sums {
     double square;  /* area times squared distance from the origin */
 } Sums;
 
-static void add_piece(Sums *sums, const Facet *f, const Piece *piece)
+static void add_piece(Sums *sums, const Facet *f, const Piece *piece, double weight)
 {
     double o[3];
     facet_point(o, f, piece->at[0]);
-    const double area = f->area_m2 * piece->share;
+    const double area = weight * f->area_m2 * piece->share;
     sums->area_m2 += area;
     v3_add_scaled(sums->n, sums->n, area, f->n);
     for (int i = 1; i + 1 < piece->corners; i++) {
@@ -47,7 +50,7 @@ static void add_piece(Sums *sums, const Facet *f, const Piece *piece)
         v3_sub(one, a, o);
         v3_sub(other, b, o);
         v3_cross(cross, one, other);
-        const double part = 0.5 * v3_length(cross);
+        const double part = weight * 0.5 * v3_length(cross);
         v3_add(sum, a, b);
         v3_add(sum, sum, o);
         v3_add_scaled(sums->p, sums->p, part / 3, sum);
@@ -63,7 +66,8 @@ static bool belongs(const Model *m, const ModelPart *part, const Body *body, Gro
     if (part->role != body->role) return false;
     if (grouping == BY_ROLE) return true;
     return part->node == body->node &&
-           (grouping == BY_NODE_ROLE || strcmp(part->material, m->part[body->part].material) == 0);
+           (grouping == BY_NODE_ROLE || (strcmp(part->material, m->part[body->part].material) == 0 &&
+                                         part->thickness_m == m->part[body->part].thickness_m));
 }
 
 /* False: more than patches_most. */
@@ -229,7 +233,7 @@ static void sum_cells(Sums (*cell)[cells_most], Cutter *c)
         Piece     piece[cells_most];
         if (!facet_read(&f, c, t)) continue;
         const int pieces = facet_cut(piece, &f, &c->body[b]);
-        for (int i = 0; i < pieces; i++) add_piece(&cell[b][piece[i].cell], &f, &piece[i]);
+        for (int i = 0; i < pieces; i++) add_piece(&cell[b][piece[i].cell], &f, &piece[i], 1);
     }
     for (int b = 0; b < c->bodies; b++) {
         c->body[b].area_m2 = 0;
@@ -352,23 +356,44 @@ typedef struct Candidates {
     double p[candidates][3], n[candidates][3];
 } Candidates;
 
-static void add_candidates(Candidates *c, double patch_m2, const Facet *f, const Piece *piece)
+/* Whether a point of a triangle, in the axes of its body, is inside the model. */
+static bool is_hidden(const Cutter *c, int triangle, const double p[3], const double n[3])
 {
-    static const double golden = 0.6180339887498949;
+    const NodePose *pose = &c->pose[c->body[c->body_of_part[c->model->triangle_part[triangle]]].node];
+    double          p_body[3], n_body[3];
+    turned(p_body, pose, p);
+    m3_mul_v3(n_body, pose->r_body_from_node, n);
+    return hidden_at(c->hidden, triangle, p_body, n_body);
+}
+
+/* weight: of the triangle's area in patch_m2. Of a triangle that is partly hidden, points that are not, where some tries find them. */
+static void add_candidates(Candidates *c, double patch_m2, const Facet *f, const Piece *piece, double weight, const Cutter *cutter,
+                           int triangle)
+{
+    static const double golden = 0.6180339887498949, silver = 0.4142135623730950;
+    static const int    tries = 48;
     double whole = 0;
     for (int i = 1; i + 1 < piece->corners; i++) {
         const double *o = piece->at[0], *a = piece->at[i], *b = piece->at[i + 1];
         const double  share = (a[1] - o[1]) * (b[2] - o[2]) - (a[2] - o[2]) * (b[1] - o[1]);
-        const double  area  = f->area_m2 * fmax(0, share);
+        const double  area  = weight * f->area_m2 * fmax(0, share);
         for (; c->count < candidates; c->count++) {
             const double ahead = patch_m2 * (c->count + 0.5) / candidates - c->seen_m2 - whole;
             if (!(ahead < area)) break;
             /* uniform over the triangle, and inside it */
-            const double s = sqrt(clamp(ahead / area, 0.01, 0.99)), u = 0.05 + 0.9 * fmod(c->count * golden + 0.5, 1);
-            double       at[3];
-            for (int k = 0; k < 3; k++) at[k] = (1 - s) * o[k] + s * ((1 - u) * a[k] + u * b[k]);
-            facet_point(c->p[c->count], f, at);
-            memcpy(c->n[c->count], f->n, sizeof f->n);
+            bool found = false;
+            for (int t = 0; t < tries && !found; t++) {
+                const double s = sqrt(clamp(t ? fmod(ahead / area + t * silver, 1) : ahead / area, 0.01, 0.99));
+                const double u = 0.05 + 0.9 * fmod((c->count + t) * golden + 0.5, 1);
+                double       at[3];
+                for (int k = 0; k < 3; k++) at[k] = (1 - s) * o[k] + s * ((1 - u) * a[k] + u * b[k]);
+                facet_point(c->p[c->count], f, at);
+                memcpy(c->n[c->count], f->n, sizeof f->n);
+                found = !(weight < 1 && is_hidden(cutter, triangle, c->p[c->count], f->n));
+            }
+            if (found || c->count == 0) continue;
+            memcpy(c->p[c->count], c->p[c->count - 1], sizeof c->p[0]);
+            memcpy(c->n[c->count], c->n[c->count - 1], sizeof c->n[0]);
         }
         whole += area;
     }
@@ -435,13 +460,13 @@ static void choose_points(Patch *patch, const Candidates *c)
     }
 }
 
+/* sums: of what is not hidden, or of all where open_share is 0. */
 static void finish_patch(Patch *patch, const Body *body, const Sums *sums, const Candidates *c, const NodePose *pose)
 {
     static const double up_body[3] = {0, 0, -1};
     patch->node    = body->node;
     patch->part    = body->part;
     patch->role    = body->role;
-    patch->area_m2 = sums->area_m2;
     m3_tmul_v3(patch->n_node, pose->r_body_from_node, up_body);
     if (sums->area_m2 > 0) {
         double n[3];
@@ -456,27 +481,80 @@ static void finish_patch(Patch *patch, const Body *body, const Sums *sums, const
     }
 }
 
+/* Share of a triangle where a value, straight over it, is at least 0. */
+static double share_above(const double value[3])
+{
+    for (int k = 0; k < 3; k++) { /* one corner alone on its side of 0 */
+        const double a = value[k], b = value[(k + 1) % 3], c = value[(k + 2) % 3];
+        if ((a >= 0) == (b >= 0) || (b >= 0) != (c >= 0)) continue;
+        const double alone = a / (a - b) * (a / (a - c));
+        return a >= 0 ? alone : 1 - alone;
+    }
+    return value[0] >= 0;
+}
+
+/* Share of a triangle that lies on level ground under the base. */
+static double share_on_ground(const Facet *f, const NodePose *pose)
+{
+    double n_body[3], above[3];
+    m3_mul_v3(n_body, pose->r_body_from_node, f->n);
+    if (!(n_body[2] > facing_ground)) return 0;
+    for (int k = 0; k < 3; k++) {
+        double p_body[3];
+        turned(p_body, pose, f->p[k]);
+        above[k] = p_body[2] + sinkage_m;
+    }
+    return share_above(above);
+}
+
+/* Of one patch: all of it, and what is not hidden. */
+typedef struct PatchSums {
+    Sums   all, open;
+    double ground_m2;
+} PatchSums;
+
+static void measure_triangle(PatchSums *sums, Candidates *found, const Patches *out, const Cutter *c, int t, int pass)
+{
+    const Body     *body = &c->body[c->body_of_part[c->model->triangle_part[t]]];
+    const NodePose *pose = &c->pose[body->node];
+    Facet           f;
+    Piece           piece[cells_most];
+    if (!facet_read(&f, c, t)) return;
+    const int    pieces = facet_cut(piece, &f, body);
+    const double open = hidden_open(c->hidden, t), on_ground = pass == 0 ? open * share_on_ground(&f, pose) : 0;
+    for (int i = 0; i < pieces; i++) {
+        const int  patch = body->first + body->map[piece[i].cell];
+        PatchSums *s = &sums[patch];
+        if (pass == 0) {
+            add_piece(&s->all, &f, &piece[i], 1);
+            if (open > 0) add_piece(&s->open, &f, &piece[i], open);
+            s->ground_m2 += on_ground * f.area_m2 * piece[i].share;
+        } else if (out->patch[patch].open_share > 0) {
+            add_candidates(&found[patch], s->open.area_m2, &f, &piece[i], open, c, t);
+        } else {
+            add_candidates(&found[patch], s->all.area_m2, &f, &piece[i], 1, c, t); /* inside as a whole */
+        }
+    }
+}
+
 static Status measure_patches(Patches *out, const Cutter *c)
 {
-    Sums       *sums = calloc((size_t)out->count, sizeof *sums);
+    PatchSums  *sums = calloc((size_t)out->count, sizeof *sums);
     Candidates *found = calloc((size_t)out->count, sizeof *found);
     const bool  enough = sums && found;
-    for (int pass = 0; pass < 2 && enough; pass++)
-        for (int t = 0; t < c->model->triangle_count; t++) {
-            const Body *body = &c->body[c->body_of_part[c->model->triangle_part[t]]];
-            Facet       f;
-            Piece       piece[cells_most];
-            if (!facet_read(&f, c, t)) continue;
-            const int pieces = facet_cut(piece, &f, body);
-            for (int i = 0; i < pieces; i++) {
-                const int patch = body->first + body->map[piece[i].cell];
-                if (pass == 0) add_piece(&sums[patch], &f, &piece[i]);
-                else add_candidates(&found[patch], sums[patch].area_m2, &f, &piece[i]);
-            }
+    for (int pass = 0; pass < 2 && enough; pass++) {
+        for (int t = 0; t < c->model->triangle_count; t++) measure_triangle(sums, found, out, c, t, pass);
+        for (int i = 0; i < out->count && pass == 0; i++) {
+            const double share = sums[i].all.area_m2 > 0 ? sums[i].open.area_m2 / sums[i].all.area_m2 : 0;
+            out->patch[i].area_m2    = sums[i].all.area_m2;
+            out->patch[i].open_share = share >= open_least ? share : 0;
+            out->patch[i].ground_m2  = share >= open_least ? sums[i].ground_m2 : 0;
         }
+    }
     for (int b = 0; b < c->bodies && enough; b++)
         for (int i = c->body[b].first; i < c->body[b].first + c->body[b].count; i++)
-            finish_patch(&out->patch[i], &c->body[b], &sums[i], &found[i], &c->pose[c->body[b].node]);
+            finish_patch(&out->patch[i], &c->body[b], out->patch[i].open_share > 0 ? &sums[i].open : &sums[i].all, &found[i],
+                         &c->pose[c->body[b].node]);
     free(sums);
     free(found);
     return enough ? STATUS_OK : STATUS_NO_MEMORY;
@@ -496,7 +574,8 @@ void patches_destroy(Patches *patches)
 
 static Status fill(Patches *out, Cutter *c)
 {
-    Status status = cut_model(&out->count, c);
+    Status status = hidden_create(&c->hidden, c->model, c->pose);
+    if (status == STATUS_OK) status = cut_model(&out->count, c);
     if (status != STATUS_OK) return status;
     out->bodies        = c->bodies;
     out->patch         = calloc((size_t)out->count, sizeof *out->patch);
@@ -528,6 +607,7 @@ Status patches_create_of(Patches *out, const Model *model, int wanted)
     out->body_of_part = c->body_of_part;
     out->body_of_node = c->body_of_node;
     if (status != STATUS_OK) patches_destroy(out);
+    hidden_destroy(c->hidden);
     free(c->pose);
     free(c);
     return status;
@@ -559,7 +639,7 @@ double patches_value(const Patches *patches, const float *value, int part, const
         v3_sub(d, p, k->p_node);
         const double m2 = v3_dot(d, d), cosine = v3_dot(n, k->n_node), ahead = cosine > 0 ? cosine * cosine : 0;
         const double blunt = k->facing < one_way ? all_ways * (one_way - k->facing) / one_way : 0;
-        const double w = (k->facing * ahead * ahead + blunt) / (m2 + rounding * k->reach_m * k->reach_m + tiny_m2);
+        const double w = k->open_share * (k->facing * ahead * ahead + blunt) / (m2 + rounding * k->reach_m * k->reach_m + tiny_m2);
         const double more = (double)value[i] - base;
         sum += w * more;
         weights += w;

@@ -25,8 +25,12 @@ typedef struct Body {
     int      first, count;        /* its patches */
 } Body;
 
+/* What of a model's surface lies inside it: patches_hidden.c. */
+typedef struct Hidden Hidden;
+
 typedef struct Cutter {
     const Model *model;
+    Hidden      *hidden;
     int          bodies, wanted;
     Body         body[patches_most];
     int         *body_of_part;    /* [part_count] */
@@ -55,6 +59,14 @@ typedef struct Piece {
 bool facet_read(Facet *out, const Cutter *cutter, int triangle); /* false: no area */
 int  facet_cut(Piece piece[cells_most], const Facet *facet, const Body *body); /* how many */
 void facet_point(double p[3], const Facet *facet, const double at[3]);
+
+/* pose: of the nodes at rest. It keeps model, not pose. STATUS_NO_MEMORY. */
+Status hidden_create(Hidden **out, const Model *model, const NodePose *pose);
+void   hidden_destroy(Hidden *hidden); /* accepts NULL */
+/* Share of a triangle that is not inside parts in every pose, 0 .. 1. */
+double hidden_open(const Hidden *hidden, int triangle);
+/* Whether a point of a triangle, with its unit normal, is. */
+bool   hidden_at(Hidden *hidden, int triangle, const double p_body[3], const double n_body[3]);
 
 /* patch: finished but for links. STATUS_NO_MEMORY. */
 Status patches_link(Patches *out, const Cutter *cutter);

@@ -84,6 +84,18 @@ static void begin_stand(EntityTable *table, EntitySlot *slot, const double p_ece
     if (m->stand) ground_stand_until(table->ground, m->stand, stand.to_s);
 }
 
+static const ModelStand *stood_of(EntityTable *table, const EntitySlot *slot)
+{
+    static const uint32_t thin = UINT32_C(1) << HEAT_GUN | UINT32_C(1) << HEAT_ROTOR;
+    ModelStand           *s = &table->stood[slot->model];
+    double                low_m[3], high_m[3];
+    if (s->known) return s;
+    model_box_without(low_m, high_m, catalog_model(table->catalog, slot->model), thin);
+    for (int k = 0; k < 3; k++) s->low_m[k] = (float)low_m[k], s->high_m[k] = (float)high_m[k];
+    s->known = true;
+    return s;
+}
+
 /* Recorded with the first report that finds it old enough, or that ends it. */
 static void record_stand(EntityTable *table, const EntitySlot *slot, EntityMarks *m, double to_s, double t_s)
 {
@@ -95,14 +107,12 @@ static void record_stand(EntityTable *table, const EntitySlot *slot, EntityMarks
         return;
     }
     if (!(t_s - m->from_s >= stood_s)) return;
-    const Model *model = catalog_model(table->catalog, slot->model);
-    GroundStand  stand = {.from_s = m->from_s, .to_s = to_s, .owner = entity_key(slot->id) + 1, .blow = blow};
+    const ModelStand *box = stood_of(table, slot);
+    GroundStand       stand = {.from_s = m->from_s, .to_s = to_s, .owner = entity_key(slot->id) + 1, .blow = blow};
     memcpy(stand.p_ecef, m->p_ecef, sizeof stand.p_ecef);
     memcpy(stand.r_ecef_from_body, m->r_ecef_from_body, sizeof stand.r_ecef_from_body);
-    for (int k = 0; k < 3; k++) {
-        stand.low_m[k]  = (float)model->box_low[k];
-        stand.high_m[k] = (float)model->box_high[k];
-    }
+    memcpy(stand.low_m, box->low_m, sizeof stand.low_m);
+    memcpy(stand.high_m, box->high_m, sizeof stand.high_m);
     m->stand = ground_stand_open(table->ground, &stand);
 }
 

@@ -47,8 +47,10 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
     table->free_slot = calloc((size_t)slots, sizeof *table->free_slot);
     table->mark = calloc((size_t)slots, sizeof *table->mark);
     table->outlet = calloc((size_t)catalog_model_count(catalog), sizeof *table->outlet);
+    table->stood = calloc((size_t)catalog_model_count(catalog), sizeof *table->stood);
     table->model_roles = calloc((size_t)catalog_model_count(catalog), sizeof *table->model_roles);
-    if (!table->slot || !table->free_slot || !table->mark || !table->model_roles || !table->outlet) goto fail;
+    if (!table->slot || !table->free_slot || !table->mark || !table->model_roles || !table->outlet || !table->stood)
+        goto fail;
     status = entity_index_create(&table->index, slots);
     if (status == STATUS_OK) status = entity_ranks_create(&table->ranks, slots, config->capacity);
     if (status == STATUS_OK) status = tombstones_create(&table->tombstones, config->capacity, config->timeout_land_v7_s);
@@ -85,6 +87,7 @@ void entity_table_destroy(EntityTable *table)
     free(table->free_slot);
     free(table->model_roles);
     free(table->outlet);
+    free(table->stood);
     free(table);
 }
 

@@ -72,11 +72,18 @@ typedef struct ModelOutlet {
     ExhaustJet jet;
 } ModelOutlet;
 
+/* What of a standing model shades the ground: its box without guns and rotors, which are thin. */
+typedef struct ModelStand {
+    bool  known;
+    float low_m[3], high_m[3];
+} ModelStand;
+
 struct EntityTable {
     EntityTableConfig config;
     const Catalog    *catalog;
     uint32_t         *model_roles; /* [catalog_model_count] */
     ModelOutlet      *outlet;      /* [catalog_model_count], of models that entities have had */
+    ModelStand       *stood;       /* [catalog_model_count], of models that have stood */
     uint64_t          changes;     /* entity_table_changes */
     EntityIndex       index;
     EntityRanks      *ranks;       /* of all but the focus' own */

@@ -58,6 +58,8 @@ static double sun_share(const HeatScene *scene, const double sun_d_enu[3], const
     return slot < 0 ? 1 : 1 - shadow[slot] / 255.0;
 }
 
+static const double sea_freezes_k = 271.35;
+
 static Status ground_there(PlaceHeat *out, WorldVehicles *v, double unix_s, const double p_enu[3])
 {
     const World *world = v->world;
@@ -74,6 +76,9 @@ static Status ground_there(PlaceHeat *out, WorldVehicles *v, double unix_s, cons
     if (surface == SURFACE_NONE) surface = SURFACE_GRASS;
     out->ground_k   = heat_scene_ground_k(&lifted_k, v->scene, (int)surface, p_enu, up, 1);
     out->under_k    = (double)v->scene->now->table.hidden_k[v->scene->now->kind_of[surface]];
+    double       unlit_k;
+    out->water      = surface == SURFACE_WATER;
+    out->water_k    = fmax(heat_scene_ground_k(&unlit_k, v->scene, SURFACE_WATER, p_enu, up, 1), sea_freezes_k);
     out->ground_rho = 1 - (double)world->materials.material[world->materials.surface[surface]].solar_absorptance;
     out->direct_w_m2 *= sun_share(v->scene, out->sun_d_enu, p_enu);
     return STATUS_OK;
@@ -99,6 +104,7 @@ static Status place_there(PlaceHeat *out, const void *user, double unix_s, const
     out->longwave_w_m2 = w->longwave_w_m2 * pow(out->air_k / w->air.temp_k, 4);
     out->above_m      = isfinite(ground_m) ? p_enu[2] - ground_m : 0;
     out->ground_k = out->under_k = w->air.temp_k;
+    out->water_k  = fmax(w->air.temp_k, sea_freezes_k);
     memcpy(out->sun_d_enu, w->sun_d_enu, sizeof out->sun_d_enu);
     return present ? ground_there(out, v, unix_s, p_enu) : STATUS_OK;
 }

@@ -86,18 +86,19 @@ Status part_table_roles(PartTable *out, const char *path)
 
 /* ---- machines ----------------------------------------------------------------------------- */
 
-static Status read_machine(MachineRow *to, const Table *table, int row, const int column[7])
+static Status read_machine(MachineRow *to, const Table *table, int row, const int column[9])
 {
-    static const struct { double low, high; } range[6] = {{0, 1e6}, {1e-3, 1e7}, {200, 500}, {200, 2500}, {1e-3, 1e7}, {0, 1e7}};
-    static const double unit[6] = {1e3, 1e3, 1, 1, 1e3, 1};
-    double *const       value[6] = {&to->engine_w, &to->engine_j_k, &to->engine_k, &to->exhaust_k, &to->cabin_j_k, &to->cabin_w};
+    static const struct { double low, high; } range[8] = {{0, 1e6}, {1e-3, 1e7}, {200, 500}, {200, 2500}, {1e-3, 1e7}, {0, 1e7}, {0, 1e7}, {0, 1e5}};
+    static const double unit[8] = {1e3, 1e3, 1, 1, 1e3, 1, 1e3, 1};
+    double *const       value[8] = {&to->engine_w, &to->engine_j_k, &to->engine_k, &to->exhaust_k, &to->cabin_j_k, &to->cabin_w,
+                                   &to->fuel_j_k, &to->fuel_w_k};
     const char         *name = table_text(table, row, column[0]);
     if (strlen(name) == 0 || strlen(name) >= sizeof to->model) {
         log_error("heat: name of a model empty or too long: file=%s line=%d", table->path, table->line[row + 1]);
         return STATUS_BAD_VALUE;
     }
     strcpy(to->model, name);
-    for (int c = 0; c < 6; c++) {
+    for (int c = 0; c < 8; c++) {
         const Status status = table_number(value[c], table, row, column[c + 1], range[c].low, range[c].high);
         if (status != STATUS_OK) return status;
         *value[c] *= unit[c];
@@ -107,14 +108,15 @@ static Status read_machine(MachineRow *to, const Table *table, int row, const in
 
 Status part_table_machines(PartTable *out, const char *path)
 {
-    static const char *const names[7] = {"model", "engine_kw", "engine_kj_k", "engine_k", "exhaust_k", "cabin_kj_k", "cabin_w"};
+    static const char *const names[9] = {"model", "engine_kw", "engine_kj_k", "engine_k", "exhaust_k", "cabin_kj_k", "cabin_w",
+                                         "fuel_kj_k", "fuel_w_k"};
     Table  table = {0};
-    int    column[7];
+    int    column[9];
     Status status = table_open(&table, path);
 
     out->machines = 0;
     if (status != STATUS_OK) return status;
-    if (!columns_of(column, &table, names, 7)) status = STATUS_BAD_VALUE;
+    if (!columns_of(column, &table, names, 9)) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK && (table.rows < 1 || table.rows > part_table_most)) {
         log_error("heat: too few or too many rows: file=%s rows=%d want=1 .. %d", path, table.rows, (int)part_table_most);
         status = STATUS_BAD_VALUE;
@@ -146,5 +148,6 @@ MachineRow part_table_machine(const PartTable *table, const Model *model)
     MachineRow   row = table->machine[table->machines - 1];
     const double m3 = fmax(model->length_m * model->width_m * model->height_m, least_m3);
     row.engine_w *= m3, row.engine_j_k *= m3, row.cabin_j_k *= m3, row.cabin_w *= m3;
+    row.fuel_j_k *= m3, row.fuel_w_k *= m3;
     return row;
 }

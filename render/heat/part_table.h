@@ -22,7 +22,7 @@ typedef struct PartRow {
 
 typedef struct MachineRow {
     char   model[model_name_size];
-    double engine_w, engine_j_k, engine_k, exhaust_k, cabin_j_k, cabin_w;
+    double engine_w, engine_j_k, engine_k, exhaust_k, cabin_j_k, cabin_w, fuel_j_k, fuel_w_k; /* fuel_j_k 0: no node of it */
 } MachineRow;
 
 enum { part_table_most = 64 };

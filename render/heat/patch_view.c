@@ -25,9 +25,9 @@ static void stand(double o_enu[3], double n_enu[3], const PatchPose *pose, int p
     v3_add_scaled(o_enu, o_enu, leave_m, n_enu);
 }
 
-/* Direction k of patch_view_rays about a normal, by the cosine: rings of equal share, turned by the golden angle from
- * one to the next, and from point to point. */
-static void direction(double d_enu[3], const double n_enu[3], int k, int point)
+/* Direction k of some rays about a normal, by the cosine: rings of equal share, turned by the golden angle from one to the
+ * next, and from point to point. */
+static void direction(double d_enu[3], const double n_enu[3], int k, int point, int rays)
 {
     static const double golden_rad = 2.399963229728653;
     double              u[3], v[3];
@@ -37,7 +37,7 @@ static void direction(double d_enu[3], const double n_enu[3], int k, int point)
     v3_cross(u, n_enu, axis);
     v3_normalize(u, u);
     v3_cross(v, n_enu, u);
-    const double s2 = (k + 0.25 + 0.5 * (point % 2)) / patch_view_rays, turn = golden_rad * (k + 0.5 * point) + point;
+    const double s2 = (k + 0.25 + 0.5 * (point % 2)) / rays, turn = golden_rad * (k + 0.5 * point) + point;
     const double sine = sqrt(s2), cosine = sqrt(1 - s2);
     for (int i = 0; i < 3; i++) d_enu[i] = cosine * n_enu[i] + sine * (cos(turn) * u[i] + sin(turn) * v[i]);
 }
@@ -55,6 +55,7 @@ static int patch_met(const PatchPose *pose, const PartHit *hit, const double p_e
     m3_tmul_v3(b_node, node->r_enu_from_node, back);
     for (int i = patches->first_of_body[body]; i < patches->first_of_body[body + 1]; i++) {
         double away[3];
+        if (!(patches->patch[i].open_share > 0)) continue; /* it is inside */
         v3_sub(away, patches->patch[i].p_node, p_node);
         const double facing = v3_dot(patches->patch[i].n_node, b_node), d2 = v3_dot(away, away) + (facing > 0 ? 0 : 1e3);
         if (d2 < best) best = d2, found = i;
@@ -80,13 +81,14 @@ void patch_view_look(PatchView *out, const PatchPose *pose, int patch)
     uint16_t           met[patches_most] = {0};
     int                others = 0;
     *out = (PatchView){0};
+    if (!(pose->patches->patch[patch].open_share > 0)) return; /* inside: it meets nothing */
     for (int point = 0; point < patch_points; point++) {
         double o_enu[3], n_enu[3];
         stand(o_enu, n_enu, pose, patch, point);
         for (int k = 0; k < patch_view_rays; k++) {
             double  d_enu[3], at_enu[3];
             PartHit hit;
-            direction(d_enu, n_enu, k, point);
+            direction(d_enu, n_enu, k, point, patch_view_rays);
             const double t_m = parts_first_hit(&hit, pose->posed, o_enu, d_enu, INFINITY, false);
             if (t_m < INFINITY) {
                 v3_add_scaled(at_enu, o_enu, t_m, d_enu);
@@ -115,15 +117,85 @@ void patch_view_look(PatchView *out, const PatchPose *pose, int patch)
     for (int k = 0; k < out->partners; k++) out->share[k] *= each * (float)all / (float)kept;
 }
 
-void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3])
+/* The nearest of others that a ray meets; INFINITY: none. passes: those that may be. */
+static double meets_other(int *slot, PartHit *hit, const PatchPose *const *other, int others, const bool *passes,
+                          const double o_enu[3], const double d_enu[3])
+{
+    double nearest_m = INFINITY;
+    for (int n = 0; n < others; n++) {
+        PartHit      met;
+        double       to[3];
+        if (!passes[n]) continue;
+        v3_sub(to, other[n]->posed->centre_enu, o_enu);
+        const double along_m = v3_dot(to, d_enu), radius_m = other[n]->posed->radius_m;
+        if (v3_dot(to, to) - fmax(along_m, 0) * along_m > radius_m * radius_m) continue;
+        const double t_m = parts_first_hit(&met, other[n]->posed, o_enu, d_enu, nearest_m, false);
+        if (t_m < nearest_m) nearest_m = t_m, *slot = n, *hit = met;
+    }
+    return nearest_m;
+}
+
+void patch_view_near(NearView *out, const PatchPose *pose, int patch, const PatchPose *const *other, int others)
+{
+    enum { most = patch_points * patch_near_rays };
+    struct { int slot, patch, rays; } met[most];
+    bool passes[patch_others];
+    int  kinds = 0;
+    *out = (NearView){0};
+    for (int point = 0; point < patch_points; point++) {
+        double o_enu[3], n_enu[3];
+        bool   any = false;
+        stand(o_enu, n_enu, pose, patch, point);
+        for (int n = 0; n < others; n++) {
+            double to[3];
+            passes[n] = false;
+            if (!other[n]) continue;
+            v3_sub(to, other[n]->posed->centre_enu, o_enu);
+            passes[n] = v3_dot(to, n_enu) > -other[n]->posed->radius_m;
+            any |= passes[n];
+        }
+        for (int k = 0; k < patch_near_rays && any; k++) {
+            double  d_enu[3], at_enu[3];
+            PartHit hit = {0}, own;
+            int     slot = 0, at = 0;
+            direction(d_enu, n_enu, k, point, patch_near_rays);
+            const double t_m = meets_other(&slot, &hit, other, others, passes, o_enu, d_enu);
+            if (!(t_m < INFINITY)) continue;
+            const double own_m = parts_first_hit(&own, pose->posed, o_enu, d_enu, INFINITY, false);
+            if (own_m <= t_m) continue;
+            if (own_m < INFINITY) out->own++;
+            else if (d_enu[2] >= 0) out->sky++;
+            else if (meets_under(pose, o_enu, d_enu)) out->under++;
+            else out->ground++;
+            v3_add_scaled(at_enu, o_enu, t_m, d_enu);
+            const int found = patch_met(other[slot], &hit, at_enu, d_enu);
+            while (at < kinds && (met[at].slot != slot || met[at].patch != found)) at++;
+            if (at == kinds) met[kinds].slot = slot, met[kinds].patch = found, met[kinds++].rays = 0;
+            met[at].rays++;
+        }
+    }
+    while (out->partners < near_partners && out->partners < kinds) { /* as above */
+        int best = 0;
+        for (int i = 1; i < kinds; i++)
+            if (met[i].rays > met[best].rays) best = i;
+        out->slot[out->partners] = (uint8_t)met[best].slot, out->patch[out->partners] = (uint8_t)met[best].patch;
+        out->rays[out->partners++] = (uint8_t)met[best].rays;
+        met[best].rays = 0;
+    }
+}
+
+void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3], const PosedEntity *const *other, int others)
 {
     for (int i = 0; i < pose->patches->count; i++) {
-        double sum = 0;
-        for (int point = 0; point < patch_points && sun_d_enu[2] > 0; point++) {
+        double     sum = 0;
+        const bool outside = pose->patches->patch[i].open_share > 0;
+        for (int point = 0; point < patch_points && sun_d_enu[2] > 0 && outside; point++) {
             double o_enu[3], n_enu[3];
             stand(o_enu, n_enu, pose, i, point);
             const double cosine = v3_dot(n_enu, sun_d_enu);
-            if (cosine > 0 && !parts_occluded(pose->posed, o_enu, sun_d_enu, false)) sum += cosine;
+            bool         open = cosine > 0 && !parts_occluded(pose->posed, o_enu, sun_d_enu, false);
+            for (int n = 0; n < others && open; n++) open = !parts_occluded(other[n], o_enu, sun_d_enu, false);
+            if (open) sum += cosine;
         }
         out[i] = (float)(sum / patch_points);
     }
@@ -131,8 +203,9 @@ void patch_view_sun(float *out, const PatchPose *pose, const double sun_d_enu[3]
 
 void patch_view_gas(float *excess_k, float *speed_mps, const PatchPose *pose, int patch, const JetPath *path)
 {
-    double sum_k = 0, sum_mps = 0;
-    for (int point = 0; point < patch_points; point++) {
+    double     sum_k = 0, sum_mps = 0;
+    const bool outside = pose->patches->patch[patch].open_share > 0;
+    for (int point = 0; point < patch_points && outside; point++) {
         double  o_enu[3], n_enu[3], from_enu[3], way[3], here_k, here_mps;
         PartHit hit;
         stand(o_enu, n_enu, pose, patch, point);

@@ -1,37 +1,10 @@
 /* render/heat/vehicle_heat.c: see vehicle_heat.h. */
 #include "render/heat/vehicle_heat.h"
 
+#include "render/heat/vehicle_near.h"
+#include "render/heat/work_window.h"
+
 #include <stdlib.h>
-
-enum { window_ticks = 10 }; /* of 10 ms */
-
-typedef struct VehicleState {
-    DisEntityId  id;
-    double       since_s;
-    int          model;
-    double       t_s, next_s, span_s;
-    EntityDrives drives;
-    double       up_body[3], ahead_enu[3];
-    double       heat_in_j;
-    double      *temp_k;          /* [nodes] at t_s; zeroes: its past has not begun */
-    float       *now_k, *next_k;  /* [patches] at t_s, next_s */
-    double      *joint;           /* [model nodes]: as view saw them */
-    double       view_up_body[3];
-    PatchView   *view;            /* [patches] */
-    double       view_above_m;
-    int          looked, lived;   /* patches whose view is of that pose; steps of its past that are done */
-    bool         shown, changed;  /* its past is over; its drives are others than those of t_s */
-    double       seen_s, waits_s; /* first seen; since when work waits, INFINITY: none does */
-    NetworkLoad *load;            /* [nodes] at t_s */
-    int         *given;           /* [patches] of GivenHeat, -1: none */
-    double       ground_k;        /* in the open, at t_s */
-} VehicleState;
-
-/* An entity whose work waits. */
-typedef struct Due {
-    VehicleState *state;
-    int           index; /* in the snapshot */
-} Due;
 
 struct VehicleHeat {
     VehicleHeatConfig   config;
@@ -40,9 +13,11 @@ struct VehicleHeat {
     bool               *shaped;
     int                 models, count, room, waiting;
     VehicleState      **state, **was; /* [count], by id; of the tick before */
-    Due                *due;      /* [room]: of a tick */
-    double              tick, spent_us[window_ticks]; /* the last, of 10 ms; work of those up to it, in turn */
-    bool                started, metered; /* metered: after the first tick */
+    VehicleState      **due;      /* [room]: those whose work waits, of a tick */
+    NearBody           *body;     /* [room] */
+    NearScene           near;     /* of a tick */
+    bool                bodied;   /* its bodies are filled in */
+    WorkWindow          window;
     Arena              *arena;    /* of one entity's step */
     VehicleHeatCounters counters;
 };
@@ -68,12 +43,13 @@ Status vehicle_heat_create(VehicleHeat **out, const VehicleHeatConfig *config, c
 void vehicle_heat_destroy(VehicleHeat *h)
 {
     if (!h) return;
-    for (int i = 0; i < h->count; i++) free(h->state[i]);
+    for (int i = 0; i < h->count; i++) vehicle_state_destroy(h->state[i]);
     for (int m = 0; h->shape && m < h->models; m++) vehicle_shape_destroy(&h->shape[m]);
     arena_destroy(h->arena);
     free(h->state);
     free(h->was);
     free(h->due);
+    free(h->body);
     free(h->shape);
     free(h->shaped);
     free(h);
@@ -91,36 +67,12 @@ static Status need_shape(VehicleHeat *h, int m)
     return status;
 }
 
-/* One block: the state and all its arrays. */
-static VehicleState *new_state(const VehicleShape *shape, const Model *model)
-{
-    const size_t n = (size_t)shape->nodes, p = (size_t)shape->patches->count, j = (size_t)model->node_count;
-    const size_t doubles = sizeof(VehicleState) + n * sizeof(double) + j * sizeof(double) + n * sizeof(NetworkLoad);
-    char        *at = calloc(1, doubles + p * sizeof(PatchView) + 2 * p * sizeof(float) + p * sizeof(int));
-    if (!at) return NULL;
-    VehicleState *s = (VehicleState *)(void *)at;
-    s->temp_k = (double *)(void *)(at + sizeof *s);
-    s->joint  = s->temp_k + n;
-    s->load   = (NetworkLoad *)(void *)(s->joint + j);
-    s->view   = (PatchView *)(void *)(at + doubles);
-    s->now_k  = (float *)(void *)(s->view + p);
-    s->next_k = s->now_k + p;
-    s->given  = (int *)(void *)(s->next_k + p);
-    return s;
-}
-
-static size_t state_bytes(const VehicleShape *shape, const Model *model)
-{
-    const size_t n = (size_t)shape->nodes, p = (size_t)shape->patches->count;
-    return sizeof(VehicleState) + (n + (size_t)model->node_count) * sizeof(double) + n * sizeof(NetworkLoad) +
-           p * (sizeof(PatchView) + 2 * sizeof(float) + sizeof(int));
-}
-
 size_t vehicle_heat_bytes(const VehicleHeat *h)
 {
-    size_t bytes = sizeof *h + (size_t)h->room * sizeof *h->state;
+    size_t bytes = sizeof *h + (size_t)h->room * (sizeof *h->state + sizeof *h->body);
     for (int i = 0; i < h->count; i++)
-        bytes += state_bytes(&h->shape[h->state[i]->model], tracer_model(h->world.tracer, h->state[i]->model));
+        bytes += vehicle_state_bytes(h->state[i], &h->shape[h->state[i]->model],
+                                     tracer_model(h->world.tracer, h->state[i]->model));
     return bytes;
 }
 
@@ -128,10 +80,27 @@ bool vehicle_heat_waits(const VehicleHeat *h) { return h->waiting > 0; }
 
 const VehicleHeatCounters *vehicle_heat_counters(const VehicleHeat *h) { return &h->counters; }
 
+/* ---- work, in pieces ---------------------------------------------------------------------- */
+
+/* What pieces cost, microseconds of one core of 2024: units of account, so that every machine does the same work at the
+ * same time (`bench speed` holds them against the clock). */
+static const double look_us = 45; /* of a patch */
+static const double pose_us = 10, jet_us = 60; /* of a neighbour: posed; its exhaust followed */
+static const double near_us = 3, near_fill_us = 12; /* of a patch that looks at neighbours: at all; by what they fill */
+
+static double past_us(const VehicleShape *shape) { return 2.0 * shape->patches->count + 0.6 * shape->nodes; }
+
+static double advance_us(const VehicleShape *shape) { return 3.0 * shape->patches->count + shape->nodes; }
+
+/* Whether there is room for a piece. */
+static bool take(VehicleHeat *h, double us) { return work_window_take(&h->window, us, h->config.window_us); }
+
 /* ---- an entity now ------------------------------------------------------------------------ */
 
-static Status catch_moment(VehicleMoment *m, VehicleHeat *h, const Snapshot *snapshot, int index)
+static Status catch_moment(VehicleMoment *m, VehicleHeat *h, const VehicleState *s)
 {
+    const Snapshot       *snapshot = h->near.snapshot;
+    const int             index = s->index;
     const SnapshotEntity *e = &snapshot->entity[index];
     const LocalFrame     *frame = h->world.frame;
     static const double   origin[3] = {0, 0, 0};
@@ -141,8 +110,9 @@ static Status catch_moment(VehicleMoment *m, VehicleHeat *h, const Snapshot *sna
     m->lit   = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->lit);
     m->gas_k = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->gas_k);
     m->gas_mps = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->gas_mps);
+    m->sent_w_m2 = arena_alloc(h->arena, (size_t)m->shape->patches->count + 1, sizeof *m->sent_w_m2);
     m->posed.node = arena_alloc(h->arena, (size_t)parts_node_count(h->world.tracer, e->model) + 1, sizeof *m->posed.node);
-    if (!m->node || !m->joint || !m->lit || !m->gas_k || !m->gas_mps || !m->posed.node) return STATUS_NO_MEMORY;
+    if (!m->node || !m->joint || !m->lit || !m->gas_k || !m->gas_mps || !m->sent_w_m2 || !m->posed.node) return STATUS_NO_MEMORY;
     enu_from_ecef(m->p_enu, frame, e->p_ecef);
     m3_tmul_v3(m->v_enu_mps, frame->r_ecef_from_enu, e->v_ecef_mps);
     m3_tmul(m->pose.r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
@@ -162,11 +132,18 @@ static Status find_ground(VehicleMoment *m, const VehicleHeat *h, double unix_s,
     return status;
 }
 
-static Status find_place(VehicleMoment *m, const VehicleHeat *h, double unix_s, bool present)
+/* With its sun and its neighbours. t_s: exercise time. lately: engines run as now. */
+static Status find_place(VehicleMoment *m, VehicleHeat *h, const VehicleState *s, double t_s, bool present, bool lately)
 {
-    const Status status = find_ground(m, h, unix_s, present);
-    if (status == STATUS_OK) patch_view_sun(m->lit, &m->pose, m->place.sun_d_enu);
-    return status;
+    NearWork work = {0};
+    Status   status = find_ground(m, h, h->config.unix_s + t_s, present);
+    if (status == STATUS_OK && h->near.count > 1)
+        status = vehicle_near_moment(&work, m, &h->near, vehicle_state_find(h->state, h->count, s->id), t_s, !present, lately,
+                                     h->arena);
+    if (status != STATUS_OK) return status;
+    patch_view_sun(m->lit, &m->pose, m->place.sun_d_enu, m->shade, m->shades);
+    work_window_spend(&h->window, pose_us * work.poses + jet_us * work.jets);
+    return STATUS_OK;
 }
 
 /* ---- steps -------------------------------------------------------------------------------- */
@@ -211,7 +188,7 @@ static void take_shots(VehicleHeat *h, VehicleState *s, const EntityDrives *d)
         const int    body = shape->gun_body[large];
         if (!(kg > 0) || body < 0) continue;
         for (int i = shape->patches->first_of_body[body]; i < shape->patches->first_of_body[body + 1]; i++) {
-            const double j = kg * shape->skin[i].row.drive_value * shape->patches->patch[i].area_m2 / shape->gun_m2[large];
+            const double j = kg * shape->skin[i].row.drive_value * shape->skin[i].area_m2 / shape->gun_m2[large];
             const int    node = shape->skin[i].inner;
             s->temp_k[node] = fmin(s->temp_k[node] + j / shape->capacity_j_k[node], 2000);
             s->heat_in_j += j;
@@ -220,58 +197,6 @@ static void take_shots(VehicleHeat *h, VehicleState *s, const EntityDrives *d)
 }
 
 /* ---- states ------------------------------------------------------------------------------- */
-
-static const double turned_cos = 0.985; /* 10 degrees */
-
-static bool joints_moved(const VehicleMoment *m, const VehicleState *s)
-{
-    static const double moved = 0.17; /* rad, m */
-    for (int n = 0; n < m->model->node_count; n++) {
-        const ModelNode *node = &m->model->node[n];
-        if (node->spin_rps_moving != 0 || node->roll_radius_m > 0) continue;
-        if (fabs(m->joint[n] - s->joint[n]) > moved) return true;
-    }
-    return false;
-}
-
-static void up_in_body(double up_body[3], const double r_enu_from_body[9])
-{
-    for (int k = 0; k < 3; k++) up_body[k] = r_enu_from_body[6 + k];
-}
-
-static void ahead_in_enu(double ahead_enu[3], const double r_enu_from_body[9])
-{
-    for (int k = 0; k < 3; k++) ahead_enu[k] = r_enu_from_body[3 * k];
-}
-
-/* Whether the views of an entity are of this pose. */
-static bool sees_as(const VehicleState *s, const VehicleMoment *m)
-{
-    static const double near_m = 0.3, high_m = 1.5; /* above it nothing is under it: patch_view.c */
-    double              up_body[3];
-    up_in_body(up_body, m->pose.r_enu_from_body);
-    const double above_m = fmin(m->place.above_m, high_m), viewed_m = fmin(s->view_above_m, high_m);
-    return v3_dot(up_body, s->view_up_body) >= turned_cos && fabs(above_m - viewed_m) <= near_m && !joints_moved(m, s);
-}
-
-static void stay(VehicleState *s, const VehicleMoment *m, double t_s)
-{
-    s->t_s    = t_s;
-    s->drives = m->entity->drives;
-    s->ground_k = m->place.ground_k;
-    ahead_in_enu(s->ahead_enu, m->pose.r_enu_from_body);
-    up_in_body(s->up_body, m->pose.r_enu_from_body);
-}
-
-static bool differs(double a, double b, double share, double least) { return fabs(a - b) > fmax(share * fmax(fabs(a), fabs(b)), least); }
-
-/* Whether what heats it has changed so that its step must end. */
-static bool drives_changed(const EntityDrives *a, const EntityDrives *b)
-{
-    return differs((double)a->engine, (double)b->engine, 0, 0.05) || differs((double)a->speed_mps, (double)b->speed_mps, 0.1, 1) ||
-           a->burning != b->burning || a->motor != b->motor || a->flare != b->flare || a->alive != b->alive ||
-           a->flying != b->flying || a->fired_kg[0] != b->fired_kg[0] || a->fired_kg[1] != b->fired_kg[1];
-}
 
 /* Where its present loads lead it until its next own time. */
 static Status predict(VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
@@ -284,51 +209,23 @@ static Status predict(VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
     s->next_s = s->t_s + s->span_s;
     read_surface(s->now_k, m->shape, s->temp_k);
     read_surface(s->next_k, m->shape, temp_k);
+    memcpy(s->sent_w_m2, m->sent_w_m2, (size_t)m->shape->patches->count * sizeof *s->sent_w_m2);
     return STATUS_OK;
 }
 
-/* ---- work, in pieces ---------------------------------------------------------------------- */
+/* ---- the past ----------------------------------------------------------------------------- */
 
 /* A day without its engine, an hour as it is now: steps that shorten towards the present. */
-static const double past_span_s[] = {10800, 10800, 10800, 10800, 7200, 7200, 7200, 3600, 3600, 3600, 3600, 3600, 1200, 1200,
-                                     600, 600};
+static const double past_span_s[] = {10800, 10800, 10800, 10800, 7200, 7200, 7200, 3600, 3600, 3600, 3600, 3600, 120, 480,
+                                     900, 900, 600, 300, 300};
 enum { past_steps = sizeof past_span_s / sizeof *past_span_s };
 
-/* What pieces cost, microseconds of one core of 2024: units of account, so that every machine does the same work at the
- * same time (`bench speed` holds them against the clock). */
-static const double look_us = 45; /* of a patch */
-
-static double past_us(const VehicleShape *shape) { return 2.0 * shape->patches->count + 0.6 * shape->nodes; }
-
-static double advance_us(const VehicleShape *shape) { return 3.0 * shape->patches->count + shape->nodes; }
-
-static int window_place(double tick) { return ((int)fmod(tick, window_ticks) + window_ticks) % window_ticks; }
-
-static void open_window(VehicleHeat *h, double t_s)
-{
-    const double tick = floor(t_s * 100 + 0.5);
-    h->metered = h->metered || (h->started && tick != h->tick);
-    h->started = true;
-    if (tick - h->tick >= window_ticks) memset(h->spent_us, 0, sizeof h->spent_us);
-    for (double k = fmax(h->tick + 1, tick - window_ticks + 1); k <= tick; k++) h->spent_us[window_place(k)] = 0;
-    h->tick = tick;
-}
-
-/* Whether there is room for a piece in this tick; in an empty window there always is. */
-static bool take(VehicleHeat *h, double us)
-{
-    double spent_us = 0;
-    for (int k = 0; k < window_ticks; k++) spent_us += h->spent_us[k];
-    if (h->metered && spent_us > 0 && spent_us + us > h->config.window_us) return false;
-    h->spent_us[window_place(h->tick)] += us;
-    return true;
-}
-
 /* Drives d for span_s, from loads of the middle of that. */
-static Status live_through(VehicleHeat *h, VehicleState *s, VehicleMoment *m, const EntityDrives *d, double middle_s, double span_s)
+static Status live_through(VehicleHeat *h, VehicleState *s, VehicleMoment *m, const EntityDrives *d, double middle_s,
+                           double span_s, bool lately)
 {
     double      *scratch = arena_alloc(h->arena, (size_t)m->shape->nodes, sizeof *scratch);
-    const Status status = scratch ? find_place(m, h, h->config.unix_s + middle_s, false) : STATUS_NO_MEMORY;
+    const Status status = scratch ? find_place(m, h, s, middle_s, false, lately) : STATUS_NO_MEMORY;
     const size_t octets = (size_t)m->shape->nodes * sizeof *scratch;
     if (status != STATUS_OK) return status;
     if (!(s->temp_k[0] > 0))
@@ -363,7 +260,8 @@ static Status live_since(VehicleHeat *h, VehicleState *s, VehicleMoment *m, cons
 {
     const double since_s = kept->unix_s - h->config.unix_s, span_s = (s->seen_s - since_s) / past_steps;
     if (!(s->temp_k[0] > 0)) memcpy(s->temp_k, kept->temp_k, (size_t)kept->nodes * sizeof *s->temp_k);
-    const Status status = span_s > 0 ? live_through(h, s, m, &s->drives, since_s + (s->lived + 0.5) * span_s, span_s) : STATUS_OK;
+    const double middle_s = since_s + (s->lived + 0.5) * span_s;
+    const Status status = span_s > 0 ? live_through(h, s, m, &s->drives, middle_s, span_s, true) : STATUS_OK;
     s->lived++;
     return status;
 }
@@ -382,7 +280,7 @@ static Status live_on(VehicleHeat *h, VehicleState *s, VehicleMoment *m)
     const double span_s = past_span_s[s->lived] / parts;
     if (before_s <= now_s) d = s->drives;
     for (int k = 0; k < parts && status == STATUS_OK; k++)
-        status = live_through(h, s, m, &d, s->seen_s - before_s + (k + 0.5) * span_s, span_s);
+        status = live_through(h, s, m, &d, s->seen_s - before_s + (k + 0.5) * span_s, span_s, before_s <= now_s);
     s->lived++;
     return status;
 }
@@ -390,14 +288,15 @@ static Status live_on(VehicleHeat *h, VehicleState *s, VehicleMoment *m)
 /* The past is over: it is shown from now on. */
 static Status appear(VehicleHeat *h, VehicleState *s, VehicleMoment *m, double t_s)
 {
-    const Status status = find_place(m, h, h->config.unix_s + t_s, true);
+    const Status status = find_place(m, h, s, t_s, true, true);
     if (status != STATUS_OK) return status;
+    vehicle_state_remember(s, m->shape->patches->count, t_s);
     if (snapshot_is_short_lived(m->entity)) {
         const double speed_mps = v3_length(m->v_enu_mps);
         for (int n = 0; n < m->shape->nodes; n++)
             s->temp_k[n] = m->place.air_k + vehicle_recovery_k(speed_mps);
     }
-    stay(s, m, t_s);
+    vehicle_state_stay(s, m, t_s);
     vehicle_loads(s->load, m, s->view, s->temp_k, &s->drives);
     s->span_s = h->config.first_step_s;
     s->shown  = true;
@@ -409,13 +308,10 @@ static Status appear(VehicleHeat *h, VehicleState *s, VehicleMoment *m, double t
 static void start_looking(VehicleState *s, const VehicleMoment *m, const VehicleHeat *h)
 {
     const int patches = m->shape->patches->count;
-    s->looked = 0;
-    s->view_above_m = m->place.above_m;
-    up_in_body(s->view_up_body, m->pose.r_enu_from_body);
-    memcpy(s->joint, m->joint, (size_t)m->model->node_count * sizeof *s->joint);
+    vehicle_state_look(s, m);
     for (int i = 0; i < h->count; i++) {
         const VehicleState *o = h->state[i];
-        if (o == s || o->model != s->model || o->looked < patches || !sees_as(o, m)) continue;
+        if (o == s || o->model != s->model || o->looked < patches || !vehicle_state_sees(o, m)) continue;
         memcpy(s->view, o->view, (size_t)patches * sizeof *s->view);
         s->looked = patches;
         return;
@@ -428,28 +324,43 @@ static Status advance(VehicleHeat *h, VehicleState *s, VehicleMoment *m, double 
     const int           nodes = m->shape->nodes;
     NetworkLoad        *load = arena_alloc(h->arena, (size_t)nodes, sizeof *load);
     double             *scratch = arena_alloc(h->arena, (size_t)nodes, sizeof *scratch);
-    const Status        status = load && scratch ? find_place(m, h, h->config.unix_s + t_s, true) : STATUS_NO_MEMORY;
+    const Status        status = load && scratch ? find_place(m, h, s, t_s, true, true) : STATUS_NO_MEMORY;
     if (status != STATUS_OK) return status;
+    vehicle_state_remember(s, m->shape->patches->count, t_s);
     if (!s->changed) vehicle_loads(load, m, s->view, s->temp_k, d);
     step(h, s, s->temp_k, &s->heat_in_j, &s->drives, s->load, s->changed ? s->load : load, t_s - s->t_s, scratch);
     take_shots(h, s, d);
-    stay(s, m, t_s);
+    vehicle_state_stay(s, m, t_s);
     vehicle_loads(s->load, m, s->view, s->temp_k, d);
     s->span_s = s->changed ? h->config.first_step_s : fmin(2 * s->span_s, h->config.step_s);
     s->changed = false;
-    if (!sees_as(s, m)) start_looking(s, m, h);
+    if (!vehicle_state_sees(s, m)) start_looking(s, m, h);
     return predict(h, s, m);
 }
 
-/* As much as there is room for of what waits: a step, views, the past. */
-static Status work_on(VehicleHeat *h, VehicleState *s, const Snapshot *snapshot, int index)
+/* What its neighbours take of its views. False: there is no room for all of it. */
+static bool look_about(Status *status, VehicleHeat *h, VehicleState *s, const VehicleMoment *m)
 {
-    const double        t_s = snapshot->t_s;
+    const PatchPose *pose[near_seen_most];
+    if (*status != STATUS_OK || !vehicle_near_waits(s, m->shape)) return true;
+    if (!take(h, pose_us * s->near->next_seen)) return false;
+    *status = vehicle_near_pose(pose, &h->near, s, m, h->arena);
+    while (*status == STATUS_OK && vehicle_near_waits(s, m->shape)) {
+        if (!take(h, near_us + near_fill_us * s->near->fill)) return false;
+        vehicle_near_look(s, m, pose);
+    }
+    return true;
+}
+
+/* As much as there is room for of what waits: a step, views, the past. */
+static Status work_on(VehicleHeat *h, VehicleState *s)
+{
+    const double        t_s = h->near.snapshot->t_s;
     const VehicleShape *shape = &h->shape[s->model];
     const int           patches = shape->patches->count;
     VehicleMoment              m;
     arena_reset(h->arena);
-    Status status = catch_moment(&m, h, snapshot, index);
+    Status status = catch_moment(&m, h, s);
     if (status == STATUS_BAD_VALUE) s->waits_s = INFINITY; /* not drawable */
     if (status != STATUS_OK) return status == STATUS_BAD_VALUE ? STATUS_OK : status;
     if (s->shown && (s->changed || t_s >= s->next_s)) {
@@ -463,6 +374,7 @@ static Status work_on(VehicleHeat *h, VehicleState *s, const Snapshot *snapshot,
         if (!take(h, look_us)) return STATUS_OK;
         patch_view_look(&s->view[s->looked], &m.pose, s->looked);
     }
+    if (!look_about(&status, h, s, &m)) return STATUS_OK;
     const int lives = snapshot_is_short_lived(m.entity) ? 0 : past_steps;
     while (status == STATUS_OK && !s->shown && s->lived < lives) {
         if (!take(h, past_us(shape))) return STATUS_OK;
@@ -476,52 +388,61 @@ static Status work_on(VehicleHeat *h, VehicleState *s, const Snapshot *snapshot,
     return status;
 }
 
-/* Whether an entity has work to wait for. */
-static bool is_due(VehicleState *s, const VehicleHeat *h, const SnapshotEntity *e, double t_s)
+static void need_bodies(VehicleHeat *h)
 {
-    double r_enu_from_body[9], ahead_enu[3], up_body[3];
+    if (!h->bodied) near_scene_bodies(&h->near);
+    h->bodied = true;
+}
+
+/* Its neighbours, once a second. */
+static Status check_neighbours(VehicleHeat *h, int at)
+{
+    VehicleState *s = h->state[at];
+    const double  t_s = h->near.snapshot->t_s;
+    PlaceHeat     place;
+    bool          changed;
+    int           left_out;
+    if ((h->count < 2 && !s->near) || t_s - s->checked_s < 1) return STATUS_OK;
+    s->checked_s = t_s;
+    need_bodies(h);
+    Status status = h->config.place(&place, h->config.user, h->config.unix_s + t_s, h->body[at].p_enu, false);
+    if (status == STATUS_OK) status = vehicle_near_check(&changed, &left_out, &h->near, at, place.sun_d_enu);
+    if (status != STATUS_OK) return status;
+    s->changed = s->changed || (changed && s->shown);
+    h->counters.neighbours_left_out += (uint64_t)left_out;
+    return STATUS_OK;
+}
+
+/* Whether an entity has work to wait for. */
+static bool is_due(VehicleState *s, const VehicleHeat *h)
+{
+    const SnapshotEntity *e = &h->near.snapshot->entity[s->index];
+    const VehicleShape   *shape = &h->shape[s->model];
+    double                r_enu_from_body[9];
     if (!s->shown) return true;
     m3_tmul(r_enu_from_body, h->world.frame->r_ecef_from_enu, e->r_ecef_from_body);
-    ahead_in_enu(ahead_enu, r_enu_from_body);
-    up_in_body(up_body, r_enu_from_body);
-    s->changed = s->changed || drives_changed(&s->drives, &e->drives) || v3_dot(ahead_enu, s->ahead_enu) < turned_cos ||
-                 v3_dot(up_body, s->up_body) < turned_cos;
-    return s->changed || t_s >= s->next_s || s->looked < h->shape[s->model].patches->count;
+    s->changed = s->changed || vehicle_state_changed(s, e, r_enu_from_body);
+    return s->changed || h->near.snapshot->t_s >= s->next_s || s->looked < shape->patches->count ||
+           vehicle_near_waits(s, shape);
 }
 
 /* Those that have waited longest, first. */
 static int by_wait(const void *a, const void *b)
 {
-    const VehicleState *p = ((const Due *)a)->state, *q = ((const Due *)b)->state;
+    const VehicleState *p = *(VehicleState *const *)a, *q = *(VehicleState *const *)b;
     if (p->waits_s != q->waits_s) return p->waits_s < q->waits_s ? -1 : 1;
     return dis_entity_id_compare(p->id, q->id);
 }
 
-/* Of all parts of a body, what names one the closest. */
-static void find_given(VehicleState *s, const VehicleHeat *h)
-{
-    const Patches *patches = h->shape[s->model].patches;
-    const Model   *model = tracer_model(h->world.tracer, s->model);
-    int            best[patches_most];
-    for (int i = 0; i < patches->count; i++) s->given[i] = best[i] = -1;
-    for (int part = 0; h->world.given && part < model->part_count; part++) {
-        const int body = patches->body_of_part[part], first = patches->first_of_body[body], end = patches->first_of_body[body + 1];
-        int       rank;
-        const int found = given_heat_find(&rank, h->world.given, s->id, model, part);
-        if (first == end || rank <= best[first]) continue;
-        best[first] = rank;
-        for (int i = first; i < end; i++) s->given[i] = found;
-    }
-}
-
 static Status first_sight(VehicleState **out, const VehicleHeat *h, const SnapshotEntity *e, double t_s)
 {
-    VehicleState *s = new_state(&h->shape[e->model], tracer_model(h->world.tracer, e->model));
+    const Model  *model = tracer_model(h->world.tracer, e->model);
+    VehicleState *s = vehicle_state_create(&h->shape[e->model], model);
     if (!s) return STATUS_NO_MEMORY;
     s->id = e->id, s->since_s = e->drives.since_s, s->model = e->model;
     s->drives = e->drives;
     s->seen_s = t_s, s->waits_s = INFINITY, s->looked = -1;
-    find_given(s, h);
+    vehicle_state_given(s, h->world.given, h->shape[s->model].patches, model);
     *out = s;
     return STATUS_OK;
 }
@@ -533,10 +454,12 @@ static Status make_room(VehicleHeat *h, int count)
     VehicleState **larger = realloc(h->state, (size_t)room * sizeof *larger);
     if (larger) h->state = larger;
     VehicleState **also = larger ? realloc(h->was, (size_t)room * sizeof *also) : NULL;
-    Due *due = also ? realloc(h->due, (size_t)room * sizeof *due) : NULL;
     if (also) h->was = also;
-    if (!due) return STATUS_NO_MEMORY;
-    h->due = due, h->room = room;
+    VehicleState **due = also ? realloc(h->due, (size_t)room * sizeof *due) : NULL;
+    if (due) h->due = due;
+    NearBody *body = due ? realloc(h->body, (size_t)room * sizeof *body) : NULL;
+    if (!body) return STATUS_NO_MEMORY;
+    h->body = body, h->room = room;
     return STATUS_OK;
 }
 
@@ -545,45 +468,62 @@ static bool is_same(const VehicleState *s, const SnapshotEntity *e)
     return s->since_s == e->drives.since_s && s->model == e->model;
 }
 
-Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
+/* States of the snapshot's entities, by id: those of before, and new ones. */
+static Status meet(VehicleHeat *h, const Snapshot *snapshot)
 {
-    const double began_s = wall_clock_s();
-    Status       status = make_room(h, snapshot->count < h->config.capacity ? snapshot->count : h->config.capacity);
-    if (status != STATUS_OK) return status;
     VehicleState **was = h->was;
     const int      before = h->count;
+    Status         status = STATUS_OK;
+    int            at = 0;
     if (before > 0) memcpy(was, h->state, (size_t)before * sizeof *was);
     h->count = 0;
-    int at = 0, due = 0;
     for (int i = 0; i < snapshot->count; i++) {
         const SnapshotEntity *e = &snapshot->entity[i];
         VehicleState         *s = NULL;
-        while (at < before && dis_entity_id_compare(was[at]->id, e->id) < 0) free(was[at++]);
+        while (at < before && dis_entity_id_compare(was[at]->id, e->id) < 0) vehicle_state_destroy(was[at++]);
         if (at < before && dis_entity_id_compare(was[at]->id, e->id) == 0) {
             s = was[at++];
-            if (!is_same(s, e)) free(s), s = NULL;
+            if (!is_same(s, e)) vehicle_state_destroy(s), s = NULL;
         }
         if (e->model < 0 || e->model >= h->models || !catalog_has_shape(h->world.catalog, e->model) ||
             h->count == h->config.capacity) {
             h->counters.left_out += h->count == h->config.capacity;
-            free(s);
+            vehicle_state_destroy(s);
             continue;
         }
         if (!s && status == STATUS_OK) status = need_shape(h, e->model);
         if (!s && status == STATUS_OK && h->shape[e->model].patches->count > 0) status = first_sight(&s, h, e, snapshot->t_s);
         if (!s) continue;
+        s->index = i;
         h->state[h->count++] = s;
-        if (!is_due(s, h, e, snapshot->t_s)) continue;
-        s->waits_s = fmin(s->waits_s, snapshot->t_s);
-        h->due[due++] = (Due){s, i};
     }
-    while (at < before) free(was[at++]);
-    if (due > 1) qsort(h->due, (size_t)due, sizeof *h->due, by_wait);
-    open_window(h, snapshot->t_s);
+    while (at < before) vehicle_state_destroy(was[at++]);
+    return status;
+}
+
+Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
+{
+    const double began_s = wall_clock_s(), t_s = snapshot->t_s;
+    Status       status = make_room(h, snapshot->count < h->config.capacity ? snapshot->count : h->config.capacity);
+    int          due = 0;
+    if (status != STATUS_OK) return status;
+    status  = meet(h, snapshot);
+    h->near = (NearScene){snapshot, h->world.tracer, h->shape, h->world.frame, h->state, h->body, h->count};
+    h->bodied = false;
+    for (int i = 0; i < h->count && status == STATUS_OK; i++) {
+        VehicleState *s = h->state[i];
+        status = check_neighbours(h, i);
+        if (!is_due(s, h)) continue;
+        s->waits_s = fmin(s->waits_s, t_s);
+        h->due[due++] = s;
+    }
+    if (due > 1) qsort(h->due, (size_t)due, sizeof(VehicleState *), by_wait);
+    work_window_open(&h->window, t_s);
     h->waiting = 0;
     for (int i = 0; i < due && status == STATUS_OK; i++) {
-        if (h->waiting == 0) status = work_on(h, h->due[i].state, snapshot, h->due[i].index);
-        h->waiting += h->due[i].state->waits_s < INFINITY;
+        need_bodies(h);
+        if (h->waiting == 0) status = work_on(h, h->due[i]);
+        h->waiting += h->due[i]->waits_s < INFINITY;
     }
     const double spent_s = wall_clock_s() - began_s;
     h->counters.spent_s += spent_s;
@@ -593,21 +533,15 @@ Status vehicle_heat_tick(VehicleHeat *h, const Snapshot *snapshot)
 
 static const VehicleState *find_state(const VehicleHeat *h, DisEntityId id)
 {
-    int low = 0, high = h->count;
-    while (low < high) {
-        const int middle = low + (high - low) / 2, order = dis_entity_id_compare(h->state[middle]->id, id);
-        if (order == 0) return h->state[middle];
-        if (order < 0) low = middle + 1;
-        else high = middle;
-    }
-    return NULL;
+    const int at = vehicle_state_find(h->state, h->count, id);
+    return at < 0 ? NULL : h->state[at];
 }
 
-/* By area. */
+/* By outer area. */
 static double mean_of(const Patches *p, const float *value)
 {
     double sum = 0, m2 = 0;
-    for (int i = 0; i < p->count; i++) sum += p->patch[i].area_m2 * (double)value[i], m2 += p->patch[i].area_m2;
+    for (int i = 0; i < p->count; i++) sum += patch_open_m2(&p->patch[i]) * (double)value[i], m2 += patch_open_m2(&p->patch[i]);
     return m2 > 0 ? sum / m2 : 0;
 }
 
@@ -625,14 +559,18 @@ Status vehicle_heat_show(const VehicleHeat *h, Snapshot *snapshot, Arena *arena)
         e->first_patch = -1, e->patches = 0, e->dt_k = 0;
         if (!s || !s->shown || !is_same(s, e)) continue;
         const int   count = h->shape[s->model].patches->count;
-        const float share = s->next_s > s->t_s ? (float)clamp((snapshot->t_s - s->t_s) / (s->next_s - s->t_s), 0, 1) : 0;
         e->first_patch = snapshot->patch_count;
-        for (int k = 0; k < count; k++) patch_k[e->first_patch + k] = s->now_k[k] + share * (s->next_k[k] - s->now_k[k]);
         for (int k = 0; k < count; k++)
-            if (s->given[k] >= 0) patch_k[e->first_patch + k] = (float)given_heat_k(h->world.given, s->given[k], snapshot->t_s);
+            patch_k[e->first_patch + k] = (float)vehicle_state_k(s, h->world.given, k, snapshot->t_s);
         e->patches = count;
-        e->dt_k = (float)(mean_of(h->shape[s->model].patches, patch_k + e->first_patch) - s->ground_k);
         snapshot->patch_count += count;
+        double p_enu[3];
+        enu_from_ecef(p_enu, h->world.frame, e->p_ecef);
+        if (!v3_is_finite(p_enu)) continue;
+        PlaceHeat    place;
+        const Status status = h->config.place(&place, h->config.user, h->config.unix_s + snapshot->t_s, p_enu, true);
+        if (status != STATUS_OK) return status;
+        e->dt_k = (float)(mean_of(h->shape[s->model].patches, patch_k + e->first_patch) - place.ground_k);
     }
     return STATUS_OK;
 }

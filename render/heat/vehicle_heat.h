@@ -6,14 +6,17 @@
  * step_s. Between two times of its own its patches lie on straight lines to what its present drives lead to. So temperatures
  * are a function of the log, the settings and the time.
  *
- * What a patch takes and gives: vehicle_load.h.
+ * What a patch takes and gives: vehicle_load.h; what neighbours do to each other: vehicle_near.h. Within a tick all that read
+ * another's temperatures read those of its beginning, so the order of work decides nothing.
  *
  * Work is done in pieces, those that have waited longest first, and no more of it in any 0.1 s of exercise time than
- * window_us; the first tick, before any frame, has no limit. So no frame pays for a crowd that appears at once: an entity is
- * as warm as the air until its past is worked out.
+ * window_us (work_window.h), but for what neighbours add to a piece: at most eight that are posed, four jets that are
+ * followed. The first tick, before any frame, has no limit. So no frame pays for a crowd that appears at once: an entity is as
+ * warm as the air until its past is worked out.
  *
  * Before its first report an entity is taken to have stood there for a day with its engine stopped, and for its last hour
- * to have done what it then does: in single steps of the solver (tests/render/test_vehicle_heat_error.c). Munitions and expendables start as warm as the air that flows past them. One whose temperatures were kept less than three hours before
+ * to have done what it then does: in single steps of the solver (tests/render/test_vehicle_heat_error.c). Munitions and
+ * expendables start as warm as the air that flows past them. One whose temperatures were kept less than three hours before
  * (kept_heat.h) begins with those, and is taken to have done since then what it then does. */
 #ifndef RENDER_HEAT_VEHICLE_HEAT_H
 #define RENDER_HEAT_VEHICLE_HEAT_H
@@ -53,7 +56,9 @@ typedef struct VehicleHeatWorld {
 } VehicleHeatWorld;
 
 typedef struct VehicleHeatCounters {
-    uint64_t steps, begun, left_out, failed; /* failed: steps that the solver gave up; the entity stays as it was */
+    uint64_t steps, begun, left_out;
+    uint64_t neighbours_left_out;       /* beyond neighbours.h's numbers, at each look for them */
+    uint64_t failed;                    /* steps that the solver gave up; the entity stays as it was */
     double   spent_s, longest_s;             /* wall clock; of the longest tick */
 } VehicleHeatCounters;
 
@@ -79,7 +84,7 @@ Status vehicle_heat_keep(const VehicleHeat *heat, const char *path);
 
 /* Error that steps and the past's single steps leave in a patch's temperature, K, rms: within a factor of 2 of a solution in
  * small steps in nine of ten (tests/render/test_vehicle_heat_error.c). */
-static inline double vehicle_heat_error_k(double temp_k, double air_k) { return 0.048 + 0.006 * fabs(temp_k - air_k); }
+static inline double vehicle_heat_error_k(double temp_k, double air_k) { return 0.038 + 0.0045 * fmax(fabs(temp_k - air_k) - 15, 0); }
 
 bool vehicle_heat_nodes(VehicleNodes *out, const VehicleHeat *heat, DisEntityId id);
 

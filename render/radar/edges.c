@@ -47,7 +47,7 @@ static bool seen(const View *view, const Wedge *w, double share)
 
 static void emit_segment(const View *view, const Wedge *w, int index, double middle, double length_m)
 {
-    EdgeSegment s = {.wedge = index, .length_m = length_m};
+    EdgeSegment s = {.wedge = index, .part = w->part, .length_m = length_m};
     point_along(s.p, w, middle);
     double basis[2][2][3], spread = length_m;
     for (int a = 0; a < 2; a++) {

@@ -30,7 +30,7 @@ typedef struct EdgeConfig {
 } EdgeConfig;
 
 typedef struct EdgeSegment {
-    int    wedge;           /* whose it is */
+    int    wedge, part;     /* whose it is; of the model */
     double p[3], length_m;  /* middle */
     double amplitude[2][2]; /* m; [received][transmitted], 0: h, 1: v */
     double path_m, slope;   /* as in scatter.h, the mean along the segment; its change per length of edge */

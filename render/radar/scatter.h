@@ -41,6 +41,20 @@ static inline void scatter_basis(double h[3], double v[3], const double u[3])
     v3_cross(v, u, h);
 }
 
+/* From a basis h, v to one whose first axis is along `right`, as far as that is across the line of sight: an antenna that is rolled.
+ * All in one frame; right must not lie along the line of sight. */
+static inline void scatter_turn(ScatterMatrix *s, const double h[3], const double v[3], const double right[3])
+{
+    const double along_h = v3_dot(right, h), along_v = v3_dot(right, v), n = sqrt(along_h * along_h + along_v * along_v);
+    if (!(n > 0)) return;
+    const double         c = along_h / n, w = along_v / n;
+    const double complex hh = s->hh, hv = s->hv, vh = s->vh, vv = s->vv;
+    s->hh = c * c * hh + c * w * (hv + vh) + w * w * vv;
+    s->vv = w * w * hh - c * w * (hv + vh) + c * c * vv;
+    s->hv = -c * w * hh + c * c * hv - w * w * vh + c * w * vv;
+    s->vh = -c * w * hh - w * w * hv + c * c * vh + c * w * vv;
+}
+
 /* |p - a| - |a| of an antenna at a, m, and the unit direction from p to it. To a rounding of |p|, at any range: the difference
  * of squares over the sum of lengths, where lengths alone would lose |a|'s rounding. */
 static inline double scatter_path(double u_p[3], const ScatterAntenna *antenna, const double p[3])

@@ -7,7 +7,6 @@
  * (Wrenninge, Kulla, Lundqvist 2013): an approximation; a thick white cloud lit from behind the eye gets a
  * reflectance of about 0.4. */
 #include "render/smoke/effects.h"
-#include "render/smoke/hot_gas.h"
 
 #include <stdlib.h>
 
@@ -36,7 +35,7 @@ typedef struct Placed {
     const EffectModel *law;
     double           d_eye_enu[3], temp_k; /* from the eye to its centre */
     double           co2_kg_m3, h2o_kg_m3;  /* at the centre */
-    double           gas_share[effect_band_count]; /* of the extinction */
+    SmokeGas        *gas;                   /* volume.gas */
     uint32_t         group;
     int              index; /* index in the snapshot: order of equals */
 } Placed;
@@ -46,14 +45,16 @@ static void light_volume(Placed *p, int band, const Air *air, const float *groun
 {
     SmokeVolume  *v = &p->volume;
     const bool   optical = band < effect_band_mwir;
-    const double albedo = p->law->albedo[band] * (1 - p->gas_share[band]), sun_w_m2 = air->light.sun_w_m2[band];
+    const double albedo = p->law->albedo[band], sun_w_m2 = air->light.sun_w_m2[band];
     /* mean radiances from above and below: thermal ground emits, ground in daylight reflects */
     const double above = air->light.sky_w_m2[band] / pi_rad;
     const double below = optical ? ground_rho[band] * (sun_w_m2 * fmax(air->light.sun_d_enu[2], 0) / pi_rad + above)
                                  : air->light.ground_w_m2_sr[band];
-    const double lit = veils->air_transmittance[i] * albedo * 0.5;
+    const double lit = veils->air_transmittance[i] * albedo * 0.5, glow = glow_w_m2_sr(band, p->temp_k);
     v->source[band] = veils->added_w_m2_sr[i] + lit * (above + below) +
-                      veils->transmittance[i] * (1 - albedo) * glow_w_m2_sr(band, p->temp_k);
+                      veils->transmittance[i] * (1 - albedo) * glow;
+    if (p->gas && !optical)
+        p->gas->source[band == effect_band_lwir] = veils->added_w_m2_sr[i] + veils->transmittance[i] * glow;
     v->from_top[band] = lit * (above - below);
 
     const double cosine = v3_dot(p->d_eye_enu, air->light.sun_d_enu); /* forward: the sun behind the puff */
@@ -126,41 +127,29 @@ static void shade_group(Placed *first, int count, unsigned bands)
         }
 }
 
-/* Extinction of the gas of a cloud's puffs in the thermal bands: grey, such that the ray from the eye through a puff's
- * centre has the emissivity of all the gas of the cloud on it, at the temperature of this puff. Of that the share that
- * the air's CO2 lets pass counts, for emission and absorption alike: gas as warm as its background stays invisible.
- * On other rays of the same puff: etc/reference/plumes.md. */
-static void add_gas(Placed *first, int count, unsigned bands, double eye_up_m)
+/* The gas of puffs, and what the air's CO2 leaves of its radiation on the way to the eye. */
+static Status add_gas(Placed *placed, int count, unsigned bands, double eye_up_m, Arena *arena)
 {
-    static const int    band_of[2] = {effect_band_mwir, effect_band_lwir};
-    static const double air_scale_m = 8000;
+    static const double   air_scale_m = 8000;
+    static const unsigned thermal = 1u << effect_band_mwir | 1u << effect_band_lwir;
+    int                   of = 0;
+    for (int i = 0; i < count && bands & thermal; i++) of += placed[i].co2_kg_m3 + placed[i].h2o_kg_m3 > 0;
+    if (of == 0) return STATUS_OK;
+    SmokeGas *gas = arena_alloc(arena, (size_t)of, sizeof *gas);
+    if (!gas) return STATUS_NO_MEMORY;
     for (int i = 0; i < count; i++) {
-        Placed *p = &first[i];
-        double  co2_kg_m2 = 0, h2o_kg_m2 = 0, eye_enu[3];
+        Placed *p = &placed[i];
         if (!(p->co2_kg_m3 + p->h2o_kg_m3 > 0)) continue;
-        v3_add_scaled(eye_enu, p->volume.p_enu, -p->volume.range_m, p->d_eye_enu);
-        for (int k = 0; k < count; k++) {
-            const double column_m = smoke_column_m(&first[k].volume, eye_enu, p->d_eye_enu, 0, INFINITY);
-            co2_kg_m2 += column_m * first[k].co2_kg_m3;
-            h2o_kg_m2 += column_m * first[k].h2o_kg_m3;
-        }
-        const double gas_kg_m2 = co2_kg_m2 + h2o_kg_m2;
-        if (!(gas_kg_m2 > 0)) continue; /* the eye is beyond it */
-        const HotGasColumn column = {hot_gas_atm_m(co2_kg_m2, hot_gas_co2_molar_kg, p->temp_k),
-                                     hot_gas_atm_m(h2o_kg_m2, hot_gas_h2o_molar_kg, p->temp_k)};
         const double up_m = fmax(0.5 * (eye_up_m + p->volume.p_enu[2]), 0);
         const double air_m = p->volume.range_m * exp(-up_m / air_scale_m); /* at sea-level density */
-        const double passed = hot_gas_passed(column.co2_atm_m, p->temp_k, air_m);
-        for (int which = 0; which < 2; which++) {
-            const int b = band_of[which];
-            if (!(bands >> b & 1)) continue;
-            const double depth = which ? hot_gas_depth(HOT_GAS_LWIR, column, p->temp_k, 1)
-                                       : hot_gas_depth(HOT_GAS_MWIR, column, p->temp_k, passed);
-            const double gas_per_m = depth / gas_kg_m2 * (p->co2_kg_m3 + p->h2o_kg_m3);
-            p->volume.extinction_per_m[b] += gas_per_m;
-            p->gas_share[b] = p->volume.extinction_per_m[b] > 0 ? gas_per_m / p->volume.extinction_per_m[b] : 0;
-        }
+        *gas = (SmokeGas){.co2_atm = hot_gas_atm_m(p->co2_kg_m3, hot_gas_co2_molar_kg, p->temp_k),
+                          .h2o_atm = hot_gas_atm_m(p->h2o_kg_m3, hot_gas_h2o_molar_kg, p->temp_k)};
+        for (int which = 0; which < 2; which++) hot_gas_weights(gas->weight[which], (HotGasBand)which, p->temp_k);
+        hot_gas_passed_at(gas->passed, p->temp_k, air_m);
+        p->gas = gas++;
+        p->volume.gas = p->gas;
     }
+    return STATUS_OK;
 }
 
 /* View-frustum cull, including shadows: whether any of it can fall into the picture, or shade what does: a cone
@@ -185,7 +174,7 @@ static int keep_visible(Placed *placed, int count, unsigned bands)
         double most = 0;
         for (int b = 0; b < effect_band_count; b++)
             if (bands >> b & 1) most = fmax(most, placed[i].volume.extinction_per_m[b]);
-        if (most > 0) placed[kept++] = placed[i];
+        if (most > 0 || placed[i].gas) placed[kept++] = placed[i];
     }
     return kept;
 }
@@ -224,18 +213,19 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, con
         placed[count].group  = puff->group;
         placed[count].co2_kg_m3 = volume.co2_kg_m3;
         placed[count].h2o_kg_m3 = volume.h2o_kg_m3;
-        memset(placed[count].gas_share, 0, sizeof placed[count].gas_share);
+        placed[count].gas = NULL;
         placed[count].index  = i;
         count++;
     }
     qsort(placed, (size_t)count, sizeof *placed, by_group);
     for (int first = 0, end; first < count; first = end) {
         for (end = first + 1; end < count && placed[end].group == placed[first].group;) end++;
-        add_gas(placed + first, end - first, bands, view->p_enu[2]);
         shade_group(placed + first, end - first, bands);
     }
+    Status status = add_gas(placed, count, bands, view->p_enu[2], arena);
+    if (status != STATUS_OK) return status;
     count = keep_visible(placed, count, bands);
-    const Status status = light_volumes(placed, count, view, air, ground_rho, bands, arena);
+    status = light_volumes(placed, count, view, air, ground_rho, bands, arena);
     if (status != STATUS_OK) return status;
     qsort(placed, (size_t)count, sizeof *placed, by_range);
     SmokeVolume *volume = arena_alloc(arena, (size_t)count + 1, sizeof *volume);

@@ -3,7 +3,7 @@
 
 const double hot_gas_co2_molar_kg = 0.04401, hot_gas_h2o_molar_kg = 0.018015;
 
-enum { terms = 8, temps = 6, cold_columns = 3, cold_paths = 8 };
+enum { terms = hot_gas_terms, temps = 6, cold_columns = hot_gas_passed_nodes, cold_paths = 8 };
 static const double at_temp_k[temps] = {300, 500, 700, 1100, 1500, 2300};
 
 /* Fitted for columns of 1e-4 .. 10 atm m with weights 0 .. 1, by least squares of relative errors. */
@@ -93,45 +93,80 @@ static int place(double *share, const double *node, int count, double x, bool by
     return i;
 }
 
-/* 1 - emissivity of one gas. */
-static double passes(HotGasBand band, int gas, double column_atm_m, int t, double share)
+void hot_gas_weights(double out[2][hot_gas_terms], HotGasBand band, double temp_k)
 {
-    double taken = 0;
-    for (int j = 0; j < terms; j++) {
-        const double w = weight[band][gas][t][j] + share * (weight[band][gas][t + 1][j] - weight[band][gas][t][j]);
-        taken -= w * expm1(-rate_per_atm_m[band][gas][j] * column_atm_m);
+    double    share;
+    const int t = place(&share, at_temp_k, temps, temp_k, false);
+    for (int gas = 0; gas < 2; gas++)
+        for (int j = 0; j < terms; j++)
+            out[gas][j] = weight[band][gas][t][j] + share * (weight[band][gas][t + 1][j] - weight[band][gas][t][j]);
+}
+
+/* 1 - exp(-depth) to 1e-12 of itself, in a quarter of expm1's time. */
+static inline double absorbed(double depth)
+{
+    return depth > 1e-3 ? 1 - exp(-depth) : depth * (1 - depth * (0.5 - depth * (1.0 / 6 - depth * (1.0 / 24))));
+}
+
+void hot_gas_start(HotGasRay *ray)
+{
+    for (int g = 0; g < 2; g++) {
+        ray->taken[g] = 0;
+        for (int j = 0; j < terms; j++) ray->left[g][j] = 1;
     }
-    return 1 - taken;
+}
+
+double hot_gas_through(HotGasRay *ray, HotGasBand band, HotGasColumn column, const double w[2][hot_gas_terms])
+{
+    const double atm_m[2] = {column.co2_atm_m, column.h2o_atm_m};
+    for (int g = 0; g < 2; g++) {
+        if (!(atm_m[g] > 0)) continue;
+        for (int j = 0; j < terms; j++) {
+            const double taken = ray->left[g][j] * absorbed(rate_per_atm_m[band][g][j] * atm_m[g]);
+            ray->taken[g] += w[g][j] * taken;
+            ray->left[g][j] -= taken;
+        }
+        ray->taken[g] = fmin(ray->taken[g], 1); /* weights of very different temperatures may sum to more */
+    }
+    /* not 1 - products: thin columns would cancel */
+    return ray->taken[0] + ray->taken[1] - ray->taken[0] * ray->taken[1];
 }
 
 double hot_gas_emissivity(HotGasBand band, HotGasColumn column, double temp_k)
 {
-    double    share;
-    const int t = place(&share, at_temp_k, temps, temp_k, false);
-    const double co2 = 1 - passes(band, 0, fmax(column.co2_atm_m, 0), t, share);
-    const double h2o = 1 - passes(band, 1, fmax(column.h2o_atm_m, 0), t, share);
-    return co2 + h2o - co2 * h2o; /* not 1 - products: thin columns would cancel */
+    HotGasRay ray;
+    double    w[2][hot_gas_terms];
+    hot_gas_start(&ray);
+    hot_gas_weights(w, band, temp_k);
+    return hot_gas_through(&ray, band, column, (const double(*)[hot_gas_terms])w);
 }
 
-double hot_gas_depth(HotGasBand band, HotGasColumn column, double temp_k, double seen)
+void hot_gas_passed_at(double at[hot_gas_passed_nodes], double temp_k, double range_m)
 {
-    return -log1p(-seen * hot_gas_emissivity(band, column, temp_k));
+    double    s_temp, s_path;
+    const int t = place(&s_temp, at_temp_k, temps, temp_k, false);
+    const int p = place(&s_path, at_path_m, cold_paths, fmax(range_m, 1e-9), true);
+    for (int c = 0; c < cold_columns; c++) {
+        const double near_k = passed[c][t][p] + s_temp * (passed[c][t + 1][p] - passed[c][t][p]);
+        const double far_k = passed[c][t][p + 1] + s_temp * (passed[c][t + 1][p + 1] - passed[c][t][p + 1]);
+        at[c] = near_k + s_path * (far_k - near_k);
+        /* nearer than the first node: absorption by the square root of the path, as strong lines absorb */
+        if (range_m < at_path_m[0]) at[c] = 1 - (1 - at[c]) * sqrt(fmax(range_m, 0) / at_path_m[0]);
+    }
+}
+
+double hot_gas_passed_of(const double at[hot_gas_passed_nodes], double co2_atm_m)
+{
+    double    share;
+    const int c = place(&share, at_column_atm_m, cold_columns, fmax(co2_atm_m, 1e-9), true);
+    return at[c] + share * (at[c + 1] - at[c]);
 }
 
 double hot_gas_passed(double co2_atm_m, double temp_k, double range_m)
 {
-    double    s_column, s_temp, s_path, ratio = 0;
-    if (!(range_m > 0)) return 1;
-    const int c = place(&s_column, at_column_atm_m, cold_columns, fmax(co2_atm_m, 1e-9), true);
-    const int t = place(&s_temp, at_temp_k, temps, temp_k, false);
-    const int p = place(&s_path, at_path_m, cold_paths, range_m, true);
-    for (int i = 0; i < 8; i++) {
-        const int    ci = i & 1, ti = i >> 1 & 1, pi = i >> 2;
-        const double w = (ci ? s_column : 1 - s_column) * (ti ? s_temp : 1 - s_temp) * (pi ? s_path : 1 - s_path);
-        ratio += w * passed[c + ci][t + ti][p + pi];
-    }
-    /* nearer than the first node: absorption by the square root of the path, as strong lines absorb */
-    return range_m < at_path_m[0] ? 1 - (1 - ratio) * sqrt(range_m / at_path_m[0]) : ratio;
+    double at[hot_gas_passed_nodes];
+    hot_gas_passed_at(at, temp_k, range_m);
+    return hot_gas_passed_of(at, co2_atm_m);
 }
 
 double hot_gas_atm_m(double kg_m2, double molar_kg, double temp_k)

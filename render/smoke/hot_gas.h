@@ -26,15 +26,34 @@ typedef struct HotGasColumn {
  * itself about 10 % (narrow bands against line by line). At 0.3 atm lines are narrower and the true emissivity is
  * lower, by up to a third. */
 double hot_gas_emissivity(HotGasBand band, HotGasColumn column, double temp_k);
-/* Grey optical depth with which a column has `seen` (0 .. 1) times its emissivity: -ln(1 - seen emissivity). Gas is not
- * grey: scaled to shorter chords of the same volume it is too transparent (plumes.md). */
-double hot_gas_depth(HotGasBand band, HotGasColumn column, double temp_k, double seen);
+
+/* ---- along a ray through gas of several temperatures ---------------------------------------- */
+
+enum { hot_gas_terms = 8, hot_gas_passed_nodes = 3 };
+
+/* Weights w_j of one temperature, CO2 and H2O. */
+void hot_gas_weights(double weight[2][hot_gas_terms], HotGasBand band, double temp_k);
+/* A ray in one band: of each grey gas what passes the gas so far, exp(-k column); and what CO2 and H2O have taken. */
+typedef struct HotGasRay {
+    double left[2][hot_gas_terms], taken[2];
+} HotGasRay;
+
+void hot_gas_start(HotGasRay *ray);
+/* The ray goes on through a column of gas with these weights. Returns the emissivity of all of it so far: what each
+ * piece adds is by its own weights, of what the pieces before it left of each grey gas. At one temperature it is
+ * hot_gas_emissivity of the whole column, however it is cut. */
+double hot_gas_through(HotGasRay *ray, HotGasBand band, HotGasColumn column, const double weight[2][hot_gas_terms]);
+
+/* ---- behind cold air ------------------------------------------------------------------------ */
 
 /* The air's CO2 (420 ppm) absorbs the hot CO2's own lines more than a grey body's spectrum. The ratio of the hot gas'
  * path transmittance to that of a grey body of its temperature, MWIR: 0 .. 1; 1 at no range. Wings beyond the cold
  * band (the red and blue spikes) are what remains. Computed with the same narrow-band model, two layers by Curtis and
  * Godson; interpolated to within 0.05. range_m: of air at sea-level density. LWIR: taken as 1. */
 double hot_gas_passed(double co2_atm_m, double temp_k, double range_m);
+/* The same in two steps, for columns that are not known yet: at its nodes of the column; between them. */
+void   hot_gas_passed_at(double at[hot_gas_passed_nodes], double temp_k, double range_m);
+double hot_gas_passed_of(const double at[hot_gas_passed_nodes], double co2_atm_m);
 
 /* atm m of `kg_m2` of a gas of molar mass molar_kg at temp_k, by the ideal gas law. */
 double hot_gas_atm_m(double kg_m2, double molar_kg, double temp_k);

@@ -4,8 +4,6 @@
 
 #include <stdlib.h>
 
-_Static_assert(smoke_bands == 7, "Passed begins with one in each band");
-
 /* ---- one volume along one ray ------------------------------------------------------------- */
 
 typedef struct Chord {
@@ -184,7 +182,69 @@ static inline double absorbed(double depth)
 typedef struct Passed {
     double through[smoke_bands], added[smoke_bands];
     bool   goes_on; /* transmittance above 0 */
+    bool   in_gas;  /* the following hold */
+    HotGasRay gas[2];                       /* [HotGasBand] */
+    double    gas_depth[2];                 /* optical depth that it has made */
+    double    co2_atm_m, air[hot_gas_passed_nodes]; /* column; times what the air lets pass */
 } Passed;
+
+/* Gas of one segment. */
+typedef struct Segment {
+    HotGasColumn column;
+    double       weighed[2][2][hot_gas_terms], shown[2]; /* columns times weights; of both times sources */
+} Segment;
+
+static const int gas_band[2] = {smoke_bands - 2, smoke_bands - 1}; /* [HotGasBand] */
+
+static void enter_gas(Passed *p)
+{
+    for (int which = 0; which < 2; which++) hot_gas_start(&p->gas[which]), p->gas_depth[which] = 0;
+    for (int k = 0; k < hot_gas_passed_nodes; k++) p->air[k] = 0;
+    p->co2_atm_m = 0;
+    p->in_gas = true;
+}
+
+static void cross_gas(Segment *s, Passed *p, const SmokeGas *g, double column_m, unsigned bands)
+{
+    if (!p->in_gas) enter_gas(p);
+    const double co2 = g->co2_atm * column_m, h2o = g->h2o_atm * column_m;
+    s->column.co2_atm_m += co2, s->column.h2o_atm_m += h2o;
+    p->co2_atm_m += co2;
+    for (int k = 0; k < hot_gas_passed_nodes; k++) p->air[k] += co2 * g->passed[k];
+    for (int which = 0; which < 2; which++) {
+        if (!(bands >> gas_band[which] & 1)) continue;
+        for (int j = 0; j < hot_gas_terms; j++) {
+            s->weighed[which][0][j] += co2 * g->weight[which][0][j];
+            s->weighed[which][1][j] += h2o * g->weight[which][1][j];
+        }
+        s->shown[which] += (co2 + h2o) * g->source[which];
+    }
+}
+
+/* What of the gas' own radiation of a band the air lets pass: of emission and absorption alike, so that gas as warm as
+ * its background stays invisible. */
+static double air_passes(const Passed *p, int which)
+{
+    double mean[hot_gas_passed_nodes];
+    if (which == HOT_GAS_LWIR || !(p->co2_atm_m > 0)) return 1;
+    for (int k = 0; k < hot_gas_passed_nodes; k++) mean[k] = p->air[k] / p->co2_atm_m;
+    return hot_gas_passed_of(mean, p->co2_atm_m);
+}
+
+/* Optical depth that the gas of a segment adds to that of the gas before it. */
+static double gas_adds(Passed *p, Segment *s, int which)
+{
+    static const double most = 1 - 1e-12, least = 1e-300;
+    const double per[2] = {1 / fmax(s->column.co2_atm_m, least), 1 / fmax(s->column.h2o_atm_m, least)};
+    for (int g = 0; g < 2; g++)
+        for (int j = 0; j < hot_gas_terms; j++) s->weighed[which][g][j] *= per[g];
+    const double emissivity = hot_gas_through(&p->gas[which], (HotGasBand)which, s->column,
+                                              (const double(*)[hot_gas_terms])s->weighed[which]);
+    const double depth = -log1p(-fmin(emissivity * air_passes(p, which), most));
+    const double adds = fmax(depth - p->gas_depth[which], 0);
+    p->gas_depth[which] += adds;
+    return adds;
+}
 
 /* Composites the segments behind those already passed. */
 static void compose(Passed *passed, const Crossing *crossing, int count, unsigned bands)
@@ -193,8 +253,9 @@ static void compose(Passed *passed, const Crossing *crossing, int count, unsigne
     const int cuts = cuts_of(cut_m, crossing, count);
 
     for (int k = 0; k + 1 < cuts; k++) {
-        double depth[smoke_bands] = {0}, shown[smoke_bands] = {0};
-        bool   any = false;
+        double  depth[smoke_bands] = {0}, shown[smoke_bands] = {0};
+        Segment gas;
+        bool    any = false, any_gas = false;
         for (int i = 0; i < count; i++) {
             const Crossing *c = &crossing[i];
             if (!(c->from_m < cut_m[k + 1] && c->to_m > cut_m[k])) continue;
@@ -207,8 +268,19 @@ static void compose(Passed *passed, const Crossing *crossing, int count, unsigne
                 depth[b] += depth_here;
                 shown[b] += depth_here * c->source[b];
             }
+            if (!c->volume->gas || !(column_m > 0)) continue;
+            if (!any_gas) gas = (Segment){0}, any_gas = true;
+            cross_gas(&gas, passed, c->volume->gas, column_m, bands);
         }
         if (!any) continue;
+        const double gas_atm_m = any_gas ? gas.column.co2_atm_m + gas.column.h2o_atm_m : 0;
+        for (int which = 0; which < 2 && gas_atm_m > 0; which++) {
+            const int b = gas_band[which];
+            if (!(bands >> b & 1)) continue;
+            const double depth_here = gas_adds(passed, &gas, which);
+            depth[b] += depth_here;
+            shown[b] += depth_here * (gas.shown[which] / gas_atm_m);
+        }
         bool goes_on = false;
         for (int b = 0; b < smoke_bands; b++) {
             if (!(bands >> b & 1) || !(depth[b] > 0)) {
@@ -236,8 +308,10 @@ void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list
     for (int r = 0; count > 0 && r < rays->count; r++) {
         const double o_enu[3] = {rays->o_enu[0][r], rays->o_enu[1][r], rays->o_enu[2][r]};
         const double d_enu[3] = {rays->d_enu[0][r], rays->d_enu[1][r], rays->d_enu[2][r]};
-        Passed passed = {.through = {1, 1, 1, 1, 1, 1, 1}, .goes_on = true};
+        Passed passed;
         int    crossed = 0, composed = 0;
+        for (int b = 0; b < smoke_bands; b++) passed.through[b] = 1, passed.added[b] = 0;
+        passed.goes_on = true, passed.in_gas = false;
         for (int n = 0; n < count && passed.goes_on; n++) {
             const SmokeVolume *v = &volume[list[n]];
             Crossing         *c = &crossing[crossed];

@@ -87,7 +87,7 @@ static Status name_patches(HeatDay *day, const Patches *patches, const Model *mo
                      repeated ? "_" : "", part->name, side_of(patch, pose));
             plain(day->part[i]);
             plain(day->name[i]);
-            day->area_m2[i] = patch->area_m2;
+            day->area_m2[i] = patch_open_m2(patch);
         }
     }
     free(pose);

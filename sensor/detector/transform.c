@@ -20,8 +20,14 @@ Status transform_create(Transform **out, TransformKind kind, int rows, int colum
     Transform *t = calloc(1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;
     pthread_mutex_lock(&planner);
-    t->plan = kind == TRANSFORM_WAVES_BACK ? fftw_plan_dft_c2r_2d(rows, columns, (fftw_complex *)from, to, flags)
-                                           : fftw_plan_r2r_2d(rows, columns, from, to, real[kind], real[kind], flags);
+    if (kind == TRANSFORM_WAVES_BACK) {
+        t->plan = fftw_plan_dft_c2r_2d(rows, columns, (fftw_complex *)from, to, flags);
+    } else if (kind == TRANSFORM_ROWS || kind == TRANSFORM_ROWS_BACK) {
+        t->plan = fftw_plan_many_dft(1, &columns, rows, (fftw_complex *)from, NULL, 1, columns, (fftw_complex *)to, NULL,
+                                     1, columns, kind == TRANSFORM_ROWS ? FFTW_FORWARD : FFTW_BACKWARD, flags);
+    } else {
+        t->plan = fftw_plan_r2r_2d(rows, columns, from, to, real[kind], real[kind], flags);
+    }
     pthread_mutex_unlock(&planner);
     if (!t->plan) {
         free(t);

@@ -13,6 +13,8 @@ typedef enum TransformKind {
     TRANSFORM_SINES_BACK,   /* RODFT01, frequencies from 1 */
     TRANSFORM_WAVES_BACK,   /* from: [rows][columns / 2 + 1] pairs, real and imaginary, of the spectrum of a real plane;
                              * to: [rows][columns]. From is overwritten */
+    TRANSFORM_ROWS,         /* exp(-2 pi i j k / columns), each row of [rows][columns] complex numbers, in place */
+    TRANSFORM_ROWS_BACK,    /* exp(+...); there and back multiplies by columns */
 } TransformKind;
 
 /* For these two buffers alone, from transform_alloc; the same for all but WAVES_BACK. Several threads may call it. */

@@ -289,7 +289,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .contact = contact, .config_sha256 = run->config_sha256, .publish = run->publish,
                                   .user = run->user, .dis = run->send ? &dis : NULL, .wall_s = run->wall_s,
                                   .clock = run->clock, .save_count = o->save_count, .save = o->save,
-                                  .several = o->host_count > 1, .woods = woods.on ? &woods.config : NULL};
+                                  .several = o->host_count > 1, .isa = o->isa, .woods = woods.on ? &woods.config : NULL};
     const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
     status = session_open(&session, &shared, &plan, player, out);
     if (status != STATUS_OK) goto done;

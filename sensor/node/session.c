@@ -4,6 +4,7 @@
 #include "sensor/framefile/frame_save.h"
 #include "sensor/node/scene_rate.h"
 #include "sensor/publish/pairs.h"
+#include "sensor/world/frame_world.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -74,6 +75,24 @@ static Status look_without(Frame *f, const Session *s, const Air *air, const dou
     const Status status = pairs_take_away(&f->without->snapshot, &f->taken, &f->taken_count, &f->seen.snapshot, all,
                                           s->plan.aim, host, f->arena);
     return status == STATUS_OK ? look(f->without, s, &f->request, air, r_host_from_enu, f->arena) : status;
+}
+
+/* What the radar on the same axis measures. */
+static Status measure(Frame *f, const Session *s, const Eye *eye)
+{
+    const LocalFrame *frame = &s->shared->world->frame;
+    const Weather     weather = frame_weather_at(s->shared->config, s->shared->world, f->unix_s);
+    RadarScene        scene = {.world = s->shared->world, .snapshot = &f->seen.snapshot, .view = &eye->view, .hidden = eye->hidden,
+                               .reference_m = NAN, .t_s = f->time_s, .weather = &weather, .number = (uint32_t)f->number};
+    m3_tmul_v3(scene.v_enu_mps, frame->r_ecef_from_enu, eye->state.v_ecef_mps);
+    const int aim = dis_entity_id_is_none(s->plan.aim) ? -1 : snapshot_find(&f->seen.snapshot, s->plan.aim);
+    if (eye->aim_known) {
+        double to_aim[3];
+        v3_sub(to_aim, eye->p_aim_ecef, eye->state.p_ecef);
+        scene.reference_m = v3_length(to_aim);
+    }
+    if (aim >= 0) m3_tmul_v3(scene.reference_v_enu_mps, frame->r_ecef_from_enu, f->seen.snapshot.entity[aim].v_ecef_mps);
+    return seeker_radar_measure(&f->radar, s->radar, &scene, s->shared->pool, f->arena);
 }
 
 /* Targets, and the error budget of the frame. */
@@ -157,7 +176,10 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
         footprint_of_view(f->footprint, shared->world, &eye.view);
         f->record.footprint = f->footprint;
     }
-    if (s->wants & WANT_TARGETS) status = know_targets(f, s, &eye);
+    f->radar = NULL;
+    if (s->radar) status = measure(f, s, &eye);
+    f->record.radar = f->radar;
+    if (status == STATUS_OK && s->wants & WANT_TARGETS) status = know_targets(f, s, &eye);
     if (status != STATUS_OK) return status;
     if (shared->world->landscape) {
         const double *p_enu = eye.view.p_enu;
@@ -213,6 +235,19 @@ static Status open_vehicles(Session *s)
                                                         .window_us = vehicle_window_us, .given = s->given, .kept = s->kept});
 }
 
+static Status open_radar(Session *s)
+{
+    const SessionShared *shared = s->shared;
+    const Config        *config = shared->config;
+    char                 catalog[4096];
+    if (strcmp(config->radar.preset, "none") == 0) return STATUS_OK;
+    if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
+    return seeker_radar_create(&s->radar, &(SeekerRadarConfig){.preset = config->radar.preset, .catalog = catalog,
+                                                               .isa = shared->isa, .ground = config->radar.ground,
+                                                               .wind_mps = config->weather.wind_mps,
+                                                               .seed = (uint64_t)config->seed});
+}
+
 static Status open_session(Session *s)
 {
     const SessionShared *shared = s->shared;
@@ -260,6 +295,7 @@ static Status open_session(Session *s)
     Status status = entity_table_create(&s->table, &table, shared->catalog);
     if (status == STATUS_OK) status = read_marks(s);
     if (status == STATUS_OK) status = open_vehicles(s);
+    if (status == STATUS_OK) status = open_radar(s);
     if (status == STATUS_OK) session_keep(s);
     if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, shared->config);
     return status == STATUS_OK ? session_consumers(s, list_frame) : status;
@@ -401,6 +437,9 @@ static void report_vehicles(const Session *s)
     log_detail("heat of vehicles: %llu begun, %llu steps, %.0f ms in all, %.1f ms the longest tick, %.2f MB",
                (unsigned long long)c->begun, (unsigned long long)c->steps, 1e3 * c->spent_s, 1e3 * c->longest_s,
                1e-6 * (double)vehicle_heat_bytes(heat));
+    if (c->neighbours_left_out > 0)
+        log_detail("heat of vehicles: %llu times a neighbour was one too many for another entity's heat",
+                   (unsigned long long)c->neighbours_left_out);
     if (c->left_out > 0)
         log_warn("heat of vehicles: too many entities: those with the highest ids were as warm as the air (entities.shown)");
     if (c->failed > 0)
@@ -430,6 +469,7 @@ Status session_close(Session *s, SessionResult *result)
     if (result) *result = s->result;
     else session_result_free(&s->result);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);
+    seeker_radar_destroy(s->radar);
     world_vehicles_destroy(s->vehicles);
     given_heat_close(s->given);
     kept_heat_close(s->kept);

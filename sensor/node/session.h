@@ -35,6 +35,7 @@ typedef struct SessionShared {
     int            save_count; /* frames that are also written as frame files, ascending */
     const int     *save;       /* [save_count] */
     const WoodsConfig *woods;  /* of the world's plants; NULL: none */
+    const char    *isa;        /* as tracer_create */
     bool           several;    /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;
 

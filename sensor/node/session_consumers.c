@@ -37,6 +37,15 @@ static Status add_pictures(Consumers *list, Session *s, Pool *pool)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+static Status add_radar(Consumers *list, Session *s, Pool *pool)
+{
+    Consumer    *consumer = NULL;
+    if (!s->radar) return STATUS_OK;
+    const Status status = consume_radar(&consumer, &(PictureFiles){.out = s->out, .config = s->shared->config, .pool = pool,
+                                                                   .patient = s->shared->live});
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static Status add_latest(Consumers *list, Session *s)
 {
     Consumer    *consumer = NULL;
@@ -208,6 +217,7 @@ static Status replay_files(Consumers *list, Session *s, FrameDone *done, Pool *p
 {
     const Config *config = s->shared->config;
     Status        status = config->publish.files ? add_pictures(list, s, pool) : STATUS_OK;
+    if (status == STATUS_OK && config->publish.files) status = add_radar(list, s, pool);
     if (status == STATUS_OK && config->publish.latest) status = add_latest(list, s);
     if (status == STATUS_OK)
         status = add_video(list, s, s->shared->paced ? VIDEO_TO_FILE : VIDEO_TO_FILE | VIDEO_TO_STREAM, false);
@@ -250,6 +260,7 @@ static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
     if (status == STATUS_OK && live) status = add_truth_lines(&first, s);
     if (status == STATUS_OK && live) status = add_hashes(&first, s, done);
     if (status == STATUS_OK && live && config->publish.files) status = add_pictures(&files, s, s->publish_pool);
+    if (status == STATUS_OK && live && config->publish.files) status = add_radar(&files, s, s->publish_pool);
     if (status == STATUS_OK && live && config->publish.latest) status = add_latest(&files, s);
     if (status == STATUS_OK && live && config->publish.klv_files) status = add_klv(&files, s);
     if (status == STATUS_OK && !live) status = replay_files(&files, s, done, s->publish_pool, raw);

@@ -12,6 +12,7 @@
 #include "sensor/publish/frame_queue.h"
 #include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/memory/detections.h"
+#include "sensor/radar/seeker_radar.h"
 
 struct Session {
     const SessionShared *shared;
@@ -38,6 +39,7 @@ struct Session {
     int64_t              limit_tick;
     uint64_t             given_up_reported; /* last report of a full table, and its time; wall clock */
     double               given_up_reported_s, left_out_reported_s;
+    SeekerRadar         *radar;         /* NULL: none */
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
                                              * targets */
     Consumers            consumers;

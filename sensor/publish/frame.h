@@ -10,6 +10,7 @@
 #include "sensor/publish/latency.h"
 #include "sensor/publish/plane_hash.h"
 #include "sensor/publish/records.h"
+#include "sensor/radar/radar_frame.h"
 
 enum { frame_max_planes = 48, frame_max_axes = 4 };
 
@@ -62,6 +63,7 @@ struct Frame {
     const World      *world;             /* materials and catalog alone: the tracer belongs to the next frame */
     double            rate_px_s[2];      /* image motion of the scene: column, row */
     Sun               sun;
+    const RadarFrame *radar;             /* NULL: no radar was asked for */
     FrameError        error;
     FrameRecord       record;            /* its lists and all fields of truth.jsonl; frame_sha256 is NULL */
     Provenance        provenance;

@@ -64,7 +64,7 @@ static int group_planes(FrameArray out[frame_max_planes], const FrameFiles *fram
     return n;
 }
 
-static void date_time(char out[32], double unix_s)
+void frame_date(char out[32], double unix_s)
 {
     const time_t whole = (time_t)floor(unix_s);
     struct tm    date;
@@ -174,7 +174,7 @@ static Status write_exr(const FrameFiles *frame, int band)
         surfaces       = frame->picture->instance ? surface_names() : NULL;
         if (surfaces) attribute[n++] = image_string("surface_names", surfaces);
     }
-    date_time(date, frame->unix_s);
+    frame_date(date, frame->unix_s);
     const Status status =
         image_write_exr_as(path, exr_compression((Band)band), plane, planes, date, attribute, n);
     free(ids);

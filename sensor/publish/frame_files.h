@@ -51,6 +51,9 @@ Status frame_files_write_displays(const FrameFiles *frame, Pool *pool);
 bool   frame_path(char path[frame_path_size], const FrameFiles *frame, const char *folder, const char *name,
                   const char *ending);
 
+/* UTC as image files have it, YYYY:MM:DD HH:MM:SS. */
+void   frame_date(char out[32], double unix_s);
+
 /* ---- displays (display_files.c) ---------------------------------------------------------------- */
 
 /* Writes the band's display image and its raw counts, as requested. BAND_COUNT: the preview of truth. */

@@ -1,6 +1,7 @@
 /* sensor/publish/records.c: truth.jsonl and run.json, line by line. */
 #include "sensor/publish/records.h"
 
+#include "sensor/publish/radar_record.h"
 #include "sensor/publish/target_class.h"
 
 #include <errno.h>
@@ -196,6 +197,7 @@ char *record_frame_text(const FrameRecord *r)
     for (int i = 0; i < r->target_count; i++) json_array_append_new(targets, target_json(&r->target[i]));
     json_object_set_new(line, "targets", targets);
     if (r->error) json_object_set_new(line, "error", error_json(r));
+    if (r->radar) json_object_set_new(line, "radar", radar_record_json(r->radar, r->snapshot, r->catalog));
 
     char *text = json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15));
     json_decref(line);

@@ -9,6 +9,7 @@
 
 #include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
+#include "sensor/radar/radar_frame.h"
 #include "sensor/truth/footprint.h"
 #include "sensor/publish/target_record.h"
 #include "sensor/publish/latency.h"
@@ -37,6 +38,7 @@ typedef struct FrameRecord {
     const char           *frame_sha256; /* NULL: not given */
     const FrameError     *error;        /* NULL: not given */
     const GroundPoint    *footprint;    /* [FOOTPRINT_COUNT]; NULL: not requested */
+    const RadarFrame     *radar;        /* NULL: none */
 } FrameRecord;
 
 /* One line, flushed. STATUS_IO when it cannot be written. */

@@ -181,3 +181,69 @@ const Reference reference_profile = {
         "    if power[peak] > 0:\n"
         "        print(path, rows[peak]['range_m'], 'm', 10 * math.log10(power[peak]), 'dB over 1')\n",
 };
+
+/* ---- the radar with phase ---------------------------------------------------------------------- */
+
+static const ReferenceField radar_fields[] = {
+    {"range_m", "number", "m", "from the sensor", "", "middle of the range cell; evenly spaced, the nearest first"},
+    {"power_w", "number", "W", "", "", "sum beam, mean of the power of all pulses, noise included"},
+    {"re", "number", "sqrt(W)", "", "", "real part of the middle pulse, received as transmitted"},
+    {"im", "number", "sqrt(W)", "", "", "its imaginary part"},
+    {"cross_re", "number", "sqrt(W)", "", "", "the same in the other polarisation"},
+    {"cross_im", "number", "sqrt(W)", "", "", "its imaginary part"},
+};
+
+const Reference reference_radar = {
+    .topic = "radar",
+    .file  = "radar/NNNNNN.csv",
+    .title = "range profile of the radar of radar.preset",
+    .about = "CSV: lines that begin with # are comments, then a header, then a row a range cell, the nearest first. Voltages\n"
+             "at the antenna's port behind the window and its transform, so scaled that an echo's peak squared is its received\n"
+             "power. Detections and truth are in truth.jsonl, object radar.",
+    .notation = "Field: column.",
+    .field = REFERENCE_FIELDS(radar_fields),
+    .python =
+        "import csv, glob, math\n"
+        "for path in sorted(glob.glob('radar/*.csv')):\n"
+        "    rows = list(csv.DictReader(line for line in open(path) if not line.startswith('#')))\n"
+        "    peak = max(rows, key=lambda row: float(row['power_w']))\n"
+        "    print(path, peak['range_m'], 'm', 10 * math.log10(float(peak['power_w'])), 'dBW')\n",
+};
+
+static const ReferenceField radar_map_fields[] = {
+    {"channel sum_re", "float", "sqrt(W)", "", "", "map, sum beam; a row a cell of range rate, approaching first, a column a cell of range"},
+    {"channel sum_im", "float", "sqrt(W)", "", "", "its imaginary part"},
+    {"channel right_re", "float", "sqrt(W)", "", "", "difference beam along the camera's columns: over the sum, above 0 right of the axis"},
+    {"channel right_im", "float", "sqrt(W)", "", "", "its imaginary part"},
+    {"channel down_re", "float", "sqrt(W)", "", "", "difference beam along its rows, above 0 below the axis"},
+    {"channel down_im", "float", "sqrt(W)", "", "", "its imaginary part"},
+    {"channel cross_re", "float", "sqrt(W)", "", "", "sum beam in the other polarisation"},
+    {"channel cross_im", "float", "sqrt(W)", "", "", "its imaginary part"},
+    {"header reference_m", "double", "m", "from the sensor", "", "range of column width / 2"},
+    {"header reference_rate_mps", "double", "m/s", "above 0: receding", "", "range rate of row height / 2"},
+    {"header metre_per_column", "double", "m", "", "", "range"},
+    {"header mps_per_row", "double", "m/s", "", "", "range rate"},
+    {"header noise_w", "double", "W", "", "", "thermal noise in a cell"},
+    {"header unit", "string", "", "", "", "sqrt(W)"},
+    {"header radar", "string", "", "", "", "row of etc/radars.csv"},
+    {"header frame", "int", "", "from 0", "", "number of the frame"},
+    {"header time_s", "double", "s", "exercise time", "", "middle of the coherent interval"},
+    {"header host", "string", "", "site:application:entity", "", "the entity that carries the radar"},
+    {"header capDate", "string", "", "UTC, YYYY:MM:DD HH:MM:SS", "", "instant of the frame; DateTime in OpenImageIO"},
+};
+
+const Reference reference_radar_map = {
+    .topic = "radar-map",
+    .file  = "radar/NNNNNN.exr, NNNNNN.png",
+    .title = "map of range and Doppler of the radar of radar.preset",
+    .about = "Four channels of complex voltage, scaled as the profile's. The PNG has the range profile above and the\n"
+             "power of the sum beam below, both in decibels from 5 dB below the noise to the greatest, 45 dB at least.",
+    .notation = "Field: `channel` of the EXR file, or `header`: its attribute.",
+    .field = REFERENCE_FIELDS(radar_map_fields),
+    .python =
+        "import glob, math, numpy, OpenEXR\n"
+        "for path in sorted(glob.glob('radar/*.exr')):\n"
+        "    file = OpenEXR.File(path, separate_channels=True)\n"
+        "    power = file.channels()['sum_re'].pixels ** 2 + file.channels()['sum_im'].pixels ** 2\n"
+        "    print(path, power.shape, 10 * math.log10(power.max() / numpy.ravel(file.header()['noise_w'])[0]), 'dB over the noise')\n",
+};

@@ -18,7 +18,9 @@ const Reference reference_products = {
         "    latest/BAND.png                  help png       the newest display image; --latest\n"
         "    raw/BAND/NNNNNN.png              help raw       counts of the detector; with sensor.preset or "
         "sensor.table\n"
-        "    profiles/radar/NNNNNN.csv        help profile   radar power over range\n"
+        "    profiles/radar/NNNNNN.csv        help profile   pseudo-radar power over range\n"
+        "    radar/NNNNNN.csv                 help radar     range profile of a radar with phase; radar.preset\n"
+        "    radar/NNNNNN.exr, .png           help radar-map its map of range and Doppler\n"
         "    pairs.jsonl, pairs/              help pairs     each frame without its target, without noise; --pairs\n"
         "    coco.json                        help coco      boxes and masks; --coco\n"
         "    manifest.jsonl, V/variant.json   help manifest  of --sweep: a line per variant; V/ is a folder of "
@@ -163,6 +165,44 @@ static const ReferenceField fields[] = {
     {"error.BAND.heat_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"error.BAND.dead_reckoning_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"error.BAND.total_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
+    {"radar", "object", "", "", "with radar.preset none", "what the radar on the sensor's axis measured, and the truth of it"},
+    {"radar.preset", "string", "", "", "", "row of etc/radars.csv"},
+    {"radar.reference_m", "number", "m", "from the sensor", "", "middle of the range window: the aim, else the ground ahead"},
+    {"radar.reference_rate_mps", "number", "m/s", "above 0: receding", "", "range rate in the middle of the map"},
+    {"radar.air_db", "number", "dB", "one way", "", "loss by gases and rain over that range"},
+    {"radar.noise_dbw", "number", "dB over 1 W", "", "", "thermal noise in a cell of the map"},
+    {"radar.saturated", "integer", "", "", "", "I and Q values at the end of the converter's range"},
+    {"radar.ground_cells", "integer", "", "", "", "scatterers of the ground within main lobe and window"},
+    {"radar.ground_hidden", "integer", "", "", "", "of these, hidden by relief, plants or entities"},
+    {"radar.map_sha256", "string", "", "", "", "SHA-256 of the map of all channels, before it is rounded for a file"},
+    {"radar.detections", "list of objects", "", "strongest first, at most 256", "", "peaks over the threshold of constant false "
+     "alarms"},
+    {"radar.detections[].range_m", "number", "m", "from the sensor", "", "between cells"},
+    {"radar.detections[].range_rate_mps", "number", "m/s", "above 0: receding", "", "between cells; folds over at half of the map"},
+    {"radar.detections[].az_deg", "number", "deg", "camera, right positive", "", "by monopulse"},
+    {"radar.detections[].el_deg", "number", "deg", "camera, up positive", "", "by monopulse"},
+    {"radar.detections[].snr_db", "number", "dB", "", "", "over the noise and clutter about it"},
+    {"radar.detections[].rcs_dbsm", "number", "dB over 1 m2", "", "", "by the radar equation, as one point where it was found"},
+    {"radar.detections_in_all", "integer", "", "", "", "how many passed the threshold"},
+    {"radar.targets", "list of objects", "", "", "", "truth of each entity near beam and window, in order of ids"},
+    {"radar.targets[].entity", "string", "", "site:application:entity", "", "id"},
+    {"radar.targets[].range_m", "number", "m", "from the sensor", "", "to the origin of its model"},
+    {"radar.targets[].range_rate_mps", "number", "m/s", "above 0: receding", "", "of that origin"},
+    {"radar.targets[].az_deg", "number", "deg", "camera, right positive", "", "direction of that origin"},
+    {"radar.targets[].el_deg", "number", "deg", "camera, up positive", "", "likewise"},
+    {"radar.targets[].visible_fraction", "number", "", "0 .. 1", "", "share of its box in sight; its power is reduced by it"},
+    {"radar.targets[].rcs_dbsm", "object", "", "", "", "cross section at the centre frequency, as if wholly in sight"},
+    {"radar.targets[].rcs_dbsm.hh", "number", "dB over 1 m2", "received, transmitted", "", "h along the camera's columns"},
+    {"radar.targets[].rcs_dbsm.vv", "number", "dB over 1 m2", "", "", "v along its rows"},
+    {"radar.targets[].rcs_dbsm.hv", "number", "dB over 1 m2", "", "", "received h, transmitted v"},
+    {"radar.targets[].snr_db", "number", "dB", "", "when none of it is in sight", "by the radar equation, as a point, over the "
+     "thermal noise of a cell"},
+    {"radar.targets[].centres", "integer", "", "", "", "scattering centres that it was summed from"},
+    {"radar.targets[].strongest", "object", "", "", "when it scatters nothing back", "the strongest of them, at VV"},
+    {"radar.targets[].strongest.rcs_vv_dbsm", "number", "dB over 1 m2", "", "", "its cross section"},
+    {"radar.targets[].strongest.body_m", "list of 3 numbers", "m", "body", "", "middle of its path's first and last mirror"},
+    {"radar.targets[].strongest.bounces", "integer", "", "", "", "mirrors on its path"},
+    {"radar.targets[].strongest.part", "string", "", "", "", "part of the model with the last mirror"},
     {"latency_ms", "object", "", "", "in a replay at full speed",
      "when each step of the frame was done; of a run and of replay --speed X"},
     {"latency_ms.arrival_to_pose", "number", "ms", "", "before the first datagram",

@@ -115,6 +115,10 @@ static const Setting keys[] = {
     {"radar.bins", SETTING_INT, AT(radar.bins), 16, 65536, NULL, "", "number of range bins, centred on the aim point"},
     {"radar.lobe_deg", SETTING_DOUBLE, AT(radar.lobe_deg), 0.2, 30, NULL, "deg",
      "rms half width of the scattering lobe"},
+    {"radar.preset", SETTING_TEXT, AT(radar.preset), 0, 0, NULL, "",
+     "none, or a row of etc/radars.csv: a radar with phase on the sensor's axis, whose range profiles, maps of range and Doppler "
+     "and detections are products"},
+    {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of the ground; with a preset"},
     {"exercise.port", SETTING_INT, AT(exercise.port), -1, 65535, NULL, "",
      "UDP port of the exercise; 0: any; -1: 3000, or any if nothing was sent to it"},
     {"exercise.exercise", SETTING_INT, AT(exercise.exercise), -2, 255, NULL, "",
@@ -354,6 +358,8 @@ Config config_default(void)
     c.radar.bin_m                   = 0.3; /* 500 MHz of bandwidth */
     c.radar.bins                    = 512;
     c.radar.lobe_deg                = 3;
+    strcpy(c.radar.preset, "none");
+    c.radar.ground                  = true;
     c.exercise.port                 = -1;
     c.exercise.exercise             = -1;
     c.exercise.listen_s             = 2;

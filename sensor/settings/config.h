@@ -50,6 +50,8 @@ typedef struct Config {
         double bin_m;
         int    bins;
         double lobe_deg;
+        char   preset[32];         /* a row of etc/radars.csv; none */
+        bool   ground;             /* of the preset: the ground scatters */
     } radar;
     struct {
         int    port, exercise;     /* exercise -1: the one with the most PDUs, -2: all */

@@ -139,6 +139,8 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
         folder[strlen(folder) - strlen("/atmosphere")] = 0;
         if (status == STATUS_OK) status = add_csv_of(out, folder, "");
     }
+    if (status == STATUS_OK && strcmp(config->radar.preset, "none") != 0 && etc_path(folder, sizeof folder, "radar"))
+        status = add_csv_of(out, folder, "radar/");
     snprintf(name, sizeof name, "atmosphere/%.100s", config->weather.atmosphere);
     if (status == STATUS_OK) status = add_folder(out, name);
     if (*config->sensor.table && status == STATUS_OK) status = add_in(out, "", config->sensor.table);

@@ -6,9 +6,8 @@
 Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *world, const Config *config,
                    const FrameEye *eye, Pool *pool, Arena *arena)
 {
-    Weather    weather = frame_weather(config, world);
-    HeatScene *heat = NULL;
-    if (world->course) weather_at(&weather, world->course, eye->unix_s);
+    const Weather weather = frame_weather_at(config, world, eye->unix_s);
+    HeatScene    *heat = NULL;
     Geodetic place;
     double   p_ecef[3], r_ecef_from_host[9], d_ecef[3];
     Status   status = geodetic_from_ecef(&place, eye->p_ecef);

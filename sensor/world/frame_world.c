@@ -40,6 +40,13 @@ Weather frame_weather(const Config *config, const World *world)
     return base;
 }
 
+Weather frame_weather_at(const Config *config, const World *world, double unix_s)
+{
+    Weather weather = frame_weather(config, world);
+    if (world->course) weather_at(&weather, world->course, unix_s);
+    return weather;
+}
+
 Status frame_world_warm(World *world, const Config *config, double unix_s, Pool *pool)
 {
     const WeatherCourseConfig about = {frame_weather(config, world), config->weather.air_range_k, world->frame.origin.lon_rad,

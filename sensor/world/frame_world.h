@@ -12,6 +12,8 @@ Status frame_world(World *out, const Config *config, const Catalog *catalog, con
 Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool);
 /* Of the settings alone: what a course of the weather starts from. With an atmosphere. */
 Weather frame_weather(const Config *config, const World *world);
+/* The same as its course has it then. */
+Weather frame_weather_at(const Config *config, const World *world, double unix_s);
 /* Its heat, over the weather of weather.* up to unix_s, that of exercise time 0. After the plants. */
 Status frame_world_warm(World *world, const Config *config, double unix_s, Pool *pool);
 

@@ -95,6 +95,23 @@ static void wrecks_burn_out(void **state)
     CHECK(at(&s, 1e5).burning == 1);
 }
 
+/* Engine smoke is an engine that runs, but for a wreck's; a plume from what is damaged smoulders, from what is whole it is a screen. */
+static void smoke_is_evidence(void **state)
+{
+    (void)state;
+    static const struct { uint32_t smoke, damage; float engine, burning; } c[] = {
+        {0, 0, 0, 0}, {1, 0, 0, 0}, {2, 0, 0.6f, 0}, {3, 0, 0.6f, 0}, {1, 1, 0, 0.1f}, {3, 2, 0.6f, 0.1f}, {1, 3, 0, 0.1f}, {2, 3, 0, 0}};
+    for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
+        DriveState s;
+        DriveEvidence e = {.type = tank_type, .appearance = c[i].smoke << 5 | c[i].damage << 3};
+        drives_begin(&s, &e, 0);
+        CHECK(at(&s, 1e4).engine == c[i].engine && at(&s, 1e4).burning == c[i].burning);
+        e.appearance |= 1 << 15;
+        drives_report(&s, &e, 1);
+        CHECK(at(&s, 1e4).burning == 1); /* flames are more */
+    }
+}
+
 /* Shots add up, by the size of the charge, and stay finite. */
 static void shots_add_up(void **state)
 {
@@ -145,7 +162,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(engine_is_inferred), cmocka_unit_test(speed_is_power),
         cmocka_unit_test(slopes_and_turns_are_power), cmocka_unit_test(flight_is_evidence),
-        cmocka_unit_test(wrecks_burn_out),    cmocka_unit_test(shots_add_up),   cmocka_unit_test(short_lives),
+        cmocka_unit_test(wrecks_burn_out),    cmocka_unit_test(smoke_is_evidence),  cmocka_unit_test(shots_add_up),   cmocka_unit_test(short_lives),
         cmocka_unit_test(what_lives),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -26,7 +26,7 @@ static void every_key_arrives_in_si_units(void **state)
                   "  - {nodes: w*, each: true, pivot: centre, roll_radius: auto}\n"
                   "  - {nodes: r, axis: 0 3 4, spin_rpm: 60}\n"
                   "  - {nodes: m, axis: up, class: 2048, metric: extension, limits_m: 0 2}\n"
-                  "materials: {a: paint_olive}\nnode_materials: {w*: rubber_black}\nroles: {w*: wheel}\n"
+                  "materials: {a: paint_olive}\nnode_materials: {w*: rubber_black}\nroles: {w*: wheel}\nthickness_mm: {w*: 12.5, hull: 1000}\n"
                   "damage: {slight: {hide: x}, destroyed: {hide: [a, b], materials: {\"*\": metal_dark}}}\n"),
         STATUS_OK);
     assert_string_equal(s.file, "a.glb");
@@ -50,6 +50,7 @@ static void every_key_arrives_in_si_units(void **state)
     CHECK_NEAR(s.joint[3].spin_rps, 6.283185307179586, 1e-14);
     CHECK(s.joint[4].slides && s.joint[4].high == 2 && s.joint[4].axis == AXIS_BODY && s.joint[4].axis_xyz[2] == -1);
     CHECK(s.roles.count == 1 && s.materials.count == 1 && s.node_materials.count == 1);
+    CHECK(s.thickness.count == 2 && strcmp(s.thickness.rule[0].value, "12.5") == 0 && strcmp(s.thickness.rule[1].pattern, "hull") == 0);
     CHECK(s.damage_hide.count == 3 && s.damage_hide.rule[0].damage == 1 && s.damage_hide.rule[2].damage == 3);
     CHECK(s.damage_materials.count == 1 && s.damage_materials.rule[0].damage == 3);
     sidecar_close(&s);
@@ -85,6 +86,15 @@ static void what_is_wrong_is_said(void **state)
         {"materials: {a: b, a: c}\n", "tank.yaml:1: materials: 'a' is given twice"},
         {"materials: {a: 01234567890123456789012345678901}\n", "is not a name of 1 .. 31 characters"},
         {"roles:\n  a: hot\n", "tank.yaml:2: roles: 'hot' is not one of passive, hull, turret"},
+        {"scale: 1\nthickness_mm: {\"hull*\": 0}\n", "tank.yaml:2: thickness_mm: '0' is not a thickness in 0.1 .. 1000 mm"},
+        {"thickness_mm: {a: 1000.1}\n", "thickness_mm: '1000.1' is not a thickness in 0.1 .. 1000 mm"},
+        {"thickness_mm: {a: -5}\n", "'-5' is not a thickness"},
+        {"thickness_mm: {a: nan}\n", "'nan' is not a thickness"},
+        {"thickness_mm: {a: thick}\n", "'thick' is not a thickness"},
+        {"thickness_mm: {a: 5 6}\n", "'5 6' is not a thickness"},
+        {"thickness_mm: 5\n", "thickness_mm: '5' is not `pattern: number` for each"},
+        {"thickness_mm: {a: 5, a: 6}\n", "thickness_mm: 'a' is given twice"},
+        {"thickness_mm: {a: 5.00000000000000000000000000000000001}\n", "is not a name of 1 .. 31 characters"},
         {"damage: {ruined: {}}\n", "tank.yaml:1: no such key: damage.ruined; all keys: `pitviper model --keys`"},
         {"damage: {slight: {burn: a}}\n", "no such key: damage.slight.burn; all keys"},
         {"damage: {slight: {hide: a}, slight: {hide: b}}\n", "damage.slight.hide is given twice"},

@@ -19,7 +19,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
         "  - {nodes: rotor, axis: 0 1 0, spin_rpm: 300}\n"
         "  - {nodes: mast, axis: up, class: 2048, metric: extension, limits_m: 0 2}\n"
         "materials: {a: paint_olive, \"*\": paint_sand}\nnode_materials: {w*: rubber_black}\n"
-        "roles: {w*: wheel}\ndamage: {destroyed: {hide: [a, b], materials: {\"*\": metal_dark}}}\n",
+        "roles: {w*: wheel}\nthickness_mm: {w*: 30, \"*\": 0.5}\ndamage: {destroyed: {hide: [a, b], materials: {\"*\": metal_dark}}}\n",
         "axes: -x +z\norigin: auto\njoints:\n- nodes: &n\n  - a\n  - b\n  axis: [0, 0, 1]\n- nodes: *n\n  axis: -y\n"
         "damage:\n  slight:\n    hide: x\n",
     };
@@ -42,6 +42,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (joint->axis != AXIS_DEFAULT && !(fabs(v3_length(joint->axis_xyz) - 1) <= 1e-9)) abort();
         if (joint->has_limits && !(joint->low <= joint->high)) abort();
         if (joint->slides && !joint->has_limits) abort();
+    }
+    for (int i = 0; i < s.thickness.count; i++) {
+        double mm;
+        if (!text_to_double(&mm, s.thickness.rule[i].value) || !(mm >= 0.1 && mm <= 1000)) abort();
     }
     sidecar_close(&s);
     return 0;

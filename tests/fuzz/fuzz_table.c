@@ -10,6 +10,8 @@
 #include "render/heat/kept_heat.h"
 #include "render/heat/part_table.h"
 #include "render/materials/materials.h"
+#include "render/radar/gas_attenuation.h"
+#include "render/radar/clutter_table.h"
 #include "sensor/detector/sheet.h"
 
 #include <stdlib.h>
@@ -20,7 +22,8 @@ const int fuzz_rounds = 1500;
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const char *const name[] = {"catalog.csv",  "heat.csv",     "effects.csv",
-                                       "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet"};
+                                       "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet",
+                                       "radar/oxygen_lines.csv", "radar/water_lines.csv", "radar/clutter.csv"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
     switch (index % (names + 3)) {
@@ -54,6 +57,22 @@ static void walk(const Table *table)
             (void)text_to_long(&whole, text);
             if (text_to_unix_s(&unix_s, text) && !(fabs(unix_s) <= 5e9)) abort();
             if (column > 0 && text == table_text(table, row, column - 1)) abort();
+        }
+}
+
+/* Lines that were accepted give finite dispersion and attenuation at their own frequencies, too. */
+static void lines_of(const char *path, bool oxygen)
+{
+    static GasLines lines;
+    if (gas_lines_read(&lines, oxygen ? path : NULL, oxygen ? NULL : path) != STATUS_OK) return;
+    const GasLineList *list = oxygen ? &lines.oxygen : &lines.water;
+    if (!(list->count >= 1 && list->count <= gas_lines_max)) abort();
+    for (int i = 0; i < list->count; i++)
+        for (int corner = 0; corner < 8; corner++) {
+            const GasState air = {corner & 1 ? 1200 : 0, corner & 2 ? 150 : 0, corner & 4 ? 350 : 150};
+            GasAttenuation got;
+            gas_attenuation(&got, &lines, fmax(1, fmin(1000, list->f_ghz[i])), &air);
+            if (!isfinite(got.dry_db_km + got.wet_db_km + got.dry_ppm + got.wet_ppm)) abort();
         }
 }
 
@@ -110,6 +129,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                 if (!(given_heat_k(given, index, t_s) >= 1 && given_heat_k(given, index, t_s) <= 4000)) abort();
             given_heat_close(given);
         }
+        if (table_column(&table, "line_ghz") >= 0) lines_of(path, table_column(&table, "coupling") >= 0);
         if (table_column(&table, "inside") >= 0) (void)part_table_roles(&parts, path);
         if (table_column(&table, "engine_kw") >= 0) (void)part_table_machines(&parts, path);
         if (table_column(&table, "life_s") >= 0) (void)effect_table_open(&effects, path);
@@ -119,6 +139,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             materials_close(&materials);
         if (table_column(&table, "surface") >= 0 && materials_open(&materials, materials_path, path, NULL) == STATUS_OK)
             materials_close(&materials);
+        static ClutterTable clutter;
+        if (table_column(&table, "texture_m") >= 0 && clutter_table_open(&clutter, path) == STATUS_OK)
+            for (int surface = 0; surface < SURFACE_COUNT; surface++)
+                for (int band = 0; band < CLUTTER_BAND_COUNT; band++) {
+                    const ClutterRow *row = &clutter.row[surface][band];
+                    if (!(clutter_sigma0(row, 0.1, 0.003) >= 0 && clutter_foliage_db(row, 9) >= 0)) abort();
+                    if (!(clutter_texture(row, -8) >= 0 && clutter_texture(row, 8) < 1e4)) abort();
+                }
         table_close(&table);
     }
     close(file);

@@ -134,8 +134,6 @@ static void limits_hold(void **state)
                 const double e = hot_gas_emissivity((HotGasBand)band, (HotGasColumn){u, u}, temp_k);
                 CHECK((u < 1 ? e > before : e >= before - 1e-14) && e <= 1);
                 before = e;
-                const double depth = hot_gas_depth((HotGasBand)band, (HotGasColumn){u, u}, temp_k, 0.5);
-                CHECK_NEAR(-expm1(-depth), 0.5 * e, 1e-12);
             }
             const double one = hot_gas_emissivity((HotGasBand)band, (HotGasColumn){1e-9, 1e-9}, temp_k);
             const double two = hot_gas_emissivity((HotGasBand)band, (HotGasColumn){2e-9, 2e-9}, temp_k);

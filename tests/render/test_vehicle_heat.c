@@ -6,11 +6,13 @@
 
 static PlaceHeat weather; /* at all times and places */
 static double    sun_up_s; /* exercise time from which its sun shines; Unix time of exercise time 0 is 0 */
+static double    ground_k_m, ground_k_s; /* by which its ground is warmer to the north, and with time */
 
 static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const double p_enu[3], bool present)
 {
-    (void)user, (void)p_enu, (void)present;
+    (void)user, (void)present;
     *out = weather;
+    out->ground_k += ground_k_m * p_enu[1] + ground_k_s * unix_s;
     if (unix_s < sun_up_s) out->direct_w_m2 = out->diffuse_w_m2 = 0;
     return STATUS_OK;
 }
@@ -18,9 +20,9 @@ static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const 
 /* All around, air too, at one temperature; no sun. */
 static void enclose(double temp_k)
 {
-    sun_up_s = 0;
+    sun_up_s = 0, ground_k_m = ground_k_s = 0;
     weather = (PlaceHeat){.air_k = temp_k, .air_density = 1, .longwave_w_m2 = stefan_w_m2k4 * pow(temp_k, 4), .ground_k = temp_k,
-                          .under_k = temp_k, .ground_rho = 0.2, .sun_d_enu = {0, 0, 1}};
+                          .under_k = temp_k, .water_k = temp_k, .ground_rho = 0.2, .sun_d_enu = {0, 0, 1}};
 }
 
 static const KeptHeat *last_run; /* NULL: none */
@@ -60,8 +62,8 @@ static double mean_k(const VehicleHeat *heat, Scene *s, HeatRole role, const dou
     for (int i = 0; i < p->count; i++) {
         if (p->patch[i].role != role) continue;
         if (n && !(p->patch[i].facing * v3_dot(p->patch[i].n_node, n) > 0.5 && v3_dot(p->patch[i].p_node, n) > 0)) continue;
-        sum += p->patch[i].area_m2 * (double)s->snapshot.patch_k[i];
-        m2 += p->patch[i].area_m2;
+        sum += patch_open_m2(&p->patch[i]) * (double)s->snapshot.patch_k[i];
+        m2 += patch_open_m2(&p->patch[i]);
     }
     return m2 > 0 ? sum / m2 : NAN;
 }
@@ -154,14 +156,15 @@ static void engines_warm_and_stay_warm(void **state)
     vehicle_heat_destroy(heat);
 }
 
-/* The nodes of a step keep the heat that came from outside. */
-/* A jet that blows on the hull's rear warms it, and the turret's front hardly; away from the entity it warms nothing, nor does an engine that is off. */
+
+/* A jet as wide as the points of a patch lie apart, on the hull's rear, warms it, and the turret's front hardly; away from the entity it warms
+ * nothing, nor does an engine that is off. */
 static void exhaust_warms_what_it_blows_on(void **state)
 {
     (void)state;
     static const double back[3] = {-1, 0, 0}, front[3] = {1, 0, 0};
-    const ExhaustJet    across = {.at_body = {-5.5, 0, -0.95}, .d_body = {1, 0, 0}, .radius_m = 0.3, .speed_mps = 30, .excess_k = 300};
-    const ExhaustJet    away = {.at_body = {-5.5, 0, -0.95}, .d_body = {-1, 0, 0}, .radius_m = 0.3, .speed_mps = 30, .excess_k = 300};
+    const ExhaustJet    across = {.at_body = {-5.5, 0, -0.95}, .d_body = {1, 0, 0}, .radius_m = 0.5, .speed_mps = 30, .excess_k = 300};
+    const ExhaustJet    away = {.at_body = {-5.5, 0, -0.95}, .d_body = {-1, 0, 0}, .radius_m = 0.5, .speed_mps = 30, .excess_k = 300};
     double              back_k[4], front_k[4];
     enclose(288);
     for (int c = 0; c < 4; c++) { /* none, across, away, across without its engine */
@@ -334,6 +337,37 @@ static void the_past_alone_decides(void **state)
     }
 }
 
+/* It is less the ground where it is, at the frame's time: not that of its last step. */
+static void contrast_is_to_the_ground_below(void **state)
+{
+    (void)state;
+    Scene s;
+    enclose(290);
+    ground_k_m = 0.02, ground_k_s = -1e-3;
+    VehicleHeat *heat = start(30);
+    place(&s, tank, (EntityDrives){.engine = 1, .alive = true});
+    fly(&s, 8);
+    double most_lag_k = 0;
+    for (int t_s = 0; t_s <= 200; t_s++) {
+        const double p_enu[3] = {0, 8 * t_s, 0};
+        VehicleNodes nodes;
+        ecef_from_enu(s.entity.p_ecef, &stage.frame, p_enu);
+        s.snapshot.t_s = t_s;
+        CHECK(vehicle_heat_tick(heat, &s.snapshot) == STATUS_OK);
+        CHECK(vehicle_heat_show(heat, &s.snapshot, stage.arena) == STATUS_OK);
+        const Patches *p = &stage.patches.of[s.entity.model];
+        double         sum = 0, m2 = 0;
+        for (int i = 0; i < p->count; i++)
+            sum += p->patch[i].area_m2 * (double)s.snapshot.patch_k[i], m2 += p->patch[i].area_m2;
+        CHECK_NEAR((double)s.entity.dt_k, sum / m2 - (290 + 0.02 * 8 * t_s - 1e-3 * t_s), 2e-5);
+        CHECK(vehicle_heat_nodes(&nodes, heat, s.entity.id));
+        most_lag_k = fmax(most_lag_k, (0.02 * 8 - 1e-3) * (t_s - nodes.t_s));
+    }
+    CHECK(most_lag_k > 3); /* what the ground of its last step would be off by */
+    vehicle_heat_destroy(heat);
+    ground_k_m = ground_k_s = 0;
+}
+
 /* Of nine entities the last is left out of eight places, counted, and as warm as the air; one that goes is forgotten. */
 static void room_is_bounded(void **state)
 {
@@ -407,7 +441,8 @@ int main(void)
         cmocka_unit_test(a_restart_goes_on),
         cmocka_unit_test(heat_is_kept),
         cmocka_unit_test(speed_warms),                 cmocka_unit_test(bodies_and_flares),
-        cmocka_unit_test(the_past_alone_decides),      cmocka_unit_test(room_is_bounded),
+        cmocka_unit_test(the_past_alone_decides),      cmocka_unit_test(contrast_is_to_the_ground_below),
+        cmocka_unit_test(room_is_bounded),
         cmocka_unit_test(crowds_wait),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);

@@ -9,7 +9,7 @@ static Status everywhere(PlaceHeat *out, const void *user, double unix_s, const 
     const double turn = unix_s * 2 * pi_rad / 86400, up = M_SQRT1_2 * cos(turn);
     *out = (PlaceHeat){.air_k = 288 + 5 * cos(turn - 0.7), .air_density = 1, .wind_enu_mps = {2, 1, 0}, .longwave_w_m2 = 300, .ground_rho = 0.2,
                        .sun_d_enu = {-sin(turn), -M_SQRT1_2 * cos(turn), up}};
-    out->ground_k = out->air_k + 10 * cos(turn - 0.4), out->under_k = out->air_k;
+    out->ground_k = out->air_k + 10 * cos(turn - 0.4), out->under_k = out->water_k = out->air_k;
     if (up > 0) out->direct_w_m2 = 1361 * pow(0.7, pow(1 / fmax(up, 0.02), 0.678)), out->diffuse_w_m2 = 136 * up;
     return STATUS_OK;
 }
@@ -38,7 +38,7 @@ static void misses(double *off_k, double *estimate_k, const Scene *a, const Scen
     CHECK(a->entity.patches == p->count && fine->entity.patches == p->count);
     for (int i = 0; i < p->count; i++) {
         const double k = (double)a->snapshot.patch_k[i], d = k - (double)fine->snapshot.patch_k[i], e = vehicle_heat_error_k(k, air_k);
-        off += p->patch[i].area_m2 * d * d, estimate += p->patch[i].area_m2 * e * e, m2 += p->patch[i].area_m2;
+        off += patch_open_m2(&p->patch[i]) * d * d, estimate += patch_open_m2(&p->patch[i]) * e * e, m2 += patch_open_m2(&p->patch[i]);
     }
     *off_k = sqrt(off / m2), *estimate_k = sqrt(estimate / m2);
 }

@@ -44,13 +44,14 @@ static inline int close_stage(void **state)
     return 0;
 }
 
-/* about: first step and capacity are filled in. kept: may be NULL. */
+/* about: first step and, where it is 0, capacity are filled in. kept: may be NULL. */
 static inline VehicleHeat *stage_start(const VehicleHeatConfig *about, const KeptHeat *kept)
 {
     VehicleHeat           *heat;
     VehicleHeatConfig      config = *about;
     const VehicleHeatWorld world = {stage.catalog, &stage.materials, &stage.table, &stage.frame, stage.tracer, &stage.patches, NULL, kept};
-    config.first_step_s = 1, config.capacity = 8;
+    config.first_step_s = 1;
+    if (config.capacity == 0) config.capacity = 8;
     CHECK(vehicle_heat_create(&heat, &config, &world) == STATUS_OK);
     return heat;
 }

@@ -296,9 +296,11 @@ def take_run(topics, out, lines_of):
     for path in glob.glob(f"{out}/latest/*.png"): take_png(topics["png"], path, path.split("/")[-1][:-4])
     for path in glob.glob(f"{out}/profiles/radar/*.csv"):
         take_table(topics["profile"], open(path).read().splitlines(), ",", True)
+    for path in glob.glob(f"{out}/radar/*.csv"): take_table(topics["radar"], open(path).read().splitlines(), ",", True)
+    for path in glob.glob(f"{out}/radar/*.exr"): take_exr(topics["radar-map"], path, "", "")
     for name, file in (("pairs", "pairs.jsonl"), ("coco", "coco.json")):
         if os.path.exists(f"{out}/{file}"): take_json(topics[name], f"{out}/{file}")
-    known = r"(pairs/\w+/)?(frames|raw|profiles)/\w+/\d{6}\.(exr|png|csv)|latest/\w+\.png|(truth|pairs)\.jsonl|(run|coco|variant)\.json|settings\.yaml|log\.txt|thumbnail\.png"
+    known = r"(pairs/\w+/)?(frames|raw|profiles)/\w+/\d{6}\.(exr|png|csv)|radar/\d{6}\.(exr|png|csv)|latest/\w+\.png|(truth|pairs)\.jsonl|(run|coco|variant)\.json|settings\.yaml|log\.txt|thumbnail\.png"
     for path in glob.glob(f"{out}/**", recursive=True):
         if os.path.isfile(path): check(re.fullmatch(known, os.path.relpath(path, out)), path, "is no product of the reference")
     meaning_of_truth(out)
@@ -334,7 +336,7 @@ def main():
     for what, path in zip(sys.argv[2::2], sys.argv[3::2]):
         begin = first.setdefault(what, True)
         first[what] = False
-        every = ("truth", "run.json", "exr", "png", "raw", "profile", "pairs", "coco")
+        every = ("truth", "run.json", "exr", "png", "raw", "profile", "radar", "radar-map", "pairs", "coco")
         if what == "--run": take_run(topics, path, every if begin else ())
         elif what == "--truth": take_run(topics, path, ["truth"])
         elif what == "--sweep": take_sweep(topics, path)

@@ -16,7 +16,7 @@ check "model list: a row" grep -qE '^  1\.1\.225\.6\.1\.\*\.\* +land +jeep +4\.5
 check "model list: every row of the catalog" [ "$(grep -c 'catalog\.csv:[0-9]' "$tmp/stdout")" = "$(grep -cE '^[0-9*]' etc/catalog.csv)" ]
 run model --keys
 keys=$(sed -nE 's/^  ([a-z_.]+): .*/\1/p' "$tmp/stdout")
-check "model --keys: all of the reader's" [ "$(wc -w <<<"$keys")" = 30 ]
+check "model --keys: all of the reader's" [ "$(wc -w <<<"$keys")" = 31 ]
 for key in $keys; do # each with a value that none takes is refused with file, line and its name
     case $key in
         joints.*) printf 'joints:\n- {%s: {a: b}}\n' "${key#joints.}" ;;
@@ -96,6 +96,12 @@ run model info "$tmp/block.obj"
 check "info with a sidecar" [ $code = 0 ]
 check "info: the joint's limits" said 'turns about 0.000 0.000 1.000 -10 .. 10 deg'
 check "info: half the size" said 'size: 1.000 x 2.000 x 3.000'
+printf 'materials: {"*": rubber_black}\nroles: {block: wheel}\nthickness_mm: {"*": 7, block: 12.5}\n' >"$tmp/block.yaml"
+run model info "$tmp/block.obj"
+check "info: material, role and skin of the sidecar" said 'block on hull, rubber_black, heat wheel, skin 12.5 mm, 12 triangles|rubber_black, heat wheel, 12 triangles, skin 12.5 mm'
+echo 'thickness_mm: {block: 5000}' >"$tmp/block.yaml"
+run model info "$tmp/block.obj"
+check "a skin too thick: said" complained "block.yaml:1: thickness_mm: '5000' is not a thickness in 0.1 .. 1000 mm"
 echo 'scael: 3' >"$tmp/block.yaml"
 run model info "$tmp/block.obj"
 check "a slip in the sidecar: exit code" [ $code = 1 ]

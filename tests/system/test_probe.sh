@@ -90,4 +90,46 @@ PITVIPER=$pitviper etc/plot_heat 2026-06-21 "$tmp/none.svg" lava 2>"$tmp/stderr"
 check "an unknown surface is no picture" test $? = 1 -a ! -e "$tmp/none.svg"
 check "and said" grep -q 'lava: surface is no row' "$tmp/stderr"
 
+# radio waves: P.676-13's 0.4081 dB/km of 94 GHz at 15 C and 7.5 g/m3, rain and fog over it, and an echo by hand
+probe propagation < <(
+    echo frequency_ghz,from_m,to_m,range_m,humidity,rain_mm_h,visibility_m,fog_top_m,cloud_g_m3
+    echo 94,0,0,1000,0.585,,,,
+    echo 94,0,0,1000,0.585,25,,,
+    echo 94,0,0,1000,0.585,,50,,
+    echo 94,0,400,1000,0.585,,50,200,
+    echo 250,0,0,1000,0.585,,50,,
+    echo 94,0,0,1000,0.585,,,,0.5
+    echo 94,0,2000,1000,,,,,
+)
+near "94 GHz, clear, dB/km" "$(cell 1 gas_db)" 0.408 0.004
+near "25 mm/h" "$(cell 2 rain_db)" 12.10 0.005
+near "two ways, all" "$(cell 2 two_way_db)" 25.0 0.1
+near "fog of 50 m everywhere" "$(cell 3 cloud_db)" "$(cell 3 cloud_db_km)" 0.01
+near "below 200 m: half" "$(cell 4 cloud_db)" "$(awk -v a="$(cell 3 cloud_db)" 'BEGIN { print a / 2 }')" 0.02
+check "no P.840 beyond 200 GHz" test -z "$(cell 5 gas_db)" -a -n "$(cell 5 error)"
+check "a cloud has heights" test -n "$(cell 6 error)"
+check "a path is as long as it is high" test -n "$(cell 7 error)"
+probe propagation nonsense < <(printf 'frequency_ghz,from_m,to_m,range_m\n94,0,0,1000\n')
+check "an unknown model is an error" test $code -ge 1
+probe radar-equation < <(printf 'power_w,gain_db,frequency_ghz,rcs_dbsm,range_m,bandwidth_hz,noise_figure_db,loss_db\n10,40,94,10,3000,1e8,6,0\n10,40,94,10,3000,1e8,6,3\n10,40,94,10,0,1e8,6,3\n')
+near "10 dBsm at 3 km, dBW" "$(cell 1 received_dbw)" -121.98728 0.0001
+near "noise" "$(cell 1 noise_dbw)" -117.97519 0.0001
+near "3 dB of loss" "$(cell 2 snr_db)" -7.0121 0.0001
+check "no range, no echo" test -n "$(cell 3 error)"
+# radar clutter: grass at 16 GHz is -15 dB + 5 log10(1.6) of sin(30 deg), by etc/radar/clutter.csv; and 4000 resolution cells of
+# soil, a kilometre of them, whose intensity has the mean and the second moment, 2 (1 + 1 / nu), of a K distribution
+probe clutter < <(printf 'surface,frequency_ghz,grazing_deg,wind_mps\ngrass,16,30,0\nforest_broadleaf,35,30,8\nlava,35,30,0\ngrass,20,30,0\ngrass,16,0,0\n')
+near "sigma0 of grass" "$(cell 1 sigma0_vv_db)" -16.99 0.06
+near "without wind all is still" "$(cell 1 still)" 1 0
+near "trees in 8 m/s: 1/beta" "$(cell 2 spread_mps)" 0.17474 0.0001
+near "and its rms Doppler" "$(cell 2 width_hz)" 57.70 0.1
+near "a metre of leaves at 35 GHz" "$(cell 2 foliage_db)" 1.235 0.006
+for row in 3 4 5; do check "clutter: row $row says why not" test -n "$(cell $row error)" -a -z "$(cell $row sigma0_vv_db)"; done
+probe clutter-cell < <(echo surface,frequency_ghz,grazing_deg,x_m,y_m,t_s
+    awk 'BEGIN { for (i = 0; i < 4000; i++) print "bare_soil,94,20," 8 * (i % 80) "," 8 * int(i / 80) ",0"; print "bare_soil,94,20,0,0,1e6" }')
+check "clutter-cell: moments of K with nu = 12" awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "relative") c = i }
+    NR > 1 && NR <= 4001 { n++; m += $c; q += $c * $c }
+    END { m /= n; q /= n; exit !(n == 4000 && m > 0.93 && m < 1.07 && q / m / m > 1.9 && q / m / m < 2.45) }' "$tmp/stdout"
+check "clutter-cell: no wind, no change" test "$(cell 1 vv_re)" = "$(cell 4001 vv_re)" -a -n "$(cell 1 vv_re)"
+
 finish

@@ -27,7 +27,7 @@ static Status morning(PlaceHeat *out, const void *user, double unix_s, const dou
 {
     (void)user, (void)p_enu, (void)present;
     const double hour = 8 + unix_s / 3600, turn = (hour - 12) * pi_rad / 12, up = 0.7 * cos(turn) + 0.15;
-    *out = (PlaceHeat){.air_k = 288, .air_density = 1, .wind_enu_mps = {2, 0, 0}, .longwave_w_m2 = 300, .ground_k = 292, .under_k = 288,
+    *out = (PlaceHeat){.air_k = 288, .air_density = 1, .wind_enu_mps = {2, 0, 0}, .longwave_w_m2 = 300, .ground_k = 292, .under_k = 288, .water_k = 288,
                        .ground_rho = 0.2, .sun_d_enu = {-sqrt(fmax(1 - up * up, 0)) * sin(turn) / fmax(fabs(sin(turn)), 1e-9), 0, up}};
     if (up > 0) out->direct_w_m2 = 800, out->diffuse_w_m2 = 80;
     return STATUS_OK;

@@ -213,6 +213,7 @@ static double smoke(void *user, bool quick)
     (void)user;
     for (int round = quick ? 5 : 50; round > 0; round--) {
         SmokeVolume v[volumes];
+        SmokeGas    gas[volumes];
         int        list[volumes];
         double     far_m[hits_capacity];
         for (int k = 0; k < volumes; k++) {
@@ -226,6 +227,12 @@ static double smoke(void *user, bool quick)
             for (int b = 0; b < smoke_bands; b++)
                 v[k].extinction_per_m[b] = b == 0 ? 0 : dice_log(&dice, 1e-300, b == 1 ? 1e-290 : 1e12),
                     v[k].source[b] = 7;
+            gas[k] = (SmokeGas){.co2_atm = dice_log(&dice, 1e-300, 1e6), .h2o_atm = k % 4 ? dice_log(&dice, 1e-300, 1e6) : 0,
+                                .source = {7, 7}};
+            const double gas_k = dice_log(&dice, 1, 1e5);
+            for (int band = 0; band < 2; band++) hot_gas_weights(gas[k].weight[band], (HotGasBand)band, gas_k);
+            hot_gas_passed_at(gas[k].passed, gas_k, dice_log(&dice, 1e-3, 1e6));
+            if (k % 3 == 0) v[k].gas = &gas[k];
             list[k] = k;
         }
         rays.count = hits_capacity;

@@ -1,0 +1,156 @@
+/* sensor/publish/consume_radar.c: the consumer that writes OUT/radar: range profiles, maps of range and Doppler. */
+#include "sensor/publish/consumers.h"
+
+#include "sensor/publish/image_file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+typedef struct RadarFiles {
+    Consumer     consumer;
+    PictureFiles of;
+    RetryBackoff retry;
+} RadarFiles;
+
+static const char *const channel_name[interval_channels] = {"sum", "right", "down", "cross"};
+
+static bool path_of(char path[frame_path_size], const RadarFiles *to, const Frame *f, const char *ending)
+{
+    const int size = snprintf(path, frame_path_size, "%s/radar/%06d.%s", to->of.out, f->number, ending);
+    if (size >= 0 && size < frame_path_size) return true;
+    log_error("out: a path of %d characters is too long; choose another place with --out", size);
+    return false;
+}
+
+/* ---- range profile -------------------------------------------------------------------------------- */
+
+static Status write_profile(const char *path, const RadarFrame *r)
+{
+    FILE *file = fopen(path, "w");
+    if (!file) {
+        log_error("radar: cannot write %s: %s", path, strerror(errno));
+        return STATUS_IO;
+    }
+    const int samples = r->preset->wave.samples;
+    fprintf(file, "# %s; power: mean of all pulses, W; re, im: the middle pulse, sqrt(W), of the transmitted polarisation (%s) and of "
+                  "the other; relative to the noise of %.6g W\nrange_m,power_w,re,im,cross_re,cross_im\n",
+            r->preset->name, r->preset->transmits_h ? "h" : "v", r->receiver.noise_w * r->map.noise_share * r->preset->wave.pulses);
+    for (int i = 0; i < samples; i++) {
+        const double complex same = r->profile[i], cross = r->profile[samples + i];
+        fprintf(file, "%.4f,%.6g,%.6g,%.6g,%.6g,%.6g\n", r->reference_m + (i - samples / 2) * r->map.metre_per_column,
+                r->profile_w[i], creal(same), cimag(same), creal(cross), cimag(cross));
+    }
+    const bool ok = !ferror(file);
+    if (fclose(file) == 0 && ok) return STATUS_OK;
+    log_error("radar: cannot write %s: %s", path, strerror(errno));
+    return STATUS_IO;
+}
+
+/* ---- map ------------------------------------------------------------------------------------------- */
+
+static Status write_map(const char *path, const Frame *f)
+{
+    const RadarFrame *r = f->radar;
+    const int         rows = r->map.rows, columns = r->map.columns;
+    const size_t      cells = (size_t)rows * (size_t)columns;
+    float            *value = malloc(2 * interval_channels * cells * sizeof *value);
+    Plane             plane[2 * interval_channels];
+    char              name[2 * interval_channels][16], date[32];
+    if (!value) return STATUS_NO_MEMORY;
+    for (int c = 0; c < interval_channels; c++)
+        for (int part = 0; part < 2; part++) {
+            float *to = value + (size_t)(2 * c + part) * cells;
+            for (size_t i = 0; i < cells; i++) {
+                const double complex v = r->map.cell[(size_t)c * cells + i];
+                to[i] = (float)(part ? cimag(v) : creal(v));
+            }
+            snprintf(name[2 * c + part], sizeof name[0], "%s_%s", channel_name[c], part ? "im" : "re");
+            plane[2 * c + part] = (Plane){name[2 * c + part], PLANE_F32, columns, rows, to};
+        }
+    const ImageAttribute attribute[] = {
+        image_string("unit", "sqrt(W)"), image_string("radar", r->preset->name), image_int("frame", f->number),
+        image_double("time_s", f->time_s), image_string("host", f->host), image_double("reference_m", r->reference_m),
+        image_double("reference_rate_mps", r->reference_rate_mps), image_double("metre_per_column", r->map.metre_per_column),
+        image_double("mps_per_row", r->map.mps_per_row), image_double("noise_w", r->receiver.noise_w * r->map.noise_share)};
+    frame_date(date, f->unix_s);
+    const Status status =
+        image_write_exr_as(path, "zip:1", plane, 2 * interval_channels, date, attribute, sizeof attribute / sizeof *attribute);
+    free(value);
+    return status;
+}
+
+enum { plot_rows = 96, map_rows = 256 };
+
+static double power_db(double complex v) { return 10 * log10(creal(v) * creal(v) + cimag(v) * cimag(v)); }
+
+/* To look at: the range profile, columns as high as their decibels; below it the power of the map's sum channel in decibels, each row
+ * as often as makes it some 256 rows high, approaching on top. Both from 5 dB below the noise to the greatest, at least 45 dB. */
+static Status write_picture(const char *path, const RadarFrame *r)
+{
+    const int    columns = r->map.columns, again = map_rows / r->map.rows > 1 ? map_rows / r->map.rows : 1;
+    const int    height = plot_rows + again * r->map.rows;
+    const size_t cells = (size_t)r->map.rows * (size_t)columns;
+    uint8_t     *grey = calloc((size_t)height * (size_t)columns, 1);
+    if (!grey) return STATUS_NO_MEMORY;
+    /* a pulse's noise is that of a cell times the pulses, but for the window over them */
+    const double noise_db = 10 * log10(r->receiver.noise_w * r->map.noise_share) - 5;
+    const double pulse_db = noise_db + 10 * log10(r->map.rows);
+    double       most_db = noise_db + 45, most_pulse_db = pulse_db + 45;
+    for (size_t i = 0; i < cells; i++) most_db = fmax(most_db, power_db(r->map.cell[i]));
+    for (int x = 0; x < columns; x++) most_pulse_db = fmax(most_pulse_db, 10 * log10(r->profile_w[x]));
+    for (int x = 0; x < columns; x++) {
+        const double share = (10 * log10(r->profile_w[x]) - pulse_db) / (most_pulse_db - pulse_db);
+        const int    top = plot_rows - (int)lround((plot_rows - 2) * clamp(share, 0, 1));
+        for (int y = top; y < plot_rows - 1; y++) grey[(size_t)y * (size_t)columns + (size_t)x] = 200;
+    }
+    for (int y = plot_rows; y < height; y++)
+        for (int x = 0; x < columns; x++) {
+            const double db = power_db(r->map.cell[(size_t)((y - plot_rows) / again) * (size_t)columns + (size_t)x]);
+            grey[(size_t)y * (size_t)columns + (size_t)x] = (uint8_t)lround(255 * clamp((db - noise_db) / (most_db - noise_db), 0, 1));
+        }
+    const Status status = image_write_png(path, grey, columns, height, 1, 8);
+    free(grey);
+    return status;
+}
+
+/* ---- the consumer ------------------------------------------------------------------------------------ */
+
+static Status write_files(RadarFiles *to, const Frame *f)
+{
+    char   path[frame_path_size];
+    Status status = path_of(path, to, f, "csv") ? write_profile(path, f->radar) : STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = path_of(path, to, f, "exr") ? write_map(path, f) : STATUS_BAD_VALUE;
+    if (status == STATUS_OK && to->of.config->publish.png)
+        status = path_of(path, to, f, "png") ? write_picture(path, f->radar) : STATUS_BAD_VALUE;
+    return status;
+}
+
+static Status put(Consumer *consumer, Frame *frame)
+{
+    RadarFiles *to = (RadarFiles *)consumer;
+    if (!frame->radar) return STATUS_OK;
+    const bool due = !to->of.patient || retry_due(&to->retry);
+    Status     status = due ? write_files(to, frame) : STATUS_IO;
+    if (!to->of.patient) return status;
+    retry_done(&to->retry, due, status);
+    return status == STATUS_IO ? STATUS_OK : status;
+}
+
+static Status close_files(Consumer *consumer)
+{
+    free(consumer);
+    return STATUS_OK;
+}
+
+Status consume_radar(Consumer **out, const PictureFiles *made_of)
+{
+    char        path[frame_path_size];
+    RadarFiles *to = calloc(1, sizeof *to);
+    if (!to) return STATUS_NO_MEMORY;
+    *to = (RadarFiles){.consumer = {0, put, NULL, close_files, "radar_files"}, .of = *made_of, .retry = {.what = "files of the radar"}};
+    Status status = snprintf(path, sizeof path, "%s/radar", made_of->out) < (int)sizeof path ? STATUS_OK : STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = frame_files_folder(path);
+    if (status == STATUS_OK) *out = &to->consumer;
+    else free(to);
+    return status;
+}

@@ -1,0 +1,90 @@
+/* sensor/publish/radar_record.c: see radar_record.h. */
+#include "sensor/publish/radar_record.h"
+
+#include "sensor/publish/plane_hash.h"
+
+#include <jansson.h>
+
+/* JSON has no NaN or infinity: absent. */
+static void set_number(json_t *object, const char *key, double value)
+{
+    if (isfinite(value)) json_object_set_new(object, key, json_real(value));
+}
+
+static double db(double ratio) { return 10 * log10(ratio); }
+
+static json_t *direction_json(json_t *object, double cos_right, double cos_down)
+{
+    set_number(object, "az_deg", asin(clamp(cos_right, -1, 1)) / rad_per_deg);
+    set_number(object, "el_deg", -asin(clamp(cos_down, -1, 1)) / rad_per_deg);
+    return object;
+}
+
+static json_t *detection_json(const Detection *d)
+{
+    json_t *o = json_object();
+    set_number(o, "range_m", d->range_m);
+    set_number(o, "range_rate_mps", d->range_rate_mps);
+    direction_json(o, d->cos_right, d->cos_down);
+    set_number(o, "snr_db", db(d->snr));
+    set_number(o, "rcs_dbsm", db(d->rcs_m2));
+    return o;
+}
+
+static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const Catalog *catalog)
+{
+    static const char *const polarisation[3] = {"hh", "vv", "hv"};
+    json_t                  *o = json_object(), *rcs = json_object();
+    const SnapshotEntity    *e = &snapshot->entity[t->entity];
+    char                     text[dis_id_text_size];
+    dis_entity_id_text(text, e->id);
+    json_object_set_new(o, "entity", json_string(text));
+    set_number(o, "range_m", t->range_m);
+    set_number(o, "range_rate_mps", t->range_rate_mps);
+    direction_json(o, t->cos_right, t->cos_down);
+    set_number(o, "visible_fraction", t->visible);
+    for (int p = 0; p < 3; p++) set_number(rcs, polarisation[p], db(t->rcs_m2[p]));
+    json_object_set_new(o, "rcs_dbsm", rcs);
+    set_number(o, "snr_db", db(t->snr));
+    json_object_set_new(o, "centres", json_integer(t->centres));
+    if (t->strongest_m2 > 0) {
+        json_t      *s = json_object(), *at = json_array();
+        const Model *model = catalog_model(catalog, e->model);
+        for (int k = 0; k < 3; k++) json_array_append_new(at, json_real(t->strongest_body[k]));
+        set_number(s, "rcs_vv_dbsm", db(t->strongest_m2));
+        json_object_set_new(s, "body_m", at);
+        json_object_set_new(s, "bounces", json_integer(t->strongest_bounce));
+        if (t->strongest_part < model->part_count)
+            json_object_set_new(s, "part", json_string(model->part[t->strongest_part].name));
+        json_object_set_new(o, "strongest", s);
+    }
+    return o;
+}
+
+/* Of the map, before anything is rounded for a file. */
+static void set_hash(json_t *o, const RadarFrame *r)
+{
+    char        hash[sha256_text_size];
+    const Plane plane = {"range_doppler", PLANE_F64, 2 * r->map.columns, interval_channels * r->map.rows, r->map.cell};
+    if (plane_hash(hash, &plane, 1) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
+}
+
+json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const Catalog *catalog)
+{
+    json_t *o = json_object(), *detections = json_array(), *targets = json_array();
+    json_object_set_new(o, "preset", json_string(r->preset->name));
+    set_number(o, "reference_m", r->reference_m);
+    set_number(o, "reference_rate_mps", r->reference_rate_mps);
+    set_number(o, "air_db", r->air_db);
+    set_number(o, "noise_dbw", db(r->receiver.noise_w * r->map.noise_share));
+    json_object_set_new(o, "saturated", json_integer(r->receiver.saturated));
+    json_object_set_new(o, "ground_cells", json_integer(r->ground_cells));
+    json_object_set_new(o, "ground_hidden", json_integer(r->ground_hidden));
+    set_hash(o, r);
+    for (int i = 0; i < r->detections; i++) json_array_append_new(detections, detection_json(&r->detection[i]));
+    json_object_set_new(o, "detections", detections);
+    json_object_set_new(o, "detections_in_all", json_integer(r->detections_in_all));
+    for (int i = 0; i < r->targets; i++) json_array_append_new(targets, target_json(&r->target[i], snapshot, catalog));
+    json_object_set_new(o, "targets", targets);
+    return o;
+}

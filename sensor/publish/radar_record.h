@@ -1,0 +1,12 @@
+/* sensor/publish/radar_record.h: what a radar measured, as the object `radar` of truth.jsonl. */
+#ifndef SENSOR_PUBLISH_RADAR_RECORD_H
+#define SENSOR_PUBLISH_RADAR_RECORD_H
+
+#include "sensor/radar/radar_frame.h"
+#include "entities/catalog/catalog.h"
+#include "entities/table/snapshot.h"
+
+/* A new JSON object (json_t); the caller's. */
+struct json_t *radar_record_json(const RadarFrame *radar, const Snapshot *snapshot, const Catalog *catalog);
+
+#endif

@@ -1,0 +1,64 @@
+/* sensor/radar/antenna.c: see antenna.h. */
+#include "sensor/radar/antenna.h"
+
+/* 2^m m! J_m(u) / u^m */
+static double lambda(int m, double u)
+{
+    if (fabs(u) < 0.02) return 1 - u * u / (4.0 * (m + 1)) * (1 - u * u / (8.0 * (m + 2)));
+    double scale = 1;
+    for (int k = 1; k <= m; k++) scale *= 2 * k / u;
+    return scale * jn(m, u);
+}
+
+static double u_per_sine(const Antenna *a) { return pi_rad * a->diameter_m / a->wavelength_m; }
+
+double antenna_peak_gain(const Antenna *a)
+{
+    const double n = a->taper, reach = u_per_sine(a);
+    return (2 * n + 1) / ((n + 1) * (n + 1)) * reach * reach;
+}
+
+AntennaGain antenna_gain(const Antenna *a, double cos_right, double cos_down)
+{
+    const int    n = a->taper;
+    const double sine2 = cos_right * cos_right + cos_down * cos_down, reach = u_per_sine(a);
+    if (!(sine2 < 1)) return (AntennaGain){0, 0, 0};
+    const double u = reach * sqrt(sine2), peak = sqrt(antenna_peak_gain(a));
+    const double slope = peak * sqrt(n + 1.0) / (n + 2) * lambda(n + 2, u);
+    return (AntennaGain){peak * lambda(n + 1, u), slope * reach * cos_right, slope * reach * cos_down};
+}
+
+/* Where a falling function of u in low .. high passes value. */
+static double solve(int m, double scale, double low, double high, double value, double (*of)(int, double, double))
+{
+    for (int i = 0; i < 60; i++) {
+        const double middle = 0.5 * (low + high);
+        if (of(m, scale, middle) > value) low = middle;
+        else high = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+static double sum_power(int m, double scale, double u) { return scale * lambda(m, u) * lambda(m, u); }
+
+double antenna_width_rad(const Antenna *a)
+{
+    return 2 * asin(fmin(solve(a->taper + 1, 1, 0, 3, 0.5, sum_power) / u_per_sine(a), 1));
+}
+
+/* Of the ratio, negative: it rises without bound up to the sum's first zero. */
+static double minus_ratio(int n, double scale, double u) { return -scale * u * lambda(n + 2, u) / lambda(n + 1, u); }
+
+void antenna_direction(double *cos_right, double *cos_down, const Antenna *a, double right, double down)
+{
+    static const double first_zero[] = {3.831705970207512, 5.135622301840683, 6.380161895923984}; /* of J_1, J_2, J_3 */
+    const int    n = a->taper;
+    const double ratio = hypot(right, down);
+    if (!(ratio > 0)) {
+        *cos_right = *cos_down = 0;
+        return;
+    }
+    const double u = solve(n, sqrt(n + 1.0) / (n + 2), 0, first_zero[n] * (1 - 1e-12), -ratio, minus_ratio);
+    *cos_right = u / u_per_sine(a) * (right / ratio);
+    *cos_down = u / u_per_sine(a) * (down / ratio);
+}

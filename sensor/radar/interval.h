@@ -1,0 +1,53 @@
+/* sensor/radar/interval.h: one coherent interval of a radar: pulses sampled over frequency in four channels, and its map of range
+ * and Doppler.
+ *
+ * Samples are in units of sqrt(W) at the antenna's port: a steady echo of received power p has |sample| = sqrt(p) everywhere. The
+ * map is scaled alike: a point echo peaks at sqrt(p), whatever the windows. The receiver follows the reference path, so range
+ * and Doppler are relative to it. */
+#ifndef SENSOR_RADAR_INTERVAL_H
+#define SENSOR_RADAR_INTERVAL_H
+
+#include "sensor/radar/window.h"
+
+#include <complex.h>
+
+/* Of the sum beam, the two difference beams, and of the sum beam in the polarisation that is not transmitted. */
+enum { CHANNEL_SUM, CHANNEL_RIGHT, CHANNEL_DOWN, CHANNEL_CROSS, interval_channels };
+
+typedef struct Waveform {
+    double centre_hz, bandwidth_hz; /* step between samples: bandwidth / samples */
+    double pulse_s;                 /* that is transmitted, and over which its samples are taken */
+    double repeat_hz;               /* of pulses */
+    int    samples, pulses;         /* both even */
+} Waveform;
+
+typedef struct Interval {
+    Waveform        wave;
+    double complex *sample;         /* [channels][pulses][samples] */
+} Interval;
+
+/* Windowed and transformed: rows of Doppler, from approaching (negative rate of path) to receding, columns of range, nearest first; the
+ * reference is at row pulses / 2, column samples / 2. */
+typedef struct RangeDoppler {
+    int             rows, columns;
+    double          metre_per_column, mps_per_row; /* of range (half the path) and its rate */
+    double          noise_share;    /* of a sample's noise power that is in a cell */
+    double complex *cell;           /* [channels][rows][columns] */
+} RangeDoppler;
+
+/* The two maps for processing; in: scratch of the same size as the samples. */
+typedef struct IntervalPlan IntervalPlan;
+Status interval_plan_create(IntervalPlan **out, const Waveform *wave, const Window *range, const Window *doppler);
+void   interval_plan_destroy(IntervalPlan *plan); /* accepts NULL */
+/* out->cell: [channels][pulses][samples]; the rest is filled. */
+void   interval_process(RangeDoppler *out, IntervalPlan *plan, const Interval *in);
+/* Of a map: RangeDoppler.noise_share. */
+double interval_noise_share(const IntervalPlan *plan);
+/* Amplitude at an offset in cells of the response to a point, 1 at 0, over range or over Doppler. */
+double interval_lobe(const IntervalPlan *plan, bool doppler, double cells);
+/* Complex range profile of one pulse: out[samples]. */
+void   interval_pulse(double complex *out, IntervalPlan *plan, const Interval *in, int channel, int pulse);
+/* Range profile of one channel over all pulses, without Doppler: profile[samples], mean power over pulses. */
+void   interval_profile(double *profile, IntervalPlan *plan, const Interval *in, int channel);
+
+#endif

@@ -1,0 +1,179 @@
+/* sensor/radar/radar_ground.c: the echoes of the ground within the main lobe and the range window. */
+#include "sensor/radar/seeker_radar_private.h"
+
+enum { cells_most = 400000, block = hits_capacity };
+
+static const double sight_slack_m = 0.5; /* ground met so much before a scatterer is its own */
+static const double crown_m = 40;        /* a plant met no farther before a place than this is the place's own canopy */
+
+/* Rectangle in plan about what the beam lights within the window. */
+static void lit_rectangle(double low_m[2], double high_m[2], const Making *m, double lobe_rad, double below_m)
+{
+    const double *p = m->scene->view->p_enu, reach = m->frame->reference_m;
+    const double  level = hypot(m->ahead[0], m->ahead[1]), azimuth = atan2(m->ahead[1], m->ahead[0]);
+    const double  wide = fmin(lobe_rad / fmax(level - lobe_rad, 0.05), pi_rad), margin_m = 50 + 0.02 * reach;
+    const double  range_m[2] = {fmax(reach - m->half_window_m, 0), reach + m->half_window_m};
+    low_m[0] = low_m[1] = INFINITY;
+    high_m[0] = high_m[1] = -INFINITY;
+    for (int end = 0; end < 2; end++) {
+        const double plan_m = sqrt(fmax(range_m[end] * range_m[end] - below_m * below_m, 0)) + (end ? margin_m : -margin_m);
+        for (int i = -4; i <= 4; i++) {
+            const double a = azimuth + wide * i / 4, at[2] = {p[0] + fmax(plan_m, 0) * cos(a), p[1] + fmax(plan_m, 0) * sin(a)};
+            for (int k = 0; k < 2; k++) {
+                low_m[k] = fmin(low_m[k], at[k]);
+                high_m[k] = fmax(high_m[k], at[k]);
+            }
+        }
+    }
+}
+
+/* Scatterers of a block, as the table and the echoes need them. */
+typedef struct Ground {
+    int         count;
+    ClutterCell cell[block];
+    double      p_enu[3][block];
+    float       n_enu[3][block];
+    uint8_t     surface[block];
+    Sight       sight[block];
+} Ground;
+
+typedef struct GroundJob {
+    const Making      *making;
+    const ClutterCell *cell;
+    int                cells;
+    double             widest;     /* sine off the axis of the main lobe's null */
+    Ground            *ground;     /* [blocks] */
+    Echo              *echo;       /* [cells]: those of block b from b * block on */
+    int               *hidden;     /* [blocks] */
+} GroundJob;
+
+/* Where the block's cells lie, those within beam and window alone. */
+static void place_block(Ground *g, const GroundJob *job, int first, int end)
+{
+    const Making    *m = job->making;
+    const Landscape *land = m->scene->world->landscape;
+    g->count = 0;
+    for (int i = first; i < end; i++) {
+        double p[3], n[3];
+        Sight  sight;
+        clutter_place(p, &m->radar->cells, &job->cell[i]);
+        p[2] = elevation_height(&land->elevation, p[0], p[1], n);
+        if (!isfinite(p[2])) continue;
+        making_sight(&sight, m, p, 0);
+        if (!sight.within || hypot(sight.cos_right, sight.cos_down) > job->widest) continue;
+        const int to = g->count++;
+        g->cell[to] = job->cell[i];
+        g->sight[to] = sight;
+        for (int k = 0; k < 3; k++) {
+            g->p_enu[k][to] = p[k];
+            g->n_enu[k][to] = (float)n[k];
+        }
+    }
+}
+
+/* Takes out what relief, entities or other plants hide. */
+static void drop_hidden(Ground *g, const Making *m, int *hidden)
+{
+    static _Thread_local Rays rays;
+    static _Thread_local Hits hits;
+    VisibilityCounters        counters = {0};
+    bool                      out[block] = {false};
+    rays.count = g->count;
+    rays.columns = 0;
+    for (int i = 0; i < g->count; i++) {
+        rays.far_m[i] = g->sight[i].range_m;
+        for (int k = 0; k < 3; k++) {
+            rays.o_enu[k][i] = m->scene->view->p_enu[k];
+            rays.d_enu[k][i] = g->sight[i].d_enu[k];
+        }
+    }
+    visibility_first_hit(&hits, m->visibility, &rays, NULL, -1, m->scene->hidden, &counters);
+    for (int i = 0; i < hits.count; i++) {
+        const int    ray = hit_ray(&hits, i);
+        const double before_m = g->sight[ray].range_m - hits.range_m[i];
+        if (hits.kind[i] == hit_sky || before_m <= sight_slack_m) continue;
+        if (hits.kind[i] == hit_plant && before_m < crown_m) continue;
+        out[ray] = true;
+    }
+    int kept = 0;
+    for (int i = 0; i < g->count; i++) {
+        if (out[i]) continue;
+        g->cell[kept] = g->cell[i];
+        g->sight[kept] = g->sight[i];
+        for (int k = 0; k < 3; k++) {
+            g->p_enu[k][kept] = g->p_enu[k][i];
+            g->n_enu[k][kept] = g->n_enu[k][i];
+        }
+        kept++;
+    }
+    *hidden = g->count - kept;
+    g->count = kept;
+}
+
+static void scatter_block(void *user, int worker, int task)
+{
+    static _Thread_local ClutterScatterer scatterer[block];
+    static _Thread_local ScatterMatrix    matrix[block];
+    const GroundJob *job = user;
+    const Making    *m = job->making;
+    const SeekerRadar *r = m->radar;
+    Ground          *g = &job->ground[task];
+    const int        first = task * block, end = first + block < job->cells ? first + block : job->cells;
+    (void)worker;
+    place_block(g, job, first, end);
+    job->hidden[task] = 0;
+    if (g->count == 0) return;
+    drop_hidden(g, m, &job->hidden[task]);
+    landscape_surfaces(g->surface, m->scene->world->landscape, g->count, g->p_enu[0], g->p_enu[1]);
+    clutter_draw(scatterer, &r->cells, &r->clutter, r->band, g->count, g->cell, g->surface);
+    const double       *p = m->scene->view->p_enu;
+    const ClutterGround ground = {g->count, g->cell, g->surface, {g->p_enu[0], g->p_enu[1], g->p_enu[2]},
+                                  {g->n_enu[0], g->n_enu[1], g->n_enu[2]}};
+    const ClutterLook   look = {{p[0], p[1], p[2]}, m->preset->wave.centre_hz, m->scene->t_s, r->wind_mps};
+    clutter_see(matrix, &r->cells, &r->clutter, scatterer, &ground, &look);
+    static const double still[3] = {0, 0, 0};
+    for (int i = 0; i < g->count; i++) {
+        Echo  *e = &job->echo[first + i];
+        double to_antenna[3], h[3], v[3];
+        v3_scale(to_antenna, -1, g->sight[i].d_enu);
+        scatter_basis(h, v, to_antenna);
+        scatter_turn(&matrix[i], h, v, m->right);
+        making_amplitudes(e->amplitude, m, &g->sight[i], &matrix[i]);
+        e->path_m = 2 * (g->sight[i].range_m - m->frame->reference_m);
+        e->path_per_pulse_m =
+            2 * (making_range_rate(m, &g->sight[i], still) - m->frame->reference_rate_mps) / m->preset->wave.repeat_hz;
+    }
+}
+
+Status making_ground(Making *m)
+{
+    static const double null_u[] = {3.8317, 5.1356, 6.3802}; /* first zero of the sum beam by the dish's taper */
+    SeekerRadar  *r = m->radar;
+    const double *p = m->scene->view->p_enu, reach = pi_rad * m->preset->antenna.diameter_m / m->preset->antenna.wavelength_m;
+    const double  widest = fmin(null_u[m->preset->antenna.taper] / reach, 1), lobe_rad = asin(widest);
+    double        at[3], low_m[2], high_m[2];
+    v3_add_scaled(at, p, m->frame->reference_m, m->ahead);
+    const double ground_m = elevation_height(&m->scene->world->landscape->elevation, at[0], at[1], NULL);
+    lit_rectangle(low_m, high_m, m, lobe_rad, p[2] - (isfinite(ground_m) ? ground_m : 0));
+
+    /* sides of 1/128 of the beam's width, less where the resolution asks for it near by; coarser where that is too many */
+    double share = lobe_rad / 128;
+    size_t count;
+    while ((count = clutter_cells_at(NULL, 0, &r->cells, low_m, high_m, p, share)) > cells_most) share *= sqrt(2);
+    const int    blocks = (int)((count + block - 1) / block);
+    ClutterCell *cell = arena_alloc(m->arena, count + 1, sizeof *cell);
+    GroundJob    job = {.making = m, .cell = cell, .cells = (int)count, .widest = widest,
+                        .ground = arena_alloc(m->arena, (size_t)blocks + 1, sizeof *job.ground),
+                        .echo = arena_alloc(m->arena, (size_t)blocks * block + 1, sizeof *job.echo),
+                        .hidden = arena_alloc(m->arena, (size_t)blocks + 1, sizeof *job.hidden)};
+    if (!cell || !job.ground || !job.echo || !job.hidden) return STATUS_NO_MEMORY;
+    clutter_cells_at(cell, count, &r->cells, low_m, high_m, p, share);
+    if (m->pool) pool_run(m->pool, blocks, scatter_block, &job);
+    else for (int b = 0; b < blocks; b++) scatter_block(&job, 0, b);
+    for (int b = 0; b < blocks; b++) {
+        echo_add(r->echoes, job.echo + (size_t)b * block, job.ground[b].count, m->pool);
+        m->frame->ground_cells += job.ground[b].count + job.hidden[b];
+        m->frame->ground_hidden += job.hidden[b];
+    }
+    return STATUS_OK;
+}

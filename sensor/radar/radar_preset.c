@@ -1,0 +1,129 @@
+/* sensor/radar/radar_preset.c: reads rows of etc/radars.csv. */
+#include "sensor/radar/radar_preset.h"
+
+enum {
+    CENTRE, BANDWIDTH, SAMPLES, PULSES, REPEAT, PULSE, POWER, LOSS, DISH, TAPER, NOISE_FIGURE, PHASE_NOISE, IQ_GAIN, IQ_PHASE,
+    BITS, PFA, numbers
+};
+
+static const struct {
+    const char *name;
+    double      low, high;
+} number[numbers] = {
+    [CENTRE] = {"centre_ghz", 1, 300},
+    [BANDWIDTH] = {"bandwidth_mhz", 0.1, 20000},
+    [SAMPLES] = {"samples", 8, 65536},
+    [PULSES] = {"pulses", 2, 4096},
+    [REPEAT] = {"repeat_khz", 0.01, 10000},
+    [PULSE] = {"pulse_us", 0.001, 100000},
+    [POWER] = {"power_w", 1e-6, 1e9},
+    [LOSS] = {"loss_db", 0, 60},
+    [DISH] = {"dish_m", 0.01, 50},
+    [TAPER] = {"taper", 0, 2},
+    [NOISE_FIGURE] = {"noise_figure_db", 0, 40},
+    [PHASE_NOISE] = {"phase_noise_deg", 0, 90},
+    [IQ_GAIN] = {"iq_gain_db", -6, 6},
+    [IQ_PHASE] = {"iq_phase_deg", -45, 45},
+    [BITS] = {"bits", 0, 24},
+    [PFA] = {"pfa", 1e-15, 0.5},
+};
+
+static Status refuse(const Table *t, int row, const char *column, const char *value, const char *accepted)
+{
+    log_error("radars: %s:%d: %s: '%s' is not accepted; accepted: %s", t->path, t->line[row + 1], column, value, accepted);
+    return STATUS_BAD_VALUE;
+}
+
+static Status read_window(Window *out, const Table *t, int row, const char *name)
+{
+    const char *text = table_text(t, row, table_column(t, name)), *accepted = window_parse(out, text);
+    return accepted ? refuse(t, row, name, text, accepted) : STATUS_OK;
+}
+
+static Status read_row(RadarPreset *out, const Table *t, int row)
+{
+    static const char *const words[] = {"name", "transmit", "range_window", "doppler_window", "source"};
+    int         column[numbers];
+    double      x[numbers];
+    RadarPreset p = {.receiver.noise_counts = 1};
+    if (!table_columns(column, t, words, 5, "radars")) return STATUS_BAD_VALUE;
+    for (int i = 0; i < numbers; i++) {
+        if (!table_columns(&column[i], t, &number[i].name, 1, "radars")) return STATUS_BAD_VALUE;
+        const Status status = table_number(&x[i], t, row, column[i], number[i].low, number[i].high);
+        if (status != STATUS_OK) return status;
+    }
+    static const struct {
+        int         which;
+        bool        even;
+        const char *accepted;
+    } whole[] = {{SAMPLES, true, "an even number"}, {PULSES, true, "an even number"}, {TAPER, false, "0, 1 or 2"},
+                 {BITS, false, "0, or a whole number in 2 .. 24"}};
+    for (size_t i = 0; i < sizeof whole / sizeof *whole; i++) {
+        const double value = x[whole[i].which];
+        if (fmod(value, whole[i].even ? 2 : 1) != 0 || (whole[i].which == BITS && value == 1))
+            return refuse(t, row, number[whole[i].which].name, table_text(t, row, column[whole[i].which]), whole[i].accepted);
+    }
+    if (x[SAMPLES] * x[PULSES] > 1 << 22)
+        return refuse(t, row, "pulses", table_text(t, row, column[PULSES]), "samples times pulses up to 4194304");
+    if (x[PULSE] * x[REPEAT] > 1000 * (1 + 1e-12))
+        return refuse(t, row, "pulse_us", table_text(t, row, column[PULSE]), "up to 1 / repeat_khz");
+    if (x[BANDWIDTH] > 500 * x[CENTRE])
+        return refuse(t, row, "bandwidth_mhz", table_text(t, row, column[BANDWIDTH]), "up to half of centre_ghz");
+    const char *transmit = table_text(t, row, table_column(t, "transmit"));
+    if (strcmp(transmit, "h") != 0 && strcmp(transmit, "v") != 0) return refuse(t, row, "transmit", transmit, "h or v");
+
+    snprintf(p.name, sizeof p.name, "%s", table_text(t, row, table_column(t, "name")));
+    p.transmits_h = *transmit == 'h';
+    p.wave = (Waveform){.centre_hz = 1e9 * x[CENTRE], .bandwidth_hz = 1e6 * x[BANDWIDTH], .pulse_s = 1e-6 * x[PULSE],
+                        .repeat_hz = 1e3 * x[REPEAT], .samples = (int)x[SAMPLES], .pulses = (int)x[PULSES]};
+    p.antenna = (Antenna){.diameter_m = x[DISH], .taper = (int)x[TAPER], .wavelength_m = 299792458.0 / p.wave.centre_hz};
+    p.receiver.noise_figure = pow(10, x[NOISE_FIGURE] / 10);
+    p.receiver.phase_noise_rad = x[PHASE_NOISE] * rad_per_deg;
+    p.receiver.iq_gain = pow(10, x[IQ_GAIN] / 20) - 1;
+    p.receiver.iq_phase_rad = x[IQ_PHASE] * rad_per_deg;
+    p.receiver.bits = (int)x[BITS];
+    p.power_w = x[POWER];
+    p.loss = pow(10, x[LOSS] / 10);
+    p.pfa = x[PFA];
+    Status status = read_window(&p.range_window, t, row, "range_window");
+    if (status == STATUS_OK) status = read_window(&p.doppler_window, t, row, "doppler_window");
+    if (status == STATUS_OK) *out = p;
+    return status;
+}
+
+Status radar_preset_read(RadarPreset *out, const char *path, const char *name)
+{
+    Table  t;
+    Status status = table_open(&t, path);
+    if (status != STATUS_OK) return status;
+    const int column = table_column(&t, "name");
+    status = STATUS_BAD_VALUE;
+    if (column < 0) {
+        log_error("radars: %s: no column name", path);
+    } else {
+        int row = 0;
+        while (row < t.rows && strcmp(table_text(&t, row, column), name) != 0) row++;
+        if (row < t.rows) {
+            status = read_row(out, &t, row);
+        } else {
+            char   names[400] = "";
+            size_t n = 0;
+            for (int i = 0; i < t.rows && n + 40 < sizeof names; i++)
+                n += (size_t)snprintf(names + n, sizeof names - n, "%s%.32s", i ? ", " : "", table_text(&t, i, column));
+            log_error("radars: '%s' is no row of %s; it has %s", name, path, names);
+        }
+    }
+    table_close(&t);
+    return status;
+}
+
+Status radar_preset_check(const char *path)
+{
+    Table  t;
+    Status status = table_open(&t, path);
+    if (status != STATUS_OK) return status;
+    RadarPreset p;
+    for (int row = 0; row < t.rows && status == STATUS_OK; row++) status = read_row(&p, &t, row);
+    table_close(&t);
+    return status;
+}

@@ -1,0 +1,24 @@
+/* sensor/radar/radar_preset.h: a radar as a row of etc/radars.csv. */
+#ifndef SENSOR_RADAR_RADAR_PRESET_H
+#define SENSOR_RADAR_RADAR_PRESET_H
+
+#include "sensor/radar/antenna.h"
+#include "sensor/radar/receiver.h"
+
+typedef struct RadarPreset {
+    char     name[32];
+    Waveform wave;
+    Antenna  antenna;
+    Receiver receiver;
+    Window   range_window, doppler_window;
+    double   power_w, loss;     /* in a pulse; a factor */
+    double   pfa;
+    bool     transmits_h;       /* else vertical */
+} RadarPreset;
+
+/* The row of that name. On error logs file, line, column, value and range; for an unknown name the known ones. */
+Status radar_preset_read(RadarPreset *out, const char *path, const char *name);
+/* Every row of a table is read; the first that is wrong is logged. */
+Status radar_preset_check(const char *path);
+
+#endif

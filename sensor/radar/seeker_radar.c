@@ -1,0 +1,228 @@
+/* sensor/radar/seeker_radar.c: see seeker_radar.h. */
+#include "sensor/radar/seeker_radar_private.h"
+
+#include "render/radar/radar_equation.h"
+
+#include <stdlib.h>
+
+enum { detections_most = 256, stream_noise = 0x3d000000 };
+static const double no_reference_m = 1000; /* where there is neither an aim nor ground ahead */
+
+/* ---- what lasts -------------------------------------------------------------------------------- */
+
+static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
+{
+    char   path[4096], water[4096];
+    Status status = etc_path(path, sizeof path, "radars.csv") ? radar_preset_read(&r->preset, path, config->preset) : STATUS_BAD_VALUE;
+    if (status != STATUS_OK) return status;
+    if (!clutter_band_of(&r->band, r->preset.wave.centre_hz) && config->ground) {
+        log_error("radar: %s: no ground is known at %g GHz (etc/radar/clutter.csv: 12-18, 27-40, 75-110); set radar.ground: false",
+                  r->preset.name, 1e-9 * r->preset.wave.centre_hz);
+        return STATUS_BAD_VALUE;
+    }
+    if (!etc_path(path, sizeof path, "radar/clutter.csv")) return STATUS_BAD_VALUE;
+    status = clutter_table_open(&r->clutter, path);
+    if (status == STATUS_OK) status = radar_materials_load(&r->materials);
+    if (status != STATUS_OK) return status;
+    if (!etc_path(path, sizeof path, "radar/oxygen_lines.csv") || !etc_path(water, sizeof water, "radar/water_lines.csv"))
+        return STATUS_BAD_VALUE;
+    return gas_lines_read(&r->gases, path, water);
+}
+
+Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
+{
+    SeekerRadar *r = calloc(1, sizeof *r);
+    if (!r) return STATUS_NO_MEMORY;
+    r->ground = config->ground;
+    r->wind_mps = config->wind_mps;
+    r->seed = config->seed;
+    Status status = open_tables(r, config);
+    const Waveform *wave = &r->preset.wave;
+    if (status == STATUS_OK) status = catalog_open(&r->catalog, config->catalog, radar_sag_m(wave->centre_hz));
+    if (status == STATUS_OK)
+        status = signatures_create(&r->signatures,
+                                   &(SignatureConfig){.frequency_hz = wave->centre_hz, .aspect_rad = 0.3 * rad_per_deg,
+                                                      .rays_per_wavelength = 0.5, .most_octets = (size_t)1 << 30,
+                                                      .isa = config->isa},
+                                   r->catalog, &r->materials);
+    if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
+    if (status == STATUS_OK)
+        status = interval_plan_create(&r->plan, wave, &r->preset.range_window, &r->preset.doppler_window);
+    r->cells = (ClutterGrid){.side_m = 0.25 * light_mps / wave->bandwidth_hz, .seed = config->seed};
+    if (status == STATUS_OK) *out = r;
+    else seeker_radar_destroy(r);
+    return status;
+}
+
+void seeker_radar_destroy(SeekerRadar *r)
+{
+    if (!r) return;
+    interval_plan_destroy(r->plan);
+    echo_grid_destroy(r->echoes);
+    centres_free(&r->centres);
+    signatures_destroy(r->signatures);
+    radar_materials_close(&r->materials);
+    if (r->catalog) catalog_close(r->catalog);
+    free(r);
+}
+
+/* ---- geometry and the radar equation ------------------------------------------------------------ */
+
+void making_sight(Sight *out, const Making *m, const double p_enu[3], double more_m)
+{
+    double to[3];
+    v3_sub(to, p_enu, m->scene->view->p_enu);
+    out->range_m = v3_length(to);
+    v3_scale(out->d_enu, 1 / fmax(out->range_m, 1e-3), to);
+    out->cos_right = v3_dot(out->d_enu, m->right);
+    out->cos_down = v3_dot(out->d_enu, m->down);
+    out->within = v3_dot(out->d_enu, m->ahead) > 0 && fabs(out->range_m - m->frame->reference_m) < m->half_window_m + more_m;
+}
+
+double making_range_rate(const Making *m, const Sight *sight, const double v_enu_mps[3])
+{
+    return v3_dot(sight->d_enu, v_enu_mps) - v3_dot(sight->d_enu, m->scene->v_enu_mps);
+}
+
+void making_amplitudes(double complex amplitude[interval_channels], const Making *m, const Sight *sight, const ScatterMatrix *s)
+{
+    const RadarPreset   *p = m->preset;
+    const AntennaGain    gain = antenna_gain(&p->antenna, sight->cos_right, sight->cos_down);
+    const RadarLink      link = {p->power_w, 1, 1, p->antenna.wavelength_m, sight->range_m, p->loss};
+    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-2 * m->air_np_m * sight->range_m));
+    const double complex same = unit * gain.sum * (p->transmits_h ? s->hh : s->vv);
+    const double complex other = unit * gain.sum * (p->transmits_h ? s->vh : s->hv);
+    amplitude[CHANNEL_SUM] = same * gain.sum;
+    amplitude[CHANNEL_RIGHT] = same * gain.right;
+    amplitude[CHANNEL_DOWN] = same * gain.down;
+    amplitude[CHANNEL_CROSS] = other * gain.sum;
+}
+
+/* Range to the ground along the boresight; NAN: there is none. */
+static double range_ahead(const Making *m)
+{
+    static _Thread_local Rays rays;
+    static _Thread_local Hits hits;
+    VisibilityCounters        counters = {0};
+    rays.count = 1;
+    rays.columns = 0;
+    rays.far_m[0] = INFINITY;
+    for (int k = 0; k < 3; k++) {
+        rays.o_enu[k][0] = m->scene->view->p_enu[k];
+        rays.d_enu[k][0] = m->ahead[k];
+    }
+    visibility_first_hit(&hits, m->visibility, &rays, NULL, -1, m->scene->hidden, &counters);
+    return hits.count > 0 && isfinite(hits.range_m[0]) ? hits.range_m[0] : NAN;
+}
+
+static void aim_window(Making *m)
+{
+    RadarFrame *f = m->frame;
+    f->reference_m = m->scene->reference_m;
+    if (!isfinite(f->reference_m)) f->reference_m = range_ahead(m);
+    if (!isfinite(f->reference_m)) f->reference_m = no_reference_m;
+    double v[3];
+    v3_sub(v, m->scene->reference_v_enu_mps, m->scene->v_enu_mps);
+    f->reference_rate_mps = v3_dot(v, m->ahead);
+}
+
+/* Loss by the air over the reference range, taken as even along it. */
+static Status air_between(Making *m)
+{
+    const World  *world = m->scene->world;
+    const double *p = m->scene->view->p_enu;
+    double        end[3];
+    RadarLoss     loss;
+    if (!world->atmosphere) return STATUS_OK;
+    const Status status = radar_air_of(&m->radar->air, world->atmosphere, m->scene->weather);
+    if (status != STATUS_OK) return status;
+    v3_add_scaled(end, p, m->frame->reference_m, m->ahead);
+    const double ground_m = world->landscape ? elevation_height(&world->landscape->elevation, end[0], end[1], NULL) : 0;
+    const double base_m = isfinite(ground_m) ? ground_m : 0;
+    const RadarPath path = {.a_m = clamp(p[2] - base_m, 0, 20000), .b_m = clamp(end[2] - base_m, 0, 20000),
+                            .range_m = fmin(m->frame->reference_m, 1e6), .f_ghz = 1e-9 * m->preset->wave.centre_hz,
+                            .tilt_rad = m->preset->transmits_h ? 0 : 0.5 * pi_rad};
+    radar_path_loss(&loss, &path, &m->radar->gases, &m->radar->air);
+    m->frame->air_db = radar_loss_db(&loss);
+    if (!isfinite(m->frame->air_db)) m->frame->air_db = 0;
+    m->air_np_m = m->frame->air_db * log(10) / 10 / m->frame->reference_m;
+    return STATUS_OK;
+}
+
+/* ---- one interval --------------------------------------------------------------------------------- */
+
+static Status process(Making *m, Interval *interval)
+{
+    RadarFrame      *f = m->frame;
+    const RadarPreset *p = m->preset;
+    const size_t     plane = (size_t)p->wave.pulses * (size_t)p->wave.samples, all = interval_channels * plane;
+    Detection       *detection = arena_alloc(m->arena, detections_most, sizeof *detection);
+    f->map.cell = arena_alloc(m->arena, all, sizeof *f->map.cell);
+    f->profile = arena_alloc(m->arena, 2 * (size_t)p->wave.samples, sizeof *f->profile);
+    f->profile_w = arena_alloc(m->arena, (size_t)p->wave.samples, sizeof *f->profile_w);
+    if (!detection || !f->map.cell || !f->profile || !f->profile_w) return STATUS_NO_MEMORY;
+    interval_process(&f->map, m->radar->plan, interval);
+    interval_profile(f->profile_w, m->radar->plan, interval, CHANNEL_SUM);
+    interval_pulse(f->profile, m->radar->plan, interval, CHANNEL_SUM, p->wave.pulses / 2);
+    interval_pulse(f->profile + p->wave.samples, m->radar->plan, interval, CHANNEL_CROSS, p->wave.pulses / 2);
+
+    const RadarLink   link = {p->power_w, 1, 1, p->antenna.wavelength_m, 1, p->loss};
+    const DetectScale scale = {.range_m = f->reference_m, .range_rate_mps = f->reference_rate_mps,
+                               .unit_w = radar_received_w(&link, 1), .air_np_m = m->air_np_m};
+    /* guards as wide as a vehicle's own returns, 6 m, and the Doppler main lobe */
+    const int        extent = (int)clamp(ceil(6 / f->map.metre_per_column), 2, p->wave.samples / 8);
+    const CfarConfig cfar = {.pfa = p->pfa, .guard = {2, extent}, .training = {p->wave.pulses >= 32 ? 3 : 0, extent},
+                             .wrap_rows = true};
+    f->detections_in_all = detect(detection, detections_most, &f->map, m->radar->plan, &cfar, &p->antenna, &scale);
+    if (f->detections_in_all < 0) return STATUS_NO_MEMORY;
+    f->detections = f->detections_in_all < detections_most ? f->detections_in_all : detections_most;
+    f->detection = detection;
+    return STATUS_OK;
+}
+
+static Status make(Making *m)
+{
+    const RadarScene *scene = m->scene;
+    const Waveform   *wave = &m->preset->wave;
+    Interval          interval = {.wave = *wave};
+    Visibility       *visibility;
+    Status status = visibility_create(&visibility, scene->world->tracer, scene->world->landscape, &scene->world->frame,
+                                      scene->snapshot, 0, m->arena);
+    if (status != STATUS_OK) return status;
+    visibility_materials(visibility, &scene->world->materials);
+    m->visibility = visibility;
+    interval.sample = arena_alloc(m->arena, interval_channels * (size_t)wave->pulses * (size_t)wave->samples, sizeof *interval.sample);
+    if (!interval.sample) return STATUS_NO_MEMORY;
+    aim_window(m);
+    status = air_between(m);
+    if (status == STATUS_OK) status = making_targets(m);
+    if (status == STATUS_OK && m->radar->ground && scene->world->landscape) status = making_ground(m);
+    if (status == STATUS_OK) status = visibility_status(visibility);
+    if (status != STATUS_OK) return status;
+    echo_sum(interval.sample, m->radar->echoes);
+    receiver_apply(&m->frame->receiver, &interval, &m->preset->receiver, m->radar->seed, stream_noise, scene->number);
+    return process(m, &interval);
+}
+
+Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool, Arena *arena)
+{
+    const double      begun_s = wall_clock_s();
+    const RadarPreset *p = &radar->preset;
+    RadarFrame       *frame = arena_alloc(arena, 1, sizeof *frame);
+    if (!frame) return STATUS_NO_MEMORY;
+    Making m = {.radar = radar, .scene = scene, .preset = p, .frame = frame, .pool = pool, .arena = arena,
+                .half_window_m = p->wave.samples * light_mps / (4 * p->wave.bandwidth_hz),
+                .widest = 16 / (pi_rad * p->antenna.diameter_m / p->antenna.wavelength_m)};
+    *frame = (RadarFrame){.preset = p};
+    const double *r = scene->view->r_enu_from_cam;
+    for (int k = 0; k < 3; k++) {
+        m.right[k] = r[3 * k];
+        m.down[k] = r[3 * k + 1];
+        m.ahead[k] = r[3 * k + 2];
+    }
+    const Status status = make(&m);
+    if (status != STATUS_OK) echo_forget(radar->echoes);
+    frame->spent_s = wall_clock_s() - begun_s;
+    if (status == STATUS_OK) *out = frame;
+    return status;
+}

@@ -1,0 +1,158 @@
+/* Kept fields of targets: bins hold what they should, a field serves its bin to the error stated, and neither order nor lack of room
+ * changes a bit. */
+#include "tests/check.h"
+
+#include "render/radar/field.h"
+#include "render/radar/signatures.h"
+
+static const double frequency_hz = 5e9, aspect_rad = 0.3 * rad_per_deg;
+
+static ScatterAntenna at(double az_deg, double el_deg, double range_m)
+{
+    const double   az = az_deg * rad_per_deg, el = el_deg * rad_per_deg;
+    ScatterAntenna a = {{cos(el) * cos(az), cos(el) * sin(az), sin(el)}, range_m};
+    return a;
+}
+
+/* Any direction is within half of a bin's diagonal of its middle, the middle is in its own bin, and ranges are within an eighth of
+ * an octave. */
+static void bins_are_about_their_middles(void **state)
+{
+    (void)state;
+    double farthest = 0;
+    for (int i = 0; i < 20000; i++) {
+        const ScatterAntenna a = at(360 * random_uniform(1, 0, 0, (uint64_t)i) - 180, 180 * random_uniform(1, 1, 0, (uint64_t)i) - 90,
+                                    pow(10, 1 + 4 * random_uniform(1, 2, 0, (uint64_t)i)));
+        ScatterAntenna middle, again;
+        double         across[3];
+        signature_bin(&middle, &a, aspect_rad);
+        signature_bin(&again, &middle, aspect_rad);
+        v3_cross(across, middle.u, a.u);
+        farthest = fmax(farthest, v3_length(across));
+        CHECK(memcmp(&middle, &again, sizeof middle) == 0 || fabs(middle.u[2]) > 1 - 1e-5); /* near a pole azimuths differ by rounding */
+        CHECK(fabs(log2(middle.range_m / a.range_m)) <= 0.125 + 1e-12);
+        CHECK_NEAR(v3_length(middle.u), 1, 1e-14);
+    }
+    CHECK(farthest < 0.71 * aspect_rad && farthest > 0.65 * aspect_rad);
+}
+
+static Signatures *open(Catalog **catalog, int *model, RadarMaterials *materials, size_t most_octets)
+{
+    static const DisEntityType truck = {1, 1, 225, 7, 1, 0, 0};
+    const SignatureConfig      config = {.frequency_hz = frequency_hz, .aspect_rad = aspect_rad, .rays_per_wavelength = 1,
+                                         .most_octets = most_octets, .isa = "avx2"};
+    Signatures *s;
+    Origin      origin;
+    char        path[4096];
+    CHECK(etc_path(path, sizeof path, "catalog.csv") && catalog_open(catalog, path, radar_sag_m(frequency_hz)) == STATUS_OK);
+    *model = catalog_find(*catalog, truck, &origin, NULL);
+    CHECK(radar_materials_load(materials) == STATUS_OK);
+    CHECK(signatures_create(&s, &config, *catalog, materials) == STATUS_OK);
+    return s;
+}
+
+static ScatterMatrix look(Signatures *s, int model, const double *joint, const ScatterAntenna *a)
+{
+    const TotalField *field;
+    ScatterMatrix     m;
+    CHECK(signatures_find(&field, s, model, joint, 0, a, NULL) == STATUS_OK);
+    CHECK(total_field_sweep(&m, 1, frequency_hz, 0, field, a, a, NULL) == STATUS_OK);
+    return m;
+}
+
+static void lists_are_reused_and_change_no_bit(void **state)
+{
+    (void)state;
+    Catalog       *catalog;
+    RadarMaterials materials;
+    int            model;
+    Signatures    *s = open(&catalog, &model, &materials, 1), *roomy; /* one list alone, or all */
+    SignatureConfig config = {.frequency_hz = frequency_hz, .aspect_rad = aspect_rad, .rays_per_wavelength = 1,
+                              .most_octets = 1 << 30, .isa = "avx2"};
+    CHECK(signatures_create(&roomy, &config, catalog, &materials) == STATUS_OK);
+    ScatterMatrix first[6], again[6], other[6];
+    for (int i = 0; i < 6; i++) {
+        const ScatterAntenna a = at(20 + 0.2 * i, 15, 2000);
+        first[i] = look(s, model, NULL, &a);
+        other[5 - i] = (ScatterMatrix){0};
+    }
+    for (int i = 5; i >= 0; i--) {
+        const ScatterAntenna a = at(20 + 0.2 * i, 15, 2000);
+        other[i] = look(roomy, model, NULL, &a);
+    }
+    for (int i = 0; i < 6; i++) {
+        const ScatterAntenna a = at(20 + 0.2 * i, 15, 2000);
+        again[i] = look(s, model, NULL, &a);
+    }
+    CHECK(memcmp(first, again, sizeof first) == 0 && memcmp(first, other, sizeof first) == 0);
+    CHECK(signatures_counters(roomy)->made < 6 && signatures_counters(roomy)->made >= 3);
+    CHECK(signatures_counters(roomy)->dropped == 0 && signatures_counters(s)->dropped > 3);
+
+    /* wheels do not make another list, other joints do */
+    const Model *of = catalog_model(catalog, model);
+    double       joint[256] = {0};
+    const uint64_t made = signatures_counters(roomy)->made;
+    int            wheels = 0, others = -1;
+    CHECK(of->node_count <= 256);
+    for (int n = 0; n < of->node_count; n++) {
+        if (of->node[n].roll_radius_m > 0) joint[n] = 1, wheels++;
+        else if (n > 0) others = n;
+    }
+    const ScatterAntenna a = at(20, 15, 2000);
+    const ScatterMatrix  rolled = look(roomy, model, joint, &a);
+    CHECK(wheels > 0 && signatures_counters(roomy)->made == made && memcmp(&rolled, &first[0], sizeof rolled) == 0);
+    if (others >= 0) {
+        joint[others] = 0.3;
+        look(roomy, model, joint, &a);
+        CHECK(signatures_counters(roomy)->made == made + 1);
+    }
+    signatures_destroy(s);
+    signatures_destroy(roomy);
+    radar_materials_close(&materials);
+    catalog_close(catalog);
+}
+
+/* Against lists made for each look itself, beside what another turn of their own grid of tubes changes: rms over looks,
+ * over the rms field. Reuse adds nothing that is seen beside the grid's own error. */
+static void a_list_serves_its_bin(void **state)
+{
+    (void)state;
+    Catalog       *catalog;
+    RadarMaterials materials;
+    int            model;
+    Signatures    *s = open(&catalog, &model, &materials, 1 << 30);
+    double         error = 0, grid = 0, power = 0;
+    TotalField     own = {0};
+    for (int i = 0; i < 12; i++) {
+        const ScatterAntenna a = at(30 * i + 0.28 * random_uniform(2, 0, 0, (uint64_t)i),
+                                    12.05 + 0.2 * random_uniform(2, 1, 0, (uint64_t)i), 2000);
+        const ScatterMatrix got = look(s, model, NULL, &a);
+        ScatterMatrix       want[2];
+        for (int turned = 0; turned < 2; turned++) {
+            TubeConfig tubes = tubes_default_config(frequency_hz);
+            tubes.seed = (uint64_t)turned;
+            CHECK(total_field_trace(&own, signatures_target(s), &a, &a, &tubes, true, NULL) == STATUS_OK);
+            CHECK(total_field_sweep(&want[turned], 1, frequency_hz, 0, &own, NULL, NULL, NULL) == STATUS_OK);
+        }
+        error += pow(cabs(got.vv - want[0].vv), 2) + pow(cabs(got.hh - want[0].hh), 2);
+        grid += pow(cabs(want[1].vv - want[0].vv), 2) + pow(cabs(want[1].hh - want[0].hh), 2);
+        power += pow(cabs(want[0].vv), 2) + pow(cabs(want[0].hh), 2);
+    }
+    printf("a truck at 5 GHz, from lists of bins of 0.3 degrees: %.1f dB; another turn of the grid: %.1f dB\n",
+           10 * log10(error / power), 10 * log10(grid / power));
+    CHECK(error < 1.5 * grid);
+    total_field_free(&own);
+    signatures_destroy(s);
+    radar_materials_close(&materials);
+    catalog_close(catalog);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bins_are_about_their_middles),
+        cmocka_unit_test(lists_are_reused_and_change_no_bit),
+        cmocka_unit_test(a_list_serves_its_bin),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,183 @@
+/* A radar's receiver and processing, with echoes whose answers are known on paper: signal to noise by the radar equation, places,
+ * speeds and directions of points, images of I/Q errors, noise of a converter. */
+#include "tests/check.h"
+
+#include "render/radar/radar_equation.h"
+#include "sensor/radar/detect.h"
+#include "sensor/radar/echo.h"
+#include "sensor/radar/receiver.h"
+
+/* 94 GHz, 0.3 m of range, 64 pulses. */
+static const Waveform wave = {
+    .centre_hz = 94e9, .bandwidth_hz = 500e6, .pulse_s = 20e-6, .repeat_hz = 20e3, .samples = 256, .pulses = 64};
+enum { samples = 256, pulses = 64, cells = samples * pulses };
+
+static double complex sample[interval_channels * cells], cell[interval_channels * cells];
+
+typedef struct Point {
+    double range_m, range_rate_mps; /* from the reference */
+    double cos_right, cos_down, rcs_m2, phase_rad;
+} Point;
+
+static const Antenna dish = {.diameter_m = 0.2, .taper = 1, .wavelength_m = 299792458.0 / 94e9};
+static const double  reference_m = 3000, power_w = 15, loss = 3;
+
+static void add_points(Interval *interval, const Point *point, int count)
+{
+    EchoGrid *grid;
+    CHECK(echo_grid_create(&grid, &wave) == STATUS_OK);
+    for (int i = 0; i < count; i++) {
+        const Point      *p = &point[i];
+        const AntennaGain g = antenna_gain(&dish, p->cos_right, p->cos_down);
+        const RadarLink   link = {power_w, 1, 1, dish.wavelength_m, reference_m + p->range_m, loss};
+        const double complex a = sqrt(radar_received_w(&link, p->rcs_m2)) * g.sum * cexp(I * p->phase_rad);
+        echo_add(grid, &(Echo){2 * p->range_m, 2 * p->range_rate_mps / wave.repeat_hz, {a * g.sum, a * g.right, a * g.down, 0}}, 1, NULL);
+    }
+    echo_sum(interval->sample, grid);
+    echo_grid_destroy(grid);
+}
+
+static IntervalPlan *plan;
+
+static RangeDoppler process(const Interval *interval, const char *range_window, const char *doppler_window)
+{
+    Window       range, doppler;
+    RangeDoppler map = {.cell = cell};
+    CHECK(!window_parse(&range, range_window) && !window_parse(&doppler, doppler_window));
+    interval_plan_destroy(plan);
+    CHECK(interval_plan_create(&plan, &wave, &range, &doppler) == STATUS_OK);
+    interval_process(&map, plan, interval);
+    return map;
+}
+
+static double power_of(double complex v) { return creal(v) * creal(v) + cimag(v) * cimag(v); }
+
+/* Skolnik's equation in decibels, by hand: 15 W, 3 (4.77 dB), 10 m2 at 3 km; antenna 0.75 (pi 0.2 / 0.0031893)^2 = 44.64 dB;
+ * 64 pulses of 20 us; noise figure 8 dB. P G^2 l^2 s / ((4 pi)^3 R^4 L):
+ *     11.76 + 89.28 - 49.93 + 10 - 32.98 - 139.08 - 4.77 = -115.72 dBW; energy of 64 pulses: -28.93 dBs: -144.65 dBJ
+ *     k 290 K: -203.98, and 8 dB: -195.98; signal to noise: 51.33 dB. */
+static void signal_to_noise_is_the_radar_equations(void **state)
+{
+    (void)state;
+    const Receiver receiver = {.noise_figure = pow(10, 0.8)};
+    Interval       interval = {.wave = wave, .sample = sample};
+    ReceiverReport report;
+    double         floor_w = 0;
+    memset(sample, 0, sizeof sample);
+    receiver_apply(&report, &interval, &receiver, 5, 0, 0);
+    RangeDoppler map = process(&interval, "rect", "rect");
+    for (int i = 0; i < cells; i++) floor_w += power_of(map.cell[i]) / cells;
+    /* 16384 cells of exponential power: their mean scatters by 0.8 % */
+    CHECK_NEAR(floor_w / (report.noise_w * map.noise_share), 1, 0.024);
+    CHECK_NEAR(map.noise_share * cells, 1, 1e-12);
+
+    const Point point = {.rcs_m2 = 10};
+    add_points(&interval, &point, 1);
+    map = process(&interval, "rect", "rect");
+    const double peak_w = power_of(map.cell[pulses / 2 * samples + samples / 2]);
+    CHECK_NEAR(10 * log10(peak_w / floor_w), 51.33, 0.12);
+    /* windows take their loss, and nothing of the peak */
+    const RangeDoppler tapered = process(&interval, "taylor:5:40", "hann");
+    CHECK_NEAR(power_of(tapered.cell[pulses / 2 * samples + samples / 2]) / peak_w, 1, 1e-5);
+    /* N (sum of squares) / (sum)^2, of symmetric windows of 256 and 64: SciPy */
+    CHECK_NEAR(tapered.noise_share / map.noise_share, 1.30051567933 * 64 * 23.625 / (31.5 * 31.5), 1e-6);
+}
+
+static void points_are_measured(void **state)
+{
+    (void)state;
+    static const Point point[] = {
+        {3.14, 4.1, 0.002, -0.001, 10, 0.3}, {-20.3, -7.77, -0.006, 0.004, 3, 2},
+        {30.05, 0, 0, 0.007, 30, 4}, {0.1, 11.2, 0.0035, 0.003, 1, 5},
+    };
+    const CfarConfig  cfar = {.pfa = 1e-8, .guard = {3, 3}, .training = {3, 8}, .wrap_rows = true};
+    const double      unit_w = power_w / loss * dish.wavelength_m * dish.wavelength_m / pow(4 * pi_rad, 3);
+    const DetectScale scale = {.range_m = reference_m, .range_rate_mps = -220, .unit_w = unit_w};
+    const Receiver    receiver = {.noise_figure = 6};
+    Interval          interval = {.wave = wave, .sample = sample};
+    ReceiverReport    report;
+    Detection         got[16];
+    add_points(&interval, point, 4);
+    receiver_apply(&report, &interval, &receiver, 5, 0, 0);
+    const RangeDoppler map = process(&interval, "hann", "hann");
+    CHECK(detect(got, 16, &map, plan, &cfar, &dish, &scale) == 4);
+    int seen = 0;
+    for (int k = 0; k < 4; k++)
+        for (int i = 0; i < 4; i++) {
+            if (fabs(got[k].range_m - reference_m - point[i].range_m) > 1) continue;
+            seen |= 1 << i;
+            /* noise moves them by some snr^-0.5 of a cell; the others' side lobes, 60 dB down and more, by less */
+            const double some = 3 / sqrt(got[k].snr);
+            CHECK_NEAR(got[k].range_m - reference_m, point[i].range_m, some * map.metre_per_column);
+            CHECK_NEAR(got[k].range_rate_mps + 220, point[i].range_rate_mps, some * map.mps_per_row);
+            /* three times Barton's width / (1.6 (2 snr)^0.5) of monopulse */
+            const double angle = 3 * antenna_width_rad(&dish) / (1.6 * sqrt(2 * got[k].snr));
+            CHECK_NEAR(got[k].cos_right, point[i].cos_right, angle);
+            CHECK_NEAR(got[k].cos_down, point[i].cos_down, angle);
+            CHECK_NEAR(10 * log10(got[k].rcs_m2 / point[i].rcs_m2), 0, 10 * log10(1 + 3 * some));
+            CHECK(got[k].snr > 1000);
+        }
+    CHECK(seen == 15);
+    CHECK(got[0].rcs_m2 > 20); /* strongest first */
+}
+
+/* Q that is stronger or turned: a point's mirror image at minus its range, -20 log10 |gain + j phase| + 6.02 dB below it. */
+static void iq_errors_make_an_image(void **state)
+{
+    (void)state;
+    const Point    point = {.range_m = 16 * 0.299792458, .rcs_m2 = 1e6};
+    const Receiver receiver = {.noise_figure = 1, .iq_gain = 0.02, .iq_phase_rad = 0.015};
+    Interval       interval = {.wave = wave, .sample = sample};
+    ReceiverReport report;
+    add_points(&interval, &point, 1);
+    receiver_apply(&report, &interval, &receiver, 5, 0, 0);
+    const RangeDoppler map = process(&interval, "rect", "rect");
+    const double complex *row = map.cell + pulses / 2 * samples + samples / 2;
+    CHECK_NEAR(10 * log10(power_of(row[-16]) / power_of(row[16])), 20 * log10(hypot(0.02, 0.015) / 2), 0.2);
+}
+
+/* A converter's noise: one twelfth of a count squared each for I and Q, where some noise dithers it; phases that scatter take exp(-sigma^2) of the peak. */
+static void converter_and_oscillator_add_their_noise(void **state)
+{
+    (void)state;
+    const Point    point = {.range_m = 12.3, .range_rate_mps = 2.2, .rcs_m2 = 1e4, .phase_rad = 1};
+    Receiver       receiver = {.noise_figure = 1, .bits = 8, .noise_counts = 0.3};
+    Interval       interval = {.wave = wave, .sample = sample};
+    ReceiverReport report;
+    static double complex before[cells];
+    add_points(&interval, &point, 1);
+    memcpy(before, sample, sizeof before);
+    receiver_apply(&report, &interval, &receiver, 5, 0, 0);
+    double error = 0;
+    for (int i = 0; i < cells; i++) error += power_of(sample[i] - before[i]) / cells;
+    const double counts = 1 / report.counts_per_sqrt_w;
+    CHECK_NEAR((error - report.noise_w) / (counts * counts / 6), 1, 0.03);
+    CHECK(report.saturated == 0);
+
+    receiver = (Receiver){.noise_figure = 1, .phase_noise_rad = 0.3};
+    add_points(&interval, &(Point){.rcs_m2 = 1e4}, 1);
+    double mean = 0;
+    for (uint32_t k = 0; k < 40; k++) {
+        add_points(&interval, &(Point){.rcs_m2 = 1e4}, 1);
+        const double amplitude = cabs(sample[0]);
+        receiver_apply(&report, &interval, &receiver, 5, 0, k);
+        const RangeDoppler map = process(&interval, "rect", "rect");
+        mean += power_of(map.cell[pulses / 2 * samples + samples / 2] / amplitude) / 40;
+    }
+    /* of N pulses: exp(-s^2) + (1 - exp(-s^2)) / N; 40 draws scatter by 0.3 % */
+    const double kept = exp(-0.09);
+    CHECK_NEAR(mean, kept + (1 - kept) / pulses, 0.01);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(signal_to_noise_is_the_radar_equations),
+        cmocka_unit_test(points_are_measured),
+        cmocka_unit_test(iq_errors_make_an_image),
+        cmocka_unit_test(converter_and_oscillator_add_their_noise),
+    };
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    interval_plan_destroy(plan);
+    return failed;
+}

@@ -1,0 +1,68 @@
+/* Radars of etc/radars.csv, and rows that are refused, each with the column it is refused for. */
+#include "tests/check.h"
+
+#include "sensor/radar/radar_preset.h"
+
+static const char header[] =
+    "name,centre_ghz,bandwidth_mhz,samples,pulses,repeat_khz,pulse_us,power_w,loss_db,dish_m,taper,transmit,"
+    "noise_figure_db,phase_noise_deg,iq_gain_db,iq_phase_deg,bits,range_window,doppler_window,pfa,source\n";
+
+static void bundled_rows_are_read(void **state)
+{
+    (void)state;
+    RadarPreset p;
+    char        path[4096];
+    CHECK(etc_path(path, sizeof path, "radars.csv") && radar_preset_check(path) == STATUS_OK);
+    CHECK(radar_preset_read(&p, path, "seeker_94") == STATUS_OK);
+    CHECK_NEAR(p.wave.centre_hz, 94e9, 1);
+    CHECK_NEAR(p.antenna.wavelength_m, 3.18928e-3, 1e-8);
+    CHECK_NEAR(p.loss, 3.1622776601683795, 1e-12);
+    CHECK(p.wave.samples == 512 && p.range_window.kind == WINDOW_TAYLOR && !p.transmits_h);
+    log_set_sink(check_listen, NULL);
+    CHECK(radar_preset_read(&p, path, "none_such") == STATUS_BAD_VALUE);
+    log_set_sink(NULL, NULL);
+    CHECK(strstr(check_said, "seeker_94") && strstr(check_said, "search_ku"));
+}
+
+static void bad_rows_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *row, *column;
+    } bad[] = {
+        {"x,0,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "centre_ghz"},
+        {"x,94,60000,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "bandwidth_mhz"},
+        {"x,1,600,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "bandwidth_mhz"},
+        {"x,94,500,511,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "samples"},
+        {"x,94,500,65536,4096,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "pulses"},
+        {"x,94,500,512,64,20,51,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "pulse_us"},
+        {"x,94,500,512,64,20,20,10,5,0.2,0.5,v,8,2,0,0,12,hann,hann,1e-6,s\n", "taper"},
+        {"x,94,500,512,64,20,20,10,5,0.2,1,x,8,2,0,0,12,hann,hann,1e-6,s\n", "transmit"},
+        {"x,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,1,hann,hann,1e-6,s\n", "bits"},
+        {"x,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,bell,hann,1e-6,s\n", "range_window"},
+        {"x,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,kaiser:99,1e-6,s\n", "doppler_window"},
+        {"x,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,0,s\n", "pfa"},
+        {"x,94,500,512,64,20,nan,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "pulse_us"},
+    };
+    RadarPreset p;
+    char        path[text_file_size], text[1024];
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        snprintf(text, sizeof text, "%s%s", header, bad[i].row);
+        text_file(path, text);
+        log_set_sink(check_listen, NULL);
+        CHECK(radar_preset_check(path) == STATUS_BAD_VALUE);
+        CHECK(radar_preset_read(&p, path, "x") == STATUS_BAD_VALUE);
+        log_set_sink(NULL, NULL);
+        if (!strstr(check_said, bad[i].column)) fail_msg("row %zu: said: %s", i, check_said);
+        remove(path);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bundled_rows_are_read),
+        cmocka_unit_test(bad_rows_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,197 @@
+/* The radar of a seeker over ground: its power against an integral over the ground that the test makes itself, its place in
+ * Doppler, and the same bits whatever made them. */
+#include "tests/check.h"
+
+#include "sensor/radar/seeker_radar.h"
+
+#include "render/radar/clutter_table.h"
+#include "render/radar/radar_equation.h"
+
+static const double height_m = 250, reference_m = 900;
+
+typedef struct Stage {
+    Landscape  landscape;
+    Catalog   *catalog;
+    World      world;
+    Pool      *pool;
+    Arena     *arena;
+    View       view;
+    Snapshot   snapshot;
+    char       catalog_path[4096];
+} Stage;
+
+static Stage stage;
+
+static int open_stage(void **state)
+{
+    (void)state;
+    LocalFrame      frame;
+    const Geodetic  origin = {0.6, -1.9, 700};
+    LandscapeConfig config = landscape_default_config();
+    config.half_width_m = 2000;
+    config.horizon_m = 20000;
+    config.relief_m = 0;
+    if (!etc_path(stage.catalog_path, sizeof stage.catalog_path, "catalog.csv")) return -1;
+    if (catalog_open(&stage.catalog, stage.catalog_path, 0.01) != STATUS_OK || local_frame_at(&frame, &origin) != STATUS_OK) return -1;
+    if (landscape_create(&stage.landscape, &config, &frame, NULL, 0, NULL, 0) != STATUS_OK) return -1;
+    if (world_open(&stage.world, stage.catalog, &stage.landscape, &frame, "avx2") != STATUS_OK) return -1;
+    if (atmosphere_open(&stage.world.atmosphere, "us1976") != STATUS_OK) return -1;
+    stage.arena = arena_create();
+    return stage.arena && pool_create(&stage.pool, 2) == STATUS_OK ? 0 : -1;
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    pool_destroy(stage.pool);
+    arena_destroy(stage.arena);
+    world_close(&stage.world);
+    landscape_destroy(&stage.landscape);
+    catalog_close(stage.catalog);
+    return 0;
+}
+
+/* From a place over the origin towards the north-east, onto ground at the reference range. */
+static RadarScene scene_of(const double v_enu_mps[3], uint32_t number, const Weather *weather)
+{
+    const double ground_m = elevation_height(&stage.landscape.elevation, 0, 0, NULL), down = height_m / reference_m;
+    const double level = sqrt(1 - down * down), ahead[3] = {level * sqrt(0.5), level * sqrt(0.5), -down};
+    const double right[3] = {sqrt(0.5), -sqrt(0.5), 0};
+    double       below[3];
+    v3_cross(below, ahead, right);
+    stage.view = (View){.p_enu = {0, 0, ground_m + height_m}, .width = 64, .height = 64, .focal_px = 1000};
+    for (int k = 0; k < 3; k++) {
+        stage.view.r_enu_from_cam[3 * k] = right[k];
+        stage.view.r_enu_from_cam[3 * k + 1] = below[k];
+        stage.view.r_enu_from_cam[3 * k + 2] = ahead[k];
+    }
+    RadarScene scene = {.world = &stage.world, .snapshot = &stage.snapshot, .view = &stage.view, .hidden = -1,
+                        .reference_m = reference_m, .weather = weather, .number = number};
+    memcpy(scene.v_enu_mps, v_enu_mps, sizeof scene.v_enu_mps);
+    return scene;
+}
+
+static SeekerRadar *open_radar(uint64_t seed)
+{
+    SeekerRadar *radar;
+    CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = "seeker_35", .catalog = stage.catalog_path, .isa = "avx2",
+                                                           .ground = true, .wind_mps = 0, .seed = seed}) == STATUS_OK);
+    return radar;
+}
+
+/* Sum over ground of the power that each square metre returns: classes, heights and the dish's pattern asked for anew, places and
+ * integral the test's own. */
+static double power_by_integral(const RadarFrame *frame)
+{
+    static ClutterTable table;
+    const RadarPreset  *p = frame->preset;
+    char                path[4096];
+    const double        step_m = 0.5, window_m = 0.5 * p->wave.samples * frame->map.metre_per_column;
+    double              sum_w = 0;
+    CHECK(etc_path(path, sizeof path, "radar/clutter.csv") && clutter_table_open(&table, path) == STATUS_OK);
+    for (double x = 300; x < 1000; x += step_m)
+        for (double y = 300; y < 1000; y += step_m) {
+            double n[3], at[3] = {x, y, 0}, d[3];
+            at[2] = elevation_height(&stage.landscape.elevation, x, y, n);
+            v3_sub(d, at, stage.view.p_enu);
+            const double range_m = v3_length(d);
+            if (fabs(range_m - reference_m) > window_m) continue;
+            v3_scale(d, 1 / range_m, d);
+            const double *r = stage.view.r_enu_from_cam;
+            const double  right = d[0] * r[0] + d[1] * r[3] + d[2] * r[6], down = d[0] * r[1] + d[1] * r[4] + d[2] * r[7];
+            /* beyond the first null of J_2 nothing counts: below -49 dB both ways */
+            if (hypot(right, down) > 5.1356 * p->antenna.wavelength_m / (pi_rad * p->antenna.diameter_m)) continue;
+            const double gain = antenna_gain(&p->antenna, right, down).sum, grazing = asin(-v3_dot(d, n));
+            const int    surface = landscape_surface(&stage.landscape, x, y);
+            const double sigma0 = clutter_sigma0(&table.row[surface][CLUTTER_KA], grazing, p->antenna.wavelength_m);
+            const RadarLink link = {p->power_w, gain * gain, gain * gain, p->antenna.wavelength_m, range_m, p->loss};
+            sum_w += radar_received_w(&link, sigma0 * step_m * step_m / n[2]) * pow(10, -0.2 * frame->air_db);
+        }
+    return sum_w;
+}
+
+static void ground_has_the_power_of_its_integral(void **state)
+{
+    (void)state;
+    const double  v[3] = {200, 100, -60};
+    const Weather weather = weather_default();
+    double        got_w = 0, want_w = 0;
+    int           cells = 0;
+    enum { seeds = 3 };
+    for (uint64_t seed = 1; seed <= seeds; seed++) {
+        SeekerRadar      *radar = open_radar(seed);
+        const RadarScene  scene = scene_of(v, (uint32_t)seed, &weather);
+        const RadarFrame *frame;
+        WindowFigures     figures;
+        double            weight[512];
+        arena_reset(stage.arena);
+        CHECK(seeker_radar_measure(&frame, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
+        CHECK(frame->preset->wave.samples == 512 && window_weights(weight, 512, &frame->preset->range_window) == STATUS_OK);
+        CHECK(window_figures(&figures, weight, 512) == STATUS_OK);
+        const double noise_w = frame->receiver.noise_w * figures.noise_bins / 512;
+        for (int i = 0; i < 512; i++) got_w += (frame->profile_w[i] - noise_w) / figures.noise_bins;
+        want_w += power_by_integral(frame);
+        cells += frame->ground_cells;
+        CHECK(frame->ground_hidden < 0.02 * frame->ground_cells); /* flat ground hides next to nothing */
+        seeker_radar_destroy(radar);
+    }
+    printf("ground of %d scatterers: %.3f dB over its integral\n", cells / seeds, 10 * log10(got_w / want_w));
+    CHECK_NEAR(10 * log10(got_w / want_w), 0, 0.3);
+}
+
+/* Ground ahead moves against the antenna at v.d; the reference is followed at the axis' rate: the middle row. */
+static void ground_is_where_it_must_be_in_doppler(void **state)
+{
+    (void)state;
+    const double  v[3] = {150, 150, -60};
+    const Weather weather = weather_default();
+    SeekerRadar  *radar = open_radar(3);
+    RadarScene    scene = scene_of(v, 1, &weather);
+    const RadarFrame *frame;
+    arena_reset(stage.arena);
+    CHECK(seeker_radar_measure(&frame, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
+    const double *r = stage.view.r_enu_from_cam;
+    CHECK_NEAR(frame->reference_rate_mps, -(v[0] * r[2] + v[1] * r[5] + v[2] * r[8]), 1e-9);
+    double power = 0, moment = 0;
+    for (int y = 0; y < frame->map.rows; y++)
+        for (int x = 0; x < frame->map.columns; x++) {
+            const double complex c = frame->map.cell[(size_t)y * (size_t)frame->map.columns + (size_t)x];
+            power += creal(c * conj(c));
+            moment += creal(c * conj(c)) * (y - frame->map.rows / 2);
+        }
+    CHECK(fabs(moment / power) < 1);
+    seeker_radar_destroy(radar);
+}
+
+static void the_same_bits(void **state)
+{
+    (void)state;
+    const double  v[3] = {200, 100, -60};
+    const Weather weather = weather_default();
+    SeekerRadar  *radar = open_radar(3), *other = open_radar(3);
+    RadarScene    scene = scene_of(v, 7, &weather);
+    const RadarFrame *first, *again, *alone;
+    arena_reset(stage.arena);
+    CHECK(seeker_radar_measure(&first, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
+    scene.number = 8;
+    CHECK(seeker_radar_measure(&again, radar, &scene, NULL, stage.arena) == STATUS_OK);
+    const size_t octets = interval_channels * (size_t)first->map.rows * (size_t)first->map.columns * sizeof *first->map.cell;
+    CHECK(memcmp(first->map.cell, again->map.cell, octets) != 0); /* other noise */
+    scene.number = 7;
+    CHECK(seeker_radar_measure(&again, radar, &scene, NULL, stage.arena) == STATUS_OK);
+    CHECK(seeker_radar_measure(&alone, other, &scene, stage.pool, stage.arena) == STATUS_OK);
+    CHECK(memcmp(first->map.cell, again->map.cell, octets) == 0 && memcmp(first->map.cell, alone->map.cell, octets) == 0);
+    CHECK(first->targets == 0);
+    seeker_radar_destroy(radar);
+    seeker_radar_destroy(other);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ground_has_the_power_of_its_integral),
+        cmocka_unit_test(ground_is_where_it_must_be_in_doppler),
+        cmocka_unit_test(the_same_bits),
+    };
+    return cmocka_run_group_tests(tests, open_stage, close_stage);
+}

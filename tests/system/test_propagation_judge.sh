@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Radio waves in gases, rain and cloud against ITU-Rpy: what is taken per km, in airs hot and cold, wet and dry.
+# labels: small
+. "$(dirname "$0")/common.sh"
+
+command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
+judge=tests/system/propagation_judge.py
+python3 $judge rows >"$tmp/rows.csv" 2>"$tmp/stderr"
+code=$?
+if [ $code = 77 ]; then
+    cat "$tmp/rows.csv"
+    exit 77
+fi
+check "the judge asks" [ $code = 0 ]
+"$pitviper" probe propagation <"$tmp/rows.csv" >"$tmp/answers.csv" 2>"$tmp/stderr"
+check "the probe answers" [ $? = 0 ]
+python3 $judge judge <"$tmp/answers.csv" >"$tmp/judge.txt" 2>&1
+check "the judge ends well" [ $? = 0 ]
+cat "$tmp/judge.txt"
+check "96 rows" [ "$(grep -oP '^rows \K.*' "$tmp/judge.txt")" = 96 ]
+for what in gas rain cloud; do
+    worst=$(grep -oP "^$what \K.*" "$tmp/judge.txt")
+    check "$what: ${worst:-none}" is "${worst:-9}" '<' 1e-12 # the same formulae in doubles, summed in another order
+done
+# its dry air has the pressure of all air, 1 % more than ours; it goes beyond 20 km, 0.3 %; and bends
+worst=$(grep -oP '^space \K.*' "$tmp/judge.txt")
+check "from the ground to space: ${worst:-none}" is "${worst:-9}" '<' 0.02
+finish
