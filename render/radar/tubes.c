@@ -12,7 +12,7 @@ enum {
 TubeConfig tubes_default_config(double frequency_hz)
 {
     return (TubeConfig){.frequency_hz = frequency_hz, .rays_per_wavelength = 1.25, .rays_per_radius = 128,
-                        .bounces = 8};
+                        .bounces = 8, .warp_length_m = 0.5};
 }
 
 void tubes_free(TubeHits *hits)
@@ -158,7 +158,10 @@ static Status open_work(TubeWork *work, int threads, const RadarTarget *target)
     work->worker = calloc((size_t)threads, sizeof *work->worker);
     work->surface = calloc((size_t)target->model->part_count + 1, sizeof *work->surface);
     work->piece = calloc(round_tiles, sizeof *work->piece);
-    if (!work->worker || !work->surface || !work->piece) return STATUS_NO_MEMORY;
+    work->warp = calloc((size_t)target->model->part_count + 1, sizeof *work->warp);
+    if (!work->worker || !work->surface || !work->piece || !work->warp) return STATUS_NO_MEMORY;
+    for (int p = 0; p < target->model->part_count && work->config.warp_m > 0; p++)
+        warp_make(&work->warp[p], work->config.warp_m, work->config.warp_length_m, work->config.warp_seed, p);
     for (int w = 0; w < threads; w++) {
         work->worker[w].tile = calloc(1, tube_tile_octets());
         if (!work->worker[w].tile) return STATUS_NO_MEMORY;
@@ -176,6 +179,7 @@ static void close_work(TubeWork *work, int threads)
     }
     free(work->worker);
     free(work->surface);
+    free(work->warp);
     free(work->piece);
 }
 
@@ -220,6 +224,7 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
                       .monostatic = memcmp(tx->u, rx->u, sizeof tx->u) == 0 && tx->range_m == rx->range_m};
     if (!antenna_is_good(tx) || !antenna_is_good(rx) || !(config->frequency_hz > 0) ||
         !(config->rays_per_wavelength > 0) || !(config->rays_per_radius >= 0) ||
+        !(config->warp_m >= 0 && config->warp_length_m > 0) ||
         isinf(config->frequency_hz) || config->bounces < 1 || config->bounces > 255) {
         log_error("radar: an antenna or a number of the ray tubes is out of range: frequency_hz=%g "
                   "rays_per_wavelength=%g bounces=%d", config->frequency_hz, config->rays_per_wavelength,

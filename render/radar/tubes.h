@@ -30,7 +30,9 @@ typedef struct TubeConfig {
     int      bounces;             /* 8 */
     bool     last_only;           /* only the last mirror of a path radiates: the handbook's corner reflectors */
     bool     keep_hidden;         /* bistatic: receivers behind a part see it all the same; for tests */
-    uint64_t seed;
+    double   warp_m, warp_length_m; /* surfaces uneven by this height, rms, over this length (warp.h); 0, 0.5 */
+    uint64_t warp_seed;
+    uint64_t seed;                /* of the grid */
 } TubeConfig;
 
 TubeConfig tubes_default_config(double frequency_hz);

@@ -75,6 +75,7 @@ done <<'WRONG'
 --elevation tank --elevation 90
 --range tank --range 0
 --rays tank --rays 100
+--warp tank --warp -1
 --image tank --image north
 --cell tank --cell 0
 target tank truck
