@@ -4,12 +4,15 @@
 
 #include <stdlib.h>
 
-enum { round_tiles = 512 }; /* hits are gathered so often: bounds the memory of workers */
+enum {
+    round_tiles = 512, /* hits are gathered so often: bounds the memory of workers */
+    most_rays = 1 << 28, most_hits = 1 << 26 /* 5 GB */
+};
 
 TubeConfig tubes_default_config(double frequency_hz)
 {
     return (TubeConfig){.frequency_hz = frequency_hz, .rays_per_wavelength = 1.25, .rays_per_radius = 128,
-                        .bounces = 8};
+                        .bounces = 8, .warp_length_m = 0.5};
 }
 
 void tubes_free(TubeHits *hits)
@@ -108,7 +111,7 @@ static Status lay_grid(TubeGrid *grid, const RadarTarget *target, const ScatterA
         grid->first_m[i] = low_m[i] - grid->spacing_m * random_uniform(hash, 94, 0, 1 + (uint64_t)i);
         grid->tiles[i] = (grid->count[i] + tile_side - 1) / tile_side;
     }
-    return (double)grid->count[0] * grid->count[1] < 0x1p31 ? STATUS_OK : STATUS_UNSUPPORTED;
+    return (double)grid->count[0] * grid->count[1] <= most_rays ? STATUS_OK : STATUS_UNSUPPORTED;
 }
 
 /* ---- the list --------------------------------------------------------------------------------------- */
@@ -155,7 +158,10 @@ static Status open_work(TubeWork *work, int threads, const RadarTarget *target)
     work->worker = calloc((size_t)threads, sizeof *work->worker);
     work->surface = calloc((size_t)target->model->part_count + 1, sizeof *work->surface);
     work->piece = calloc(round_tiles, sizeof *work->piece);
-    if (!work->worker || !work->surface || !work->piece) return STATUS_NO_MEMORY;
+    work->warp = calloc((size_t)target->model->part_count + 1, sizeof *work->warp);
+    if (!work->worker || !work->surface || !work->piece || !work->warp) return STATUS_NO_MEMORY;
+    for (int p = 0; p < target->model->part_count && work->config.warp_m > 0; p++)
+        warp_make(&work->warp[p], work->config.warp_m, work->config.warp_length_m, work->config.warp_seed, p);
     for (int w = 0; w < threads; w++) {
         work->worker[w].tile = calloc(1, tube_tile_octets());
         if (!work->worker[w].tile) return STATUS_NO_MEMORY;
@@ -173,6 +179,7 @@ static void close_work(TubeWork *work, int threads)
     }
     free(work->worker);
     free(work->surface);
+    free(work->warp);
     free(work->piece);
 }
 
@@ -188,6 +195,11 @@ static Status gather(TubeHits *out, TubeWork *work, int threads, int count)
     for (int t = 0; t < count; t++) {
         if (work->piece[t].failed) return STATUS_NO_MEMORY;
         more += work->piece[t].count;
+    }
+    if (out->count + more > most_hits) {
+        log_error("radar: more than %d hits of ray tubes: rays=%lld; take a lower frequency", (int)most_hits,
+                  out->rays);
+        return STATUS_UNSUPPORTED;
     }
     const Status status = reserve(out, more + 1);
     if (status != STATUS_OK) return status;
@@ -212,6 +224,7 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
                       .monostatic = memcmp(tx->u, rx->u, sizeof tx->u) == 0 && tx->range_m == rx->range_m};
     if (!antenna_is_good(tx) || !antenna_is_good(rx) || !(config->frequency_hz > 0) ||
         !(config->rays_per_wavelength > 0) || !(config->rays_per_radius >= 0) ||
+        !(config->warp_m >= 0 && config->warp_length_m > 0) ||
         isinf(config->frequency_hz) || config->bounces < 1 || config->bounces > 255) {
         log_error("radar: an antenna or a number of the ray tubes is out of range: frequency_hz=%g "
                   "rays_per_wavelength=%g bounces=%d", config->frequency_hz, config->rays_per_wavelength,
@@ -226,7 +239,7 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
     Status status = lay_grid(&work.grid, target, tx, config);
     if (status != STATUS_OK) {
         log_error(status == STATUS_BAD_VALUE ? "radar: the transmitter is within the target: range_m=%g"
-                                             : "radar: more than 2^31 ray tubes: range_m=%g; take a lower frequency",
+                                             : "radar: more than 2^28 ray tubes: range_m=%g; take a lower frequency",
                   tx->range_m);
         return status;
     }

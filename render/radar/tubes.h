@@ -30,7 +30,9 @@ typedef struct TubeConfig {
     int      bounces;             /* 8 */
     bool     last_only;           /* only the last mirror of a path radiates: the handbook's corner reflectors */
     bool     keep_hidden;         /* bistatic: receivers behind a part see it all the same; for tests */
-    uint64_t seed;
+    double   warp_m, warp_length_m; /* surfaces uneven by this height, rms, over this length (warp.h); 0, 0.5 */
+    uint64_t warp_seed;
+    uint64_t seed;                /* of the grid */
 } TubeConfig;
 
 TubeConfig tubes_default_config(double frequency_hz);
@@ -50,7 +52,7 @@ typedef struct TubeHits {
 } TubeHits;
 
 /* out: zeroed, or of an earlier call, whose memory is used again. rx may be tx. STATUS_BAD_VALUE, logged: an antenna
- * within the target, or a number that is not finite; STATUS_UNSUPPORTED, logged: more than 2^31 rays. */
+ * within the target, or a number that is not finite; STATUS_UNSUPPORTED, logged: more than 2^28 rays or 2^26 hits. */
 Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
                    const TubeConfig *config, Pool *pool);
 void   tubes_free(TubeHits *hits);

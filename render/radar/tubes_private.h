@@ -3,6 +3,7 @@
 #define RENDER_RADAR_TUBES_PRIVATE_H
 
 #include "render/radar/tubes.h"
+#include "render/radar/warp.h"
 
 enum { tile_side = 16, tile_rays = tile_side * tile_side };
 
@@ -46,6 +47,7 @@ typedef struct TubeWork {
     double             k;
     bool               monostatic;
     RadarSurface      *surface; /* [part_count] */
+    Warp              *warp;    /* [part_count] */
     TubeWorker        *worker;
     TubePiece         *piece;   /* of this round's tiles */
     long long          first_tile;

@@ -20,7 +20,6 @@ typedef struct Tube {
     double  path_m;             /* to p */
     float   first[3];
     int     bounces;
-    double  mirror[3];          /* normal at p */
 } Tube;
 
 struct TubeTile {
@@ -162,8 +161,11 @@ static void start_tube(TubeTile *tile, const TubeWork *work, int column, int row
 
 /* What a tube meets. */
 typedef struct Facing {
-    double p[3], n[3], smooth[3]; /* normals of the facet and of what it approximates, towards the ray */
+    double base[3], flat[3];      /* the point of the facet, and its normal, towards the ray */
+    double p[3], n[3], smooth[3]; /* the same where its surface is warped; the normal of what facets approximate */
     double sign;                  /* -1: the facet is seen from behind */
+    bool   warped;
+    double bend[9];               /* second derivatives of the height, towards the ray, 1/m */
 } Facing;
 
 /* Crossings of the tube's sides over a length: roots of its cross-section a + b t + c t^2. */
@@ -201,16 +203,45 @@ static void carry(Tube *tube, double t_m)
     tube->path_m += t_m;
 }
 
+/* Tilts the normals of a hit as its surface is warped, and returns how much farther along its ray that is met, m; a ray
+ * that grazes meets the plane. */
+static double warp_hit(Facing *facing, const Tube *tube, const Warp *warp, const PosedNode *node)
+{
+    double at[3], from[3], height_m, slope[3], bend[9], gradient[3], half[9];
+    memcpy(facing->flat, facing->n, sizeof facing->flat);
+    facing->warped = false;
+    if (!(warp->amplitude_m > 0)) return 0;
+    v3_sub(from, facing->base, node->p_enu);
+    m3_tmul_v3(at, node->r_enu_from_node, from);
+    warp_at(&height_m, slope, bend, warp, at);
+    m3_mul_v3(gradient, node->r_enu_from_node, slope);
+    v3_scale(gradient, facing->sign, gradient);
+    v3_add_scaled(gradient, gradient, -v3_dot(gradient, facing->flat), facing->flat);
+    const double under = v3_dot(facing->flat, tube->d) - v3_dot(gradient, tube->d);
+    if (!(under < -0.02)) return 0;
+    facing->warped = true;
+    m3_mul(half, node->r_enu_from_node, bend);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            facing->bend[3 * i + j] = facing->sign * v3_dot(half + 3 * i, node->r_enu_from_node + 3 * j);
+    v3_sub(facing->n, facing->n, gradient);
+    v3_normalize(facing->n, facing->n);
+    v3_sub(facing->smooth, facing->smooth, gradient);
+    v3_normalize(facing->smooth, facing->smooth);
+    return facing->sign * height_m / under;
+}
+
 /* Place of the hit and the tube there. False: the ray, without its lift, meets the facet's plane behind it. */
 static bool arrive(Tube *tube, Facing *facing, const TubeTile *tile, const TubeWork *work, const PosedFacet *facet,
-                   int i)
+                   const Warp *warp, int i)
 {
     const double o[3] = {tile->o[0][i], tile->o[1][i], tile->o[2][i]};
     parts_facet_normals(facing->n, facing->smooth, work->target->model, facet, o, tube->d, tile->range_m[i]);
     facing->sign = v3_dot(facing->n, facet->geo_enu) < 0 ? -1 : 1;
+    v3_add_scaled(facing->base, o, tile->range_m[i], tube->d);
     if (tube->bounces == 0) {
         double way[3];
-        v3_add_scaled(facing->p, o, tile->range_m[i], tube->d);
+        v3_add_scaled(facing->p, facing->base, warp_hit(facing, tube, warp, facet->node), tube->d);
         tube->path_m = scatter_path(way, &work->tx, facing->p);
         if (!work->grid.plane) {
             const double away_m = work->tx.range_m + tube->path_m;
@@ -218,8 +249,12 @@ static bool arrive(Tube *tube, Facing *facing, const TubeTile *tile, const TubeW
             for (int p = 0; p < 2; p++) field_scale(&tube->e[p], work->tx.range_m / away_m);
         }
         for (int c = 0; c < 3; c++) tube->first[c] = (float)facing->p[c];
-    } else {
-        const double t_m = tile->range_m[i] + lift_m * v3_dot(facing->n, tube->mirror) / v3_dot(facing->n, tube->d);
+    } else { /* the ray began beside the tube's own point, so its length is taken from there */
+        double beside[3];
+        v3_sub(beside, o, tube->p);
+        const double plane_m = tile->range_m[i] + v3_dot(facing->n, beside) / v3_dot(facing->n, tube->d);
+        v3_add_scaled(facing->base, tube->p, plane_m, tube->d);
+        const double t_m = plane_m + warp_hit(facing, tube, warp, facet->node);
         if (!(t_m > 0)) return false;
         v3_add_scaled(facing->p, tube->p, t_m, tube->d);
         carry(tube, t_m);
@@ -265,15 +300,22 @@ static void leave(Tube *tube, const TubeWork *work, const PosedFacet *facet, con
     double        d_out[3];
     const double *n = facing->smooth;
     mirror_direction(d_out, tube->d, n);
-    const bool curved = !facet->even && v3_dot(n, tube->d) < 0 && v3_dot(d_out, facing->n) > 1e-6;
+    const bool bent = !facet->even || facing->warped;
+    const bool curved = bent && v3_dot(n, tube->d) < 0 && v3_dot(d_out, facing->flat) > 1e-6;
     if (!curved) {
-        n = facing->n;
+        n = facing->flat;
         mirror_direction(d_out, tube->d, n);
     }
     const double facing_d = v3_dot(n, tube->d);
     for (int s = 0; s < 2; s++) {
         double dn[3] = {0, 0, 0};
-        if (curved) bend(dn, work->target->model, facet, facing, tube->side[s]);
+        if (curved && !facet->even) bend(dn, work->target->model, facet, facing, tube->side[s]);
+        if (curved && facing->warped) {
+            double over[3];
+            m3_mul_v3(over, facing->bend, tube->side[s]);
+            v3_sub(dn, dn, over);
+            v3_add_scaled(dn, dn, -v3_dot(dn, n), n);
+        }
         const double along = v3_dot(n, tube->turn[s]) + v3_dot(tube->d, dn);
         for (int c = 0; c < 3; c++) tube->turn[s][c] -= 2 * (along * n[c] + facing_d * dn[c]);
     }
@@ -282,7 +324,6 @@ static void leave(Tube *tube, const TubeWork *work, const PosedFacet *facet, con
         reflect_field(&tube->e[p], &e, surface, te, tm, n, tube->d, d_out);
     }
     memcpy(tube->d, d_out, sizeof tube->d);
-    memcpy(tube->mirror, facing->n, sizeof tube->mirror);
 }
 
 /* The record of what a facet radiates. False: nothing that way. */
@@ -364,8 +405,8 @@ static int mirror_all(TubeTile *tile, TubeWork *work, const int *list, int count
         const PosedNode *node = &work->target->entity.node[tile->hit[i].node];
         if (facet.node != node || facet.triangle != tile->hit[i].triangle)
             parts_facet(&facet, model, &work->target->entity, &tile->hit[i]);
-        if (!arrive(tube, &facing, tile, work, &facet, i)) continue;
-        const int           part = model->triangle_part[tile->hit[i].triangle];
+        const int part = model->triangle_part[tile->hit[i].triangle];
+        if (!arrive(tube, &facing, tile, work, &facet, &work->warp[part], i)) continue;
         const RadarSurface *surface = &work->surface[part];
         double complex      te = -1, tm = 1;
         if (surface->kind != RADAR_METAL || surface->rough_m > 0)
@@ -375,7 +416,7 @@ static int mirror_all(TubeTile *tile, TubeWork *work, const int *list, int count
             double s[3];
             const double path_m = scatter_path(s, &work->rx, tube->p);
             for (int c = 0; c < 3; c++) {
-                tile->from[c][i] = tube->p[c] + lift_m * facing.n[c];
+                tile->from[c][i] = facing.base[c] + lift_m * facing.flat[c];
                 tile->to[c][i] = s[c];
             }
             tile->limit_m[i] = work->rx.range_m + path_m;
@@ -384,7 +425,7 @@ static int mirror_all(TubeTile *tile, TubeWork *work, const int *list, int count
         leave(tube, work, &facet, &facing, surface, te, tm);
         if (!(power_of(tube) >= least_power)) continue;
         for (int c = 0; c < 3; c++) {
-            tile->o[c][i] = tube->p[c] + lift_m * facing.n[c];
+            tile->o[c][i] = facing.base[c] + lift_m * facing.flat[c];
             tile->d[c][i] = tube->d[c];
         }
         tile->alive[alive++] = i;

@@ -4,6 +4,7 @@
 #include "tests/render/radar_stage.h"
 
 #include "render/radar/total_field.h"
+#include "render/radar/warp.h"
 
 static const double x_hz = 10e9, w_hz = 94e9;
 
@@ -312,6 +313,80 @@ static void bistatic_spheres_equal_mie(void **state)
     table_close(&table);
 }
 
+/* ---- uneven surfaces ---------------------------------------------------------------------------------- */
+
+static void warp_is_smooth_and_of_its_height(void **state)
+{
+    (void)state;
+    Warp   w;
+    double square = 0, worst = 0;
+    hand_draw = 7;
+    for (int i = 0; i < 4000; i++) {
+        const double step = 1e-5;
+        double       p[3], h, g[3], b[9];
+        warp_make(&w, 0.002, 0.4, 11, i % 40);
+        for (int c = 0; c < 3; c++) p[c] = hand_uniform(-3, 3);
+        warp_at(&h, g, b, &w, p);
+        square += h * h / 4000;
+        for (int c = 0; c < 3; c++) {
+            double q[3] = {p[0], p[1], p[2]}, h2, g2[3], b2[9];
+            q[c] += step;
+            warp_at(&h2, g2, b2, &w, q);
+            worst = fmax(worst, fabs((h2 - h) / step - g[c] - 0.5 * step * b[4 * c]));
+            for (int d = 0; d < 3; d++) worst = fmax(worst, fabs((g2[d] - g[d]) / step - b[3 * d + c]) * 0.01);
+        }
+    }
+    printf("warp: %.4f mm rms for 2; derivatives within %.1e\n", 1000 * sqrt(square), worst);
+    CHECK(fabs(sqrt(square) - 0.002) < 1e-4 && worst < 1e-6);
+}
+
+/* The mean field of an uneven plate at normal incidence is exp(-2 (k h)^2) of the even one's, for normal heights; and a
+ * single plate's field converges with the tubes. */
+static void an_uneven_plate_loses_what_it_must(void **state)
+{
+    (void)state;
+    enum { plates = 20 };
+    RadarStage     s;
+    double complex mean = 0;
+    const double   h_m = 0.002, k = 2 * pi_rad * x_hz / light_mps, want = exp(-2 * k * k * h_m * h_m);
+    stage_open(&s, "plate:2x2", x_hz);
+    const double complex even = stage_look(&s, 0, 0, INFINITY).vv;
+    s.config.warp_m = h_m;
+    s.config.warp_length_m = 0.2;
+    for (int i = 0; i < plates; i++) {
+        s.config.warp_seed = (uint64_t)i;
+        mean += stage_look(&s, 0, 0, INFINITY).vv / even / plates;
+    }
+    const ScatterMatrix few = stage_look(&s, 3, 2, INFINITY);
+    s.config.rays_per_radius *= 3;
+    const ScatterMatrix many = stage_look(&s, 3, 2, INFINITY);
+    printf("uneven plates: mean field %.3f %+.3fj, want %.3f; three times the tubes: %.1f dB apart\n", creal(mean),
+           cimag(mean), want, 20 * log10(cabs(few.vv - many.vv) / cabs(many.vv)));
+    CHECK(cabs(mean - want) < 0.05);
+    CHECK(cabs(few.vv - many.vv) < 0.03 * cabs(many.vv));
+    stage_close(&s);
+}
+
+/* An uneven trihedral: by the many tubes of its converged field, curved mirrors one after another. */
+static void an_uneven_corner_converges(void **state)
+{
+    (void)state;
+    RadarStage s;
+    stage_open(&s, "corner:0.5", 3 * x_hz);
+    const double even = sigma(stage_look(&s, 45, 35, INFINITY).hh);
+    s.config.warp_m = 0.0005;
+    s.config.warp_length_m = 0.4;
+    s.config.rays_per_radius *= 2;
+    const ScatterMatrix few = stage_look(&s, 45, 35, INFINITY);
+    s.config.rays_per_radius *= 2;
+    const ScatterMatrix many = stage_look(&s, 45, 35, INFINITY);
+    printf("uneven corner of 50 wavelengths, 0.5 mm: %.2f dB below the even one; twice the tubes: %.1f dB apart\n",
+           decibels(even / sigma(many.hh)), 20 * log10(cabs(few.hh - many.hh) / cabs(many.hh)));
+    CHECK(decibels(even / sigma(many.hh)) > 0.3);
+    CHECK(cabs(few.hh - many.hh) < 0.03 * cabs(many.hh));
+    stage_close(&s);
+}
+
 /* ---- rays and edges ----------------------------------------------------------------------------------- */
 
 static void edges_are_added_to_the_rays(void **state)
@@ -385,7 +460,9 @@ int main(void)
         cmocka_unit_test(threads_change_no_bit), cmocka_unit_test(a_sweep_equals_its_frequencies),
         cmocka_unit_test(lists_serve_other_aspects), cmocka_unit_test(a_curved_mirror_spreads_the_field),
         cmocka_unit_test(bistatic_fields_are_reciprocal), cmocka_unit_test(bistatic_spheres_equal_mie),
-        cmocka_unit_test(edges_are_added_to_the_rays), cmocka_unit_test(bad_looks_are_refused),
+        cmocka_unit_test(edges_are_added_to_the_rays), cmocka_unit_test(warp_is_smooth_and_of_its_height),
+        cmocka_unit_test(an_uneven_plate_loses_what_it_must), cmocka_unit_test(an_uneven_corner_converges),
+        cmocka_unit_test(bad_looks_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,7 +30,7 @@ near "sphere, bistatic" "$(cell "$tmp/rcs" 4 hh_dbsm)" -1.049 0.3
 near "plate at 2 km" "$(cell "$tmp/rcs" 5 vv_dbsm)" 17.019 0.02
 for row in 6 7 8 9 10; do check "row $row has an error" [ -n "$(cell "$tmp/rcs" $row error)" ]; done
 
-run rcs tank -o "$tmp/tank" --frequency 3,4 --azimuth -30:30:15 --elevation 10 --image 20 --cell 0.4
+run rcs tank -o "$tmp/tank" --frequency 3,4 --azimuth -30:30:15 --elevation 10 --image 20 --cell 1
 check "rcs tank: exit code" [ $code = 0 ]
 for file in rcs.csv rcs.svg isar.png; do check "$file" [ -s "$tmp/tank/$file" ]; done
 check "nothing half written" [ -z "$(find "$tmp/tank" -name '*.part')" ]
@@ -75,6 +75,7 @@ done <<'WRONG'
 --elevation tank --elevation 90
 --range tank --range 0
 --rays tank --rays 100
+--warp tank --warp -1
 --image tank --image north
 --cell tank --cell 0
 target tank truck
