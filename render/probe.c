@@ -1,6 +1,7 @@
-/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere, heat and radar for rows of CSV. */
-/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere, heat and radar clutter for rows of
+/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere, heat and radar for rows of
  * CSV. */
+/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection, atmosphere, heat and radar clutter for
+ * rows of CSV. */
 #include "render/probe.h"
 
 #include "entities/import/model_import.h"

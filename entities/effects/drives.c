@@ -6,8 +6,8 @@
 static const double moving_mps = 0.3;       /* above the jitter of reports of a stationary vehicle */
 static const double engine_after_stop_s = 120; /* crews halt with the engine on; estimate */
 static const double full_speed_mps = 10;    /* estimate: a vehicle's usual off-road speed */
-/* Estimates: full power is some 1.2 W a newton of weight (600 kW for 50 t), which would lift it at 1.2 m/s; a turn of 1 rad/s takes
- * all of it in a tracked vehicle. */
+/* Estimates: full power is some 1.2 W a newton of weight (600 kW for 50 t), which would lift it at 1.2 m/s; a turn
+ * of 1 rad/s takes all of it in a tracked vehicle. */
 static const double full_climb_mps = 1.2, full_turn_rps = 1;
 static const double burn_s = 2;             /* a TOW's launch and flight motors together: under 2 s */
 static const double flare_s = 4;            /* decoy flares of the MJU class burn for 3 .. 5 s; estimate */

@@ -1,11 +1,10 @@
 /* entities/effects/drives.h: what an entity does that heats it: its engine, its motion, its shots, flames.
  *
- * Evidence is the appearance word *and* the observed motion: VR-Forces flies helicopters and drives tanks without ever
- * setting the power-plant bit. Engine smoke says that the engine runs, as of a vehicle that makes its own screen. A plume of
- * smoke from one that is damaged says that it smoulders; from one that is not, a screen, it warms nothing. Flames need no smoke.
- * Between reports every drive is constant or ends at a known time, so drives at a time are a function of the reports and of that
- * time. What they do to temperatures: render/heat/vehicle_heat.h.
- */
+ * Evidence is the appearance word *and* the observed motion: VR-Forces flies helicopters and drives tanks without
+ * ever setting the power-plant bit. Engine smoke says that the engine runs, as of a vehicle that makes its own
+ * screen. A plume of smoke from one that is damaged says that it smoulders; from one that is not, a screen, it warms
+ * nothing. Flames need no smoke. Between reports every drive is constant or ends at a known time, so drives at a
+ * time are a function of the reports and of that time. What they do to temperatures: render/heat/vehicle_heat.h. */
 #ifndef ENTITIES_EFFECTS_DRIVES_H
 #define ENTITIES_EFFECTS_DRIVES_H
 

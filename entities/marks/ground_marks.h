@@ -21,10 +21,11 @@ typedef struct GroundBlow {
     double from_s, to_s;           /* exercise time; not after: none */
 } GroundBlow;
 
-/* An entity that stood still within 0.5 m and 5 degrees for 60 s or more, or stands: recorded with the first report that
- * finds it so. One that first appears standing is taken to have stood for EntityTableConfig.ambient_s before: from_s is
- * its first report less that, and to have run its engine for the last hour if it does then. An engine that starts again begins
- * another stand. Ends with the report that shows it moved or turned, its removal, or its timeout. */
+/* An entity that stood still within 0.5 m and 5 degrees for 60 s or more, or stands: recorded with the first report
+ * that finds it so. One that first appears standing is taken to have stood for EntityTableConfig.ambient_s before:
+ * from_s is its first report less that, and to have run its engine for the last hour if it does then. An engine that
+ * starts again begins another stand. Ends with the report that shows it moved or turned, its removal, or its
+ * timeout. */
 typedef struct GroundStand {
     double   p_ecef[3];            /* the model's origin (base centre), as reported: not clamped to the ground */
     double   r_ecef_from_body[9];

@@ -366,7 +366,8 @@ static bool is_hidden(const Cutter *c, int triangle, const double p[3], const do
     return hidden_at(c->hidden, triangle, p_body, n_body);
 }
 
-/* weight: of the triangle's area in patch_m2. Of a triangle that is partly hidden, points that are not, where some tries find them. */
+/* weight: of the triangle's area in patch_m2. Of a triangle that is partly hidden, points that are not, where some
+ * tries find them. */
 static void add_candidates(Candidates *c, double patch_m2, const Facet *f, const Piece *piece, double weight, const Cutter *cutter,
                            int triangle)
 {

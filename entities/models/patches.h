@@ -1,24 +1,24 @@
 /* entities/models/patches.h: a model's surface cut into patches, the nodes of its thermal network.
  *
- * A body is a group of parts of one node, role and material, usually one part. It is cut by the direction in which its
- * surface faces (shading normals; the six half axes of its node) and along its longest extent into 1 .. 4 equal
+ * A body is a group of parts of one node, role and material, usually one part. It is cut by the direction in which
+ * its surface faces (shading normals; the six half axes of its node) and along its longest extent into 1 .. 4 equal
  * lengths of about 1.5 m. What spins or rolls is cut by its axis only: towards it, against it, and around it, for a
- * turning tyre shares its heat. What looks at the middle of a body from behind it (the inner side of one of two skirts) is apart
- * from what looks away. Cells of less than 2 % of their body, or of 0.01 m2 beside larger ones, join the
- * nearest. Cuts go through triangles, so areas are those of the triangles, to 1e-9.
+ * turning tyre shares its heat. What looks at the middle of a body from behind it (the inner side of one of two
+ * skirts) is apart from what looks away. Cells of less than 2 % of their body, or of 0.01 m2 beside larger ones,
+ * join the nearest. Cuts go through triangles, so areas are those of the triangles, to 1e-9.
  *
  * Large models are cut less finely until some patches_wanted patches are to be expected: small bodies become one patch,
  * then lengths are joined, then all sides but the underside, then each body is one patch (up to patches_most of them),
  * then bodies are groups of one node and role, at last of one role.
  *
- * Faces that lie inside closed parts are no outer surface (patches_hidden.c): those by which parts join, and the inner faces
- * of a hull made of slices. They still decide how a model is cut. Where a joint is between, they must be inside at every value
- * of it. Faces about a cavity and before open shells are outside. A patch with less than 1 % of it outside is inside as a
- * whole. Error: some 1.6 % of the outer area (tests/entities/test_patches.c).
+ * Faces that lie inside closed parts are no outer surface (patches_hidden.c): those by which parts join, and the
+ * inner faces of a hull made of slices. They still decide how a model is cut. Where a joint is between, they must be
+ * inside at every value of it. Faces about a cavity and before open shells are outside. A patch with less than 1 %
+ * of it outside is inside as a whole. Error: some 1.6 % of the outer area (tests/entities/test_patches.c).
  *
- * Geometry alone, from the model at rest, and immutable: any number of threads may read it. The model may go. Built-in
- * models of 12 k triangles take about 35 ms, a ship of 39 k 300 ms, a file of 97 k dense ones 0.9 s, most of it to find what
- * is inside. A coarse and a fine build of a model may differ by some patches. */
+ * Geometry alone, from the model at rest, and immutable: any number of threads may read it. The model may go.
+ * Built-in models of 12 k triangles take about 35 ms, a ship of 39 k 300 ms, a file of 97 k dense ones 0.9 s, most
+ * of it to find what is inside. A coarse and a fine build of a model may differ by some patches. */
 #ifndef ENTITIES_MODELS_PATCHES_H
 #define ENTITIES_MODELS_PATCHES_H
 

@@ -1,19 +1,21 @@
 /* entities/models/patches_hidden.c: how much of each triangle lies inside the model, where nothing outside meets it.
  *
- * A point just before a triangle is inside when every line through it leaves more closed surfaces ahead than it enters: the
- * winding number, counted by the signs of its crossings, both ways along three lines. One way from which the count is not
- * positive, as through the open side of a shell, and the point is outside. Before a cavity of closed walls the count is 0:
- * its faces are outside too.
+ * A point just before a triangle is inside when every line through it leaves more closed surfaces ahead than it
+ * enters: the winding number, counted by the signs of its crossings, both ways along three lines. One way from which
+ * the count is not positive, as through the open side of a shell, and the point is outside. Before a cavity of
+ * closed walls the count is 0: its faces are outside too.
  *
- * Of faces at one place that look the same way, as of boxes flush with one another, the first in the model is outside.
+ * Of faces at one place that look the same way, as of boxes flush with one another, the first in the model is
+ * outside.
  *
- * Parts of another node hide a face where it is inside them at each of eight values of the joint between the two: a turret's floor
- * in the hull, and what of the roof it always covers. Parts that are two joints apart hide nothing of each other, nor do parts
- * that damage takes away.
+ * Parts of another node hide a face where it is inside them at each of eight values of the joint between the two: a
+ * turret's floor in the hull, and what of the roof it always covers. Parts that are two joints apart hide nothing of
+ * each other, nor do parts that damage takes away.
  *
- * Lines are parallel to the axes of one turned frame, so that each is a cell of a grid of the triangles as they are projected
- * along it, and no plane of a model lies along one. A line is of both ways at once. Points are spread over a triangle by
- * Roberts's R2 sequence, more over large ones; it goes on from one triangle to the next, so that errors of like ones cancel. */
+ * Lines are parallel to the axes of one turned frame, so that each is a cell of a grid of the triangles as they are
+ * projected along it, and no plane of a model lies along one. A line is of both ways at once. Points are spread over
+ * a triangle by Roberts's R2 sequence, more over large ones; it goes on from one triangle to the next, so that
+ * errors of like ones cancel. */
 #include "entities/models/patches_private.h"
 
 #include <stdlib.h>
@@ -164,7 +166,8 @@ static void cells_of(int cell[2], const Grid *g, const Solid *s, int axis, int r
     cell[1] = cell_of(g, 0, isfinite(wide) ? to + 1e-6 * wide : to);
 }
 
-/* Of all triangles in each cell: their number added to first, or, from the last of them to the first, themselves put below it. */
+/* Of all triangles in each cell: their number added to first, or, from the last of them to the first, themselves put
+ * below it. */
 static double visit_cells(Grid *g, const Hidden *h, int axis, bool put)
 {
     double entries = 0;
@@ -264,8 +267,8 @@ static void moved(double out[3], const Hinge *hinge, const double q[3], double v
     v3_add(out, out, hinge->pivot);
 }
 
-/* Whether a point before a face of a group is inside that group, or at every value of a joint inside what carries it or what it
- * carries. */
+/* Whether a point before a face of a group is inside that group, or at every value of a joint inside what carries it
+ * or what it carries. */
 static bool is_covered(Hidden *h, const double q[3], int group)
 {
     if (is_inside(h, q, group)) return true;

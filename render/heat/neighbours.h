@@ -1,9 +1,9 @@
-/* render/heat/neighbours.h: which other entities matter to the heat of one: those that fill its view, stand before its sun,
- * or blow their exhaust on it.
+/* render/heat/neighbours.h: which other entities matter to the heat of one: those that fill its view, stand before
+ * its sun, or blow their exhaust on it.
  *
  * Bodies are spheres about their origins that hold every pose. The share of a view that a body fills is at most
- * (radius / distance)^2, the view factor of a sphere before a plate that faces it; distance is from the nearest place of the
- * entity's own sphere, and at least the radius. Largest shares first, ties by id. */
+ * (radius / distance)^2, the view factor of a sphere before a plate that faces it; distance is from the nearest
+ * place of the entity's own sphere, and at least the radius. Largest shares first, ties by id. */
 #ifndef RENDER_HEAT_NEIGHBOURS_H
 #define RENDER_HEAT_NEIGHBOURS_H
 
@@ -32,8 +32,8 @@ typedef struct Neighbours {
     Neighbour of[near_most];       /* largest shares first */
 } Neighbours;
 
-/* body[count], by id. sun_d_enu: towards the sun; below the horizon it has none. resting: of those alone that do not move
- * against it, by 1 m/s. */
+/* body[count], by id. sun_d_enu: towards the sun; below the horizon it has none. resting: of those alone that do not
+ * move against it, by 1 m/s. */
 void neighbours_find(Neighbours *out, const NearBody *body, int count, int me, const double sun_d_enu[3], bool resting);
 
 #endif

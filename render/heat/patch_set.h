@@ -1,5 +1,5 @@
-/* render/heat/patch_set.h: the patches of models (entities/models/patches.h), each cut at its first use, or ahead of it by a thread
- * of its own. */
+/* render/heat/patch_set.h: the patches of models (entities/models/patches.h), each cut at its first use, or ahead of
+ * it by a thread of its own. */
 #ifndef RENDER_HEAT_PATCH_SET_H
 #define RENDER_HEAT_PATCH_SET_H
 
@@ -17,11 +17,12 @@ Status patch_set_create(PatchSet *out, int models);
 void   patch_set_destroy(PatchSet *set); /* accepts zeroes */
 /* One thread at a time. model: the built one, not its coarse form. STATUS_NO_MEMORY. */
 Status patch_set_need(PatchSet *set, int index, const Model *model);
-/* Begins to cut a model in another thread, for which patch_set_need then waits. Where there is none to be had, that cuts it. */
+/* Begins to cut a model in another thread, for which patch_set_need then waits. Where there is none to be had, that
+ * cuts it. */
 void   patch_set_begin(PatchSet *set, int index, const Model *model);
 
-/* Temperature of an entity's surface at a place of one of its parts, of node axes, K; NAN: none is known. Its model must
- * have been needed. */
+/* Temperature of an entity's surface at a place of one of its parts, of node axes, K; NAN: none is known. Its model
+ * must have been needed. */
 static inline double patch_set_temp_k(const PatchSet *set, const Snapshot *snapshot, int entity, int part,
                                       const double p_node[3], const double n_node[3])
 {

@@ -25,8 +25,8 @@ static void stand(double o_enu[3], double n_enu[3], const PatchPose *pose, int p
     v3_add_scaled(o_enu, o_enu, leave_m, n_enu);
 }
 
-/* Direction k of some rays about a normal, by the cosine: rings of equal share, turned by the golden angle from one to the
- * next, and from point to point. */
+/* Direction k of some rays about a normal, by the cosine: rings of equal share, turned by the golden angle from one
+ * to the next, and from point to point. */
 static void direction(double d_enu[3], const double n_enu[3], int k, int point, int rays)
 {
     static const double golden_rad = 2.399963229728653;

@@ -71,8 +71,9 @@ static Status need_shape(VehicleHeat *h, int m)
     return status;
 }
 
-/* The network of a model that is met at t_s. After the first tick its patches are cut by another thread while entities wait, for a
- * time that follows from its size: some 10 us a triangle (entities/models/patches.h), and half as much again. */
+/* The network of a model that is met at t_s. After the first tick its patches are cut by another thread while
+ * entities wait, for a time that follows from its size: some 10 us a triangle (entities/models/patches.h), and half
+ * as much again. */
 static Status shape_at(bool *ready, VehicleHeat *h, int m, double t_s)
 {
     *ready = true;

@@ -1,23 +1,23 @@
-/* render/heat/vehicle_heat.h: temperatures of entities over an exercise: what stays of their engine, motion, shots and of
- * the sun of the hours before.
+/* render/heat/vehicle_heat.h: temperatures of entities over an exercise: what stays of their engine, motion, shots
+ * and of the sun of the hours before.
  *
- * Each entity is a thermal network of the patches of its model (vehicle_shape.h). Its state advances at ticks of exercise
- * time, whatever frames are rendered: at once when its drives change, otherwise in steps that double from first_step_s to
- * step_s. Between two times of its own its patches lie on straight lines to what its present drives lead to. So temperatures
- * are a function of the log, the settings and the time.
+ * Each entity is a thermal network of the patches of its model (vehicle_shape.h). Its state advances at ticks of
+ * exercise time, whatever frames are rendered: at once when its drives change, otherwise in steps that double from
+ * first_step_s to step_s. Between two times of its own its patches lie on straight lines to what its present drives
+ * lead to. So temperatures are a function of the log, the settings and the time.
  *
- * What a patch takes and gives: vehicle_load.h; what neighbours do to each other: vehicle_near.h. Within a tick all that read
- * another's temperatures read those of its beginning, so the order of work decides nothing.
+ * What a patch takes and gives: vehicle_load.h; what neighbours do to each other: vehicle_near.h. Within a tick all
+ * that read another's temperatures read those of its beginning, so the order of work decides nothing.
  *
  * Work is done in pieces, those that have waited longest first, and no more of it in any 0.1 s of exercise time than
- * window_us (work_window.h), but for what neighbours add to a piece: at most eight that are posed, four jets that are
- * followed. The first tick, before any frame, has no limit. So no frame pays for a crowd that appears at once: an entity is as
- * warm as the air until its past is worked out.
+ * window_us (work_window.h), but for what neighbours add to a piece: at most eight that are posed, four jets that
+ * are followed. The first tick, before any frame, has no limit. So no frame pays for a crowd that appears at once:
+ * an entity is as warm as the air until its past is worked out.
  *
- * Before its first report an entity is taken to have stood there for a day with its engine stopped, and for its last hour
- * to have done what it then does: in single steps of the solver (tests/render/test_vehicle_heat_error.c). Munitions and
- * expendables start as warm as the air that flows past them. One whose temperatures were kept less than three hours before
- * (kept_heat.h) begins with those, and is taken to have done since then what it then does. */
+ * Before its first report an entity is taken to have stood there for a day with its engine stopped, and for its last
+ * hour to have done what it then does: in single steps of the solver (tests/render/test_vehicle_heat_error.c).
+ * Munitions and expendables start as warm as the air that flows past them. One whose temperatures were kept less
+ * than three hours before (kept_heat.h) begins with those, and is taken to have done since then what it then does. */
 #ifndef RENDER_HEAT_VEHICLE_HEAT_H
 #define RENDER_HEAT_VEHICLE_HEAT_H
 
@@ -73,7 +73,8 @@ Status vehicle_heat_show(const VehicleHeat *heat, Snapshot *snapshot, Arena *are
 const VehicleHeatCounters *vehicle_heat_counters(const VehicleHeat *heat);
 size_t vehicle_heat_bytes(const VehicleHeat *heat);
 
-/* Network of an entity at its last own time: nodes, and heat that came from outside since it began, J. NULL: it has none. */
+/* Network of an entity at its last own time: nodes, and heat that came from outside since it began, J. NULL: it has
+ * none. */
 typedef struct VehicleNodes {
     const VehicleShape *shape;
     const double       *temp_k;    /* [shape->nodes] */
@@ -82,8 +83,8 @@ typedef struct VehicleNodes {
 /* What kept_heat_open reads, of all that are shown. */
 Status vehicle_heat_keep(const VehicleHeat *heat, const char *path);
 
-/* Error that steps and the past's single steps leave in a patch's temperature, K, rms: within a factor of 2 of a solution in
- * small steps in nine of ten (tests/render/test_vehicle_heat_error.c). */
+/* Error that steps and the past's single steps leave in a patch's temperature, K, rms: within a factor of 2 of a
+ * solution in small steps in nine of ten (tests/render/test_vehicle_heat_error.c). */
 static inline double vehicle_heat_error_k(double temp_k, double air_k) { return 0.038 + 0.0045 * fmax(fabs(temp_k - air_k) - 15, 0); }
 
 bool vehicle_heat_nodes(VehicleNodes *out, const VehicleHeat *heat, DisEntityId id);

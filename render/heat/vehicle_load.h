@@ -1,18 +1,19 @@
 /* render/heat/vehicle_load.h: what heats and cools the nodes of an entity at a moment.
  *
- * At a patch: sun by rays past its own parts and its neighbours, with the ground's shade; sky and ground light; longwave of
- * sky, of ground (in the open, and in its own shade below it), of its other patches, at their temperatures of the step's
- * beginning, and of its neighbours (vehicle_near.h); convection by wind and its own speed, to the air's recovery temperature,
- * and where an exhaust flows past it, its own or a neighbour's, to that (jet_path.h); what is behind it (etc/heat.csv).
+ * At a patch: sun by rays past its own parts and its neighbours, with the ground's shade; sky and ground light;
+ * longwave of sky, of ground (in the open, and in its own shade below it), of its other patches, at their
+ * temperatures of the step's beginning, and of its neighbours (vehicle_near.h); convection by wind and its own
+ * speed, to the air's recovery temperature, and where an exhaust flows past it, its own or a neighbour's, to that
+ * (jet_path.h); what is behind it (etc/heat.csv).
  *
- * Tracks and wheels that stand touch the ground as two bodies do that are brought together (Carslaw & Jaeger 2.4, contact of
- * half-spaces): 2 e / sqrt(pi t) W/(m2 K), e of skin and ground in series, t the time that ground has been under it: the print's
- * length over the speed, an hour for one that stands; in series with gaps between. In motion all of a track or tyre has its
- * share of the print.
+ * Tracks and wheels that stand touch the ground as two bodies do that are brought together (Carslaw & Jaeger 2.4,
+ * contact of half-spaces): 2 e / sqrt(pi t) W/(m2 K), e of skin and ground in series, t the time that ground has
+ * been under it: the print's length over the speed, an hour for one that stands; in series with gaps between. In
+ * motion all of a track or tyre has its share of the print.
  *
- * Ships and submarines, and vehicles in water, meet it below its surface, at its temperature, by a film of natural convection and
- * of a turbulent plate 10 m long (Incropera & DeWitt 9.6, 7.2: Nu = 0.1 Ra^(1/3), 0.037 Re^0.8 Pr^(1/3), water of 288 K), instead of
- * air, sun and radiation.
+ * Ships and submarines, and vehicles in water, meet it below its surface, at its temperature, by a film of natural
+ * convection and of a turbulent plate 10 m long (Incropera & DeWitt 9.6, 7.2: Nu = 0.1 Ra^(1/3), 0.037 Re^0.8
+ * Pr^(1/3), water of 288 K), instead of air, sun and radiation.
  *
  *     film plate_film_w_m2k (surface_flux.h), with air density^0.8 above
  *     recovery 0.85 v^2 / (2 cp): between the laminar sqrt(Pr) = 0.84 and the turbulent Pr^(1/3) = 0.89 */

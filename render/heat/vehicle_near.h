@@ -1,11 +1,12 @@
-/* render/heat/vehicle_near.h: what entities do to each other's heat: they stand in each other's sun, take each other's sky and
- * ground, and their exhaust blows on each other.
+/* render/heat/vehicle_near.h: what entities do to each other's heat: they stand in each other's sun, take each
+ * other's sky and ground, and their exhaust blows on each other.
  *
- * Who is a neighbour: neighbours.h; once a second it is looked for anew, and a step of the entity ends when one came, went,
- * moved by 0.3 m (and by a twentieth of its distance, where it is seen alone) or turned by 10 degrees against it. Seen is a
- * patch of the neighbour, black in the longwave as an entity's own are, as warm as its network had it when the tick began, with the
- * sunlight that it reflected at its own last time; one that is not shown yet, and any neighbour in the past before an entity's
- * first report, is as warm as the air and as bright as the ground. Munitions and expendables have no neighbours and are none.
+ * Who is a neighbour: neighbours.h; once a second it is looked for anew, and a step of the entity ends when one
+ * came, went, moved by 0.3 m (and by a twentieth of its distance, where it is seen alone) or turned by 10 degrees
+ * against it. Seen is a patch of the neighbour, black in the longwave as an entity's own are, as warm as its network
+ * had it when the tick began, with the sunlight that it reflected at its own last time; one that is not shown yet,
+ * and any neighbour in the past before an entity's first report, is as warm as the air and as bright as the ground.
+ * Munitions and expendables have no neighbours and are none.
  *
  * Error: a ray is 1/96 of a share. */
 #ifndef RENDER_HEAT_VEHICLE_NEAR_H
@@ -42,8 +43,8 @@ Status vehicle_near_pose(const PatchPose *pose[near_seen_most], const NearScene 
 /* The next patch. */
 void   vehicle_near_look(VehicleState *state, const VehicleMoment *moment, const PatchPose *const *pose);
 
-/* What its neighbours do to it, into a moment whose place is known. past: before its first report; lately: and engines run as
- * now. Returns how many it posed, and how many jets it followed, in the arena. */
+/* What its neighbours do to it, into a moment whose place is known. past: before its first report; lately: and
+ * engines run as now. Returns how many it posed, and how many jets it followed, in the arena. */
 typedef struct NearWork {
     int poses, jets;
 } NearWork;

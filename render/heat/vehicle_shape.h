@@ -1,10 +1,11 @@
-/* render/heat/vehicle_shape.h: the thermal network of a model: nodes through the skin of each patch, its engine and its cabin.
+/* render/heat/vehicle_shape.h: the thermal network of a model: nodes through the skin of each patch, its engine and
+ * its cabin.
  *
- * Thin metal is one node; what conducts badly, and the wall of a gun, has nodes at four depths, the first at the surface.
- * Conduction along the skin and across joints follows from the geometry of patches; bolted and welded joints have a third of
- * it (an estimate). What of a patch lies inside the model is no skin of it; a patch that does so as a whole is mass inside. A
- * part's skin is as thick as its sidecar says, or as its role's row. Fuel meets the engine by its return line, and the skin of
- * hull or airframe by the share of it that tanks touch. */
+ * Thin metal is one node; what conducts badly, and the wall of a gun, has nodes at four depths, the first at the
+ * surface. Conduction along the skin and across joints follows from the geometry of patches; bolted and welded
+ * joints have a third of it (an estimate). What of a patch lies inside the model is no skin of it; a patch that does
+ * so as a whole is mass inside. A part's skin is as thick as its sidecar says, or as its role's row. Fuel meets the
+ * engine by its return line, and the skin of hull or airframe by the share of it that tanks touch. */
 #ifndef RENDER_HEAT_VEHICLE_SHAPE_H
 #define RENDER_HEAT_VEHICLE_SHAPE_H
 

@@ -1,8 +1,8 @@
-/* render/heat/vehicle_state.h: the thermal state of one entity: temperatures at its own last time and at its next one, what its
- * patches see, and what it did.
+/* render/heat/vehicle_state.h: the thermal state of one entity: temperatures at its own last time and at its next
+ * one, what its patches see, and what it did.
  *
- * Temperatures in between are on straight lines. Within a tick others read those that it had when the tick began, whether or
- * not its own work of that tick is done: so the order of work decides nothing. */
+ * Temperatures in between are on straight lines. Within a tick others read those that it had when the tick began,
+ * whether or not its own work of that tick is done: so the order of work decides nothing. */
 #ifndef RENDER_HEAT_VEHICLE_STATE_H
 #define RENDER_HEAT_VEHICLE_STATE_H
 

@@ -1,5 +1,5 @@
-/* render/heat/work_window.h: an account of work in pieces: no more than a limit in any 0.1 s of exercise time, in units that
- * are the same on every machine.
+/* render/heat/work_window.h: an account of work in pieces: no more than a limit in any 0.1 s of exercise time, in
+ * units that are the same on every machine.
  *
  * Ticks are of 10 ms. Before the second one nothing is limited. In an empty window there is room for any piece. */
 #ifndef RENDER_HEAT_WORK_WINDOW_H

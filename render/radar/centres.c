@@ -37,7 +37,8 @@ typedef struct Key {
 
 static uint64_t hash_of(Key key)
 {
-    return mix((uint64_t)(uint32_t)key.path << 32 ^ (uint64_t)(uint32_t)key.right << 16 ^ mix((uint64_t)(uint32_t)key.up + 1));
+    const uint64_t plane = (uint64_t)(uint32_t)key.path << 32 ^ (uint64_t)(uint32_t)key.right << 16;
+    return mix(plane ^ mix((uint64_t)(uint32_t)key.up + 1));
 }
 
 typedef struct CellTable {
@@ -86,7 +87,8 @@ static ScatterCentre *find(CellTable *t, Key key)
 
 static void cells_of(Cells *cells, const ScatterAntenna *tx, const ScatterAntenna *rx, const CentresConfig *config)
 {
-    const double k = 2 * pi_rad * config->frequency_hz / light_mps, k_half_band = pi_rad * config->bandwidth_hz / light_mps;
+    const double k = 2 * pi_rad * config->frequency_hz / light_mps;
+    const double k_half_band = pi_rad * config->bandwidth_hz / light_mps;
     double       h[3], v[3];
     v3_scale(cells->u, 1, tx->u);
     v3_add_scaled(cells->u, cells->u, 1, rx->u); /* towards between the two */
@@ -111,7 +113,8 @@ typedef struct Share {
 
 static Status add(CellTable *table, const Cells *cells, const Share *share, double k)
 {
-    const Key key = {cell_number(share->path_m, cells->path_m), cell_number(v3_dot(share->middle, cells->right), cells->across_m),
+    const Key key = {cell_number(share->path_m, cells->path_m),
+                     cell_number(v3_dot(share->middle, cells->right), cells->across_m),
                      cell_number(v3_dot(share->middle, cells->up), cells->across_m)};
     ScatterCentre *c = find(table, key);
     if (!c) return STATUS_NO_MEMORY;
@@ -130,7 +133,8 @@ static Status add(CellTable *table, const Cells *cells, const Share *share, doub
     return STATUS_OK;
 }
 
-static void share_of_hit(Share *out, const TubeHits *h, size_t i, double k, const ScatterAntenna *tx, const ScatterAntenna *rx)
+static void share_of_hit(Share *out, const TubeHits *h, size_t i, double k, const ScatterAntenna *tx,
+                         const ScatterAntenna *rx)
 {
     double       way[3], power = 0;
     const double first[3] = {(double)h->first[0][i], (double)h->first[1][i], (double)h->first[2][i]};

@@ -1,9 +1,11 @@
-/* render/radar/centres.h: a target's hits and edges, summed over cells into few scattering centres for one coherent interval.
+/* render/radar/centres.h: a target's hits and edges, summed over cells into few scattering centres for one coherent
+ * interval.
  *
- * Cells are boxes over the path and the two directions across the line of sight. Within a cell phases are added at the centre of the
- * band and of the interval; between those and the band's or the interval's ends they part by at most phase_rad each, so that a
- * profile or a map made from the centres is that of the field to about phase_rad / sqrt(6) of a cell's amplitude
- * (tests/render/test_centres.c). Centres are in the order in which hits, then edges meet their cells: the same bits for the same field. */
+ * Cells are boxes over the path and the two directions across the line of sight. Within a cell phases are added at
+ * the centre of the band and of the interval; between those and the band's or the interval's ends they part by at
+ * most phase_rad each, so that a profile or a map made from the centres is that of the field to about phase_rad /
+ * sqrt(6) of a cell's amplitude (tests/render/test_centres.c). Centres are in the order in which hits, then edges
+ * meet their cells: the same bits for the same field. */
 #ifndef RENDER_RADAR_CENTRES_H
 #define RENDER_RADAR_CENTRES_H
 
@@ -33,7 +35,8 @@ typedef struct Centres {
     int            slots;
 } Centres;
 
-/* out: zeroed, or of an earlier call, whose memory is used again. tx, rx: the antennas now, NULL: those of the field. */
+/* out: zeroed, or of an earlier call, whose memory is used again. tx, rx: the antennas now, NULL: those of the
+ * field. */
 Status centres_make(Centres *out, const TotalField *field, const ScatterAntenna *tx, const ScatterAntenna *rx,
                     const CentresConfig *config);
 void   centres_free(Centres *centres);

@@ -1,17 +1,17 @@
 /* render/radar/scatter.h: conventions of a target's scattered field, shared by all that computes a part of it.
  *
- * Time convention exp(+j w t). In the target's own frame (double, m), with the phase centre at its origin, a transmitter at
- * a_t and a receiver at a_r (a direction from the target where they are at infinity):
+ * Time convention exp(+j w t). In the target's own frame (double, m), with the phase centre at its origin, a
+ * transmitter at a_t and a receiver at a_r (a direction from the target where they are at infinity):
  *
  *     E_receiver = S E_incident exp(-j k R_r) / R_r,      E_incident: at the phase centre, were the target not there
  *     sigma_qp   = 4 pi |S_qp|^2                          m^2
  *
- * Paths are differences to that over the phase centre: a point p contributes exp(-j k path), path = (|p - a_t| - |a_t|) +
- * (|p - a_r| - |a_r|), which is -p.(u_t + u_r) at infinity. A positive path is farther away.
+ * Paths are differences to that over the phase centre: a point p contributes exp(-j k path), path = (|p - a_t| -
+ * |a_t|) + (|p - a_r| - |a_r|), which is -p.(u_t + u_r) at infinity. A positive path is farther away.
  *
- * Polarisation (backscatter alignment): u is the unit direction from the target to an antenna; h = z x u / |z x u|, v = u x h.
- * Transmitter and receiver each have this basis at their own u, so a sphere has S_hh = S_vv, S_hv = S_vh = 0. h is the spherical
- * phi, v is minus theta. Straight above and below, h is y. */
+ * Polarisation (backscatter alignment): u is the unit direction from the target to an antenna; h = z x u / |z x u|,
+ * v = u x h. Transmitter and receiver each have this basis at their own u, so a sphere has S_hh = S_vv, S_hv = S_vh
+ * = 0. h is the spherical phi, v is minus theta. Straight above and below, h is y. */
 #ifndef RENDER_RADAR_SCATTER_H
 #define RENDER_RADAR_SCATTER_H
 
@@ -41,11 +41,12 @@ static inline void scatter_basis(double h[3], double v[3], const double u[3])
     v3_cross(v, u, h);
 }
 
-/* From a basis h, v to one whose first axis is along `right`, as far as that is across the line of sight: an antenna that is rolled.
- * All in one frame; right must not lie along the line of sight. */
+/* From a basis h, v to one whose first axis is along `right`, as far as that is across the line of sight: an antenna
+ * that is rolled. All in one frame; right must not lie along the line of sight. */
 static inline void scatter_turn(ScatterMatrix *s, const double h[3], const double v[3], const double right[3])
 {
-    const double along_h = v3_dot(right, h), along_v = v3_dot(right, v), n = sqrt(along_h * along_h + along_v * along_v);
+    const double along_h = v3_dot(right, h), along_v = v3_dot(right, v);
+    const double n = sqrt(along_h * along_h + along_v * along_v);
     if (!(n > 0)) return;
     const double         c = along_h / n, w = along_v / n;
     const double complex hh = s->hh, hv = s->hv, vh = s->vh, vv = s->vv;
@@ -55,8 +56,8 @@ static inline void scatter_turn(ScatterMatrix *s, const double h[3], const doubl
     s->vh = -c * w * hh - w * w * hv + c * c * vh + c * w * vv;
 }
 
-/* |p - a| - |a| of an antenna at a, m, and the unit direction from p to it. To a rounding of |p|, at any range: the difference
- * of squares over the sum of lengths, where lengths alone would lose |a|'s rounding. */
+/* |p - a| - |a| of an antenna at a, m, and the unit direction from p to it. To a rounding of |p|, at any range: the
+ * difference of squares over the sum of lengths, where lengths alone would lose |a|'s rounding. */
 static inline double scatter_path(double u_p[3], const ScatterAntenna *antenna, const double p[3])
 {
     const double r_m = antenna->range_m, along_m = v3_dot(p, antenna->u);

@@ -33,8 +33,8 @@ struct Signatures {
 void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double aspect_rad)
 {
     const double elevation = asin(clamp(antenna->u[2], -1, 1)), azimuth = atan2(antenna->u[1], antenna->u[0]);
-    const double el = clamp(aspect_rad * (floor(elevation / aspect_rad) + 0.5), -0.5 * pi_rad, 0.5 * pi_rad), round = 2 * pi_rad * cos(el) / aspect_rad;
-    const double bins = fmax(1, nearbyint(round)), width = 2 * pi_rad / bins;
+    const double el = clamp(aspect_rad * (floor(elevation / aspect_rad) + 0.5), -0.5 * pi_rad, 0.5 * pi_rad);
+    const double bins = fmax(1, nearbyint(2 * pi_rad * cos(el) / aspect_rad)), width = 2 * pi_rad / bins;
     const double az = width * (fmin(floor((azimuth + pi_rad) / width), bins - 1) + 0.5) - pi_rad;
     middle->u[0] = cos(el) * cos(az);
     middle->u[1] = cos(el) * sin(az);
@@ -42,7 +42,8 @@ void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double
     middle->range_m = isinf(antenna->range_m) ? INFINITY : exp2(nearbyint(4 * log2(antenna->range_m)) / 4);
 }
 
-Status signatures_create(Signatures **out, const SignatureConfig *config, const Catalog *catalog, const RadarMaterials *materials)
+Status signatures_create(Signatures **out, const SignatureConfig *config, const Catalog *catalog,
+                         const RadarMaterials *materials)
 {
     Signatures *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
@@ -105,7 +106,8 @@ static void make_room(Signatures *s)
     }
 }
 
-static Status make(Signature *out, Signatures *s, int model, const Model *of, int damage, const ScatterAntenna *middle, Pool *pool)
+static Status make(Signature *out, Signatures *s, int model, const Model *of, int damage, const ScatterAntenna *middle,
+                   Pool *pool)
 {
     const double begun_s = wall_clock_s();
     TubeConfig   config = tubes_default_config(s->config.frequency_hz);

@@ -7,6 +7,7 @@
 #include "render/heat/part_table.h"
 #include "sensor/detector/preset.h"
 #include "sensor/node/host_run.h"
+#include "sensor/radar/radar_preset.h"
 #include "terrain/weather/weather_course.h"
 #include "terrain/earth/geoid.h"
 #include "terrain/landscape/ground_image.h"
@@ -204,16 +205,28 @@ static bool sensors_are_valid(const Check *c)
     return true;
 }
 
+static bool radar_is_valid(const Check *c)
+{
+    const char *preset = c->config->radar.preset;
+    char        path[4096];
+    RadarPreset radar;
+    if (strcmp(preset, "none") == 0) return true;
+    if (!etc_path(path, sizeof path, "radars.csv") || radar_preset_read(&radar, path, preset) != STATUS_OK)
+        return report(c, "radar.preset", "`none`, or a row of etc/radars.csv");
+    return true;
+}
+
 static bool tables_are_valid(Check *c)
 {
     bool good = models_are_valid(c);
     good &= sensors_are_valid(c);
+    good &= radar_is_valid(c);
     good &= atmosphere_is_valid(c);
     good &= weather_is_valid(c);
     good &= given_heat_is_valid(c);
     good &= terrain_is_valid(c);
     if (!known.bundled)
-        known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "heat.csv", read_heat) &&
+        known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "radars.csv", radar_preset_check) && is_bundled(c, "heat.csv", read_heat) &&
                         is_bundled(c, "heat_machines.csv", read_machines) &&
                         is_bundled(c, "effects.csv", read_effects);
     good &= known.bundled;

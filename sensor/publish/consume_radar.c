@@ -83,8 +83,9 @@ enum { plot_rows = 96, map_rows = 256 };
 
 static double power_db(double complex v) { return 10 * log10(creal(v) * creal(v) + cimag(v) * cimag(v)); }
 
-/* To look at: the range profile, columns as high as their decibels; below it the power of the map's sum channel in decibels, each row
- * as often as makes it some 256 rows high, approaching on top. Both from 5 dB below the noise to the greatest, at least 45 dB. */
+/* To look at: the range profile, columns as high as their decibels; below it the power of the map's sum channel in
+ * decibels, each row as often as makes it some 256 rows high, approaching on top. Both from 5 dB below the noise to
+ * the greatest, at least 45 dB. */
 static Status write_picture(const char *path, const RadarFrame *r)
 {
     const int    columns = r->map.columns, again = map_rows / r->map.rows > 1 ? map_rows / r->map.rows : 1;

@@ -29,8 +29,8 @@ typedef struct PictureFiles {
 } PictureFiles;
 Status consume_pictures(Consumer **out, const PictureFiles *made_of);
 
-/* OUT/radar: NNNNNN.csv, the range profile; .exr, the map of range and Doppler; .png, the same to look at. Of frames with a
- * measurement of a radar (frame.radar). */
+/* OUT/radar: NNNNNN.csv, the range profile; .exr, the map of range and Doppler; .png, the same to look at. Of frames
+ * with a measurement of a radar (frame.radar). */
 Status consume_radar(Consumer **out, const PictureFiles *made_of);
 
 /* OUT/latest/BAND.png: the newest display of each band, 8 bits, replaced as a whole. patient: as above. */

@@ -76,7 +76,8 @@ static void clear_folder(const char *folder, bool (*ours)(const char *name))
     closedir(directory);
 }
 
-/* Folder of band b; BAND_COUNT: truth; BAND_COUNT + 1: range profiles; raw_folder + b: raw counts; radar_folder: consume_radar's. */
+/* Folder of band b; BAND_COUNT: truth; BAND_COUNT + 1: range profiles; raw_folder + b: raw counts; radar_folder:
+ * consume_radar's. */
 enum { raw_folder = BAND_COUNT + 2, radar_folder = raw_folder + BAND_COUNT, folder_count };
 
 static void product_folder(char path[path_size], const char *out, int b)

@@ -1,8 +1,8 @@
 /* sensor/radar/cfar.h: detection at a constant rate of false alarms in power that noise or clutter fills.
  *
- * A cell is compared with the mean of training cells about it (cell averaging), or with the k-th smallest of them (ordered
- * statistic, which a second target among them disturbs less). In exponentially distributed power of one mean the rate of false
- * alarms is exact:
+ * A cell is compared with the mean of training cells about it (cell averaging), or with the k-th smallest of them
+ * (ordered statistic, which a second target among them disturbs less). In exponentially distributed power of one
+ * mean the rate of false alarms is exact:
  *
  *     cell averaging   pfa = (1 + a / N)^-N                          threshold = a mean
  *     ordered          pfa = prod_{i < k} (N - i) / (N - i + a)      threshold = a (k-th smallest)
@@ -33,9 +33,9 @@ typedef struct CfarHit {
     double power, floor;               /* of the cell; mean power of noise there by the training cells */
 } CfarHit;
 
-/* power[rows][columns], not below 0. The cells over their threshold that are greatest among their eight neighbours (equal ones:
- * the first), in order of row and column: at most `most`; returns how many there are, or -1: no memory or a bad
- * configuration. Cells with fewer than 4 training cells within the plane are never hits. */
+/* power[rows][columns], not below 0. The cells over their threshold that are greatest among their eight neighbours
+ * (equal ones: the first), in order of row and column: at most `most`; returns how many there are, or -1: no memory
+ * or a bad configuration. Cells with fewer than 4 training cells within the plane are never hits. */
 int cfar_detect(CfarHit *out, int most, const CfarConfig *config, const double *power, int rows, int columns);
 
 #endif

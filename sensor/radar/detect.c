@@ -9,16 +9,16 @@ static double power_at(const RangeDoppler *map, int row, int column)
     return creal(v) * creal(v) + cimag(v) * cimag(v);
 }
 
-/* How much stronger one neighbour of a peak is than the other, over the peak, as amplitudes, for a point that lies `cells` from the
- * peak's cell: rises over 0 .. 0.5. */
+/* How much stronger one neighbour of a peak is than the other, over the peak, as amplitudes, for a point that lies
+ * `cells` from the peak's cell: rises over 0 .. 0.5. */
 static double imbalance(const IntervalPlan *plan, bool doppler, double cells)
 {
     return (fabs(interval_lobe(plan, doppler, 1 - cells)) - fabs(interval_lobe(plan, doppler, 1 + cells))) /
            interval_lobe(plan, doppler, cells);
 }
 
-/* Where a point lies whose peak and neighbours have these powers, in cells from the middle one, -0.5 .. 0.5. *rise: factor of its
- * power there. */
+/* Where a point lies whose peak and neighbours have these powers, in cells from the middle one, -0.5 .. 0.5. *rise:
+ * factor of its power there. */
 static double place(double *rise, const IntervalPlan *plan, bool doppler, double before, double peak, double after)
 {
     const double measured = (sqrt(after) - sqrt(before)) / sqrt(peak);

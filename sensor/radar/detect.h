@@ -1,8 +1,9 @@
-/* sensor/radar/detect.h: the detections of a map of range and Doppler: where, how fast, in which direction, how strong.
+/* sensor/radar/detect.h: the detections of a map of range and Doppler: where, how fast, in which direction, how
+ * strong.
  *
- * Peaks of the sum channel over a threshold of constant false alarms (cfar.h). Range, Doppler and power between cells by
- * comparing the peak's two neighbours with the response to a point; directions by the ratios of the difference channels to the sum in the peak's
- * cell; cross-section by the radar equation, at the direction found. */
+ * Peaks of the sum channel over a threshold of constant false alarms (cfar.h). Range, Doppler and power between
+ * cells by comparing the peak's two neighbours with the response to a point; directions by the ratios of the
+ * difference channels to the sum in the peak's cell; cross-section by the radar equation, at the direction found. */
 #ifndef SENSOR_RADAR_DETECT_H
 #define SENSOR_RADAR_DETECT_H
 
@@ -26,8 +27,8 @@ typedef struct DetectScale {
     double air_np_m;                /* power attenuation of the air, one way, 1/m */
 } DetectScale;
 
-/* plan: that made the map. As cfar_detect: strongest first, ties by row and column; at most `most`, returns how many there are; -1: no memory or a bad
- * configuration. */
+/* plan: that made the map. As cfar_detect: strongest first, ties by row and column; at most `most`, returns how many
+ * there are; -1: no memory or a bad configuration. */
 int detect(Detection *out, int most, const RangeDoppler *map, const IntervalPlan *plan, const CfarConfig *config,
            const Antenna *antenna, const DetectScale *scale);
 

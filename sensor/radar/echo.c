@@ -28,8 +28,8 @@ static double kernel(double x)
     return inside > 0 ? exp(beta * (sqrt(inside) - 1)) : 0;
 }
 
-/* Transform of the kernel at an angle of phase a grid point, by the midpoint rule: the kernel and its transform vanish at both ends to
- * e^-beta, so that 400 points leave 1e-9. */
+/* Transform of the kernel at an angle of phase a grid point, by the midpoint rule: the kernel and its transform
+ * vanish at both ends to e^-beta, so that 400 points leave 1e-9. */
 static double kernel_transform(double rad_per_point)
 {
     enum { points = 400 };

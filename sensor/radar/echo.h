@@ -1,17 +1,17 @@
 /* sensor/radar/echo.h: what a receiver samples of many point echoes over the pulses of a coherent interval.
  *
- * Samples m = 0 .. samples - 1 lie at frequencies centre + (m - samples / 2) step: the samples over time of a deramped chirp or
- * FMCW sweep, or the steps of a stepped waveform. An echo of complex amplitude a whose two-way path is longer by path_m than that to
- * the reference (which the receiver follows) adds
+ * Samples m = 0 .. samples - 1 lie at frequencies centre + (m - samples / 2) step: the samples over time of a
+ * deramped chirp or FMCW sweep, or the steps of a stepped waveform. An echo of complex amplitude a whose two-way
+ * path is longer by path_m than that to the reference (which the receiver follows) adds
  *
  *     a exp(-j 2 pi f_m path / c)
  *
- * Paths beyond half of c / step, either way, fold over as they do in a real receiver: leave those out that the gate cuts.
- * Over the pulses the path grows evenly: its phase exactly, its delay taken at the middle of the interval, for paths that change by
- * a small part of c / (step samples) in all.
- * Sums are by gridding: each echo is spread over 8 points of a delay grid of twice the samples, which is transformed and divided by the
- * kernel's transform ("exponential of semicircle": Barnett, Magland & af Klinteberg, SIAM J. Sci. Comput. 41(5), 2019). Error
- * below 1e-6 of the sum of amplitudes (tests/sensor/test_echo.c). Sums are in the order of the echoes, for any number of
+ * Paths beyond half of c / step, either way, fold over as they do in a real receiver: leave those out that the gate
+ * cuts. Over the pulses the path grows evenly: its phase exactly, its delay taken at the middle of the interval, for
+ * paths that change by a small part of c / (step samples) in all. Sums are by gridding: each echo is spread over 8
+ * points of a delay grid of twice the samples, which is transformed and divided by the kernel's transform
+ * ("exponential of semicircle": Barnett, Magland & af Klinteberg, SIAM J. Sci. Comput. 41(5), 2019). Error below
+ * 1e-6 of the sum of amplitudes (tests/sensor/test_echo.c). Sums are in the order of the echoes, for any number of
  * threads. */
 #ifndef SENSOR_RADAR_ECHO_H
 #define SENSOR_RADAR_ECHO_H

@@ -1,9 +1,9 @@
-/* sensor/radar/interval.h: one coherent interval of a radar: pulses sampled over frequency in four channels, and its map of range
- * and Doppler.
+/* sensor/radar/interval.h: one coherent interval of a radar: pulses sampled over frequency in four channels, and its
+ * map of range and Doppler.
  *
- * Samples are in units of sqrt(W) at the antenna's port: a steady echo of received power p has |sample| = sqrt(p) everywhere. The
- * map is scaled alike: a point echo peaks at sqrt(p), whatever the windows. The receiver follows the reference path, so range
- * and Doppler are relative to it. */
+ * Samples are in units of sqrt(W) at the antenna's port: a steady echo of received power p has |sample| = sqrt(p)
+ * everywhere. The map is scaled alike: a point echo peaks at sqrt(p), whatever the windows. The receiver follows the
+ * reference path, so range and Doppler are relative to it. */
 #ifndef SENSOR_RADAR_INTERVAL_H
 #define SENSOR_RADAR_INTERVAL_H
 
@@ -26,8 +26,8 @@ typedef struct Interval {
     double complex *sample;         /* [channels][pulses][samples] */
 } Interval;
 
-/* Windowed and transformed: rows of Doppler, from approaching (negative rate of path) to receding, columns of range, nearest first; the
- * reference is at row pulses / 2, column samples / 2. */
+/* Windowed and transformed: rows of Doppler, from approaching (negative rate of path) to receding, columns of range,
+ * nearest first; the reference is at row pulses / 2, column samples / 2. */
 typedef struct RangeDoppler {
     int             rows, columns;
     double          metre_per_column, mps_per_row; /* of range (half the path) and its rate */

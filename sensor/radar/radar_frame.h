@@ -1,7 +1,8 @@
-/* sensor/radar/radar_frame.h: what a seeker's radar measured in one coherent interval about a frame's time, with its truth.
+/* sensor/radar/radar_frame.h: what a seeker's radar measured in one coherent interval about a frame's time, with its
+ * truth.
  *
- * Immutable once made; all arrays are in the frame's arena. Ranges are in m from the antenna to the place, range rates in m/s, above 0:
- * receding. Directions are cosines along the sensor's right and down axes. */
+ * Immutable once made; all arrays are in the frame's arena. Ranges are in m from the antenna to the place, range
+ * rates in m/s, above 0: receding. Directions are cosines along the sensor's right and down axes. */
 #ifndef SENSOR_RADAR_RADAR_FRAME_H
 #define SENSOR_RADAR_RADAR_FRAME_H
 

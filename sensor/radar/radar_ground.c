@@ -156,7 +156,8 @@ Status making_ground(Making *m)
     const double ground_m = elevation_height(&m->scene->world->landscape->elevation, at[0], at[1], NULL);
     lit_rectangle(low_m, high_m, m, lobe_rad, p[2] - (isfinite(ground_m) ? ground_m : 0));
 
-    /* sides of 1/128 of the beam's width, less where the resolution asks for it near by; coarser where that is too many */
+    /* sides of 1/128 of the beam's width, less where the resolution asks for it near by; coarser where that is too
+     * many */
     double share = lobe_rad / 128;
     size_t count;
     while ((count = clutter_cells_at(NULL, 0, &r->cells, low_m, high_m, p, share)) > cells_most) share *= sqrt(2);

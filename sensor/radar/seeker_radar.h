@@ -1,17 +1,19 @@
-/* sensor/radar/seeker_radar.h: the radar of a seeker: from a snapshot to what its receiver and processing make of it.
+/* sensor/radar/seeker_radar.h: the radar of a seeker: from a snapshot to what its receiver and processing make of
+ * it.
  *
- * At the frame's time a coherent interval is centred. The beam is the sensor's boresight; the range window is about the reference: the
- * range to the aim, else to the ground along the boresight. Within beam and window
+ * At the frame's time a coherent interval is centred. The beam is the sensor's boresight; the range window is about
+ * the reference: the range to the aim, else to the ground along the boresight. Within beam and window
  *
  *     entities   by their scattering centres (render/radar), each with its own range rate from the motion of its part
  *     ground     by scatterers fixed to it (render/radar/clutter.h), where relief, plants and entities leave it in sight
  *
- * go through the radar equation, the antenna's pattern at their own direction, and the air (radar_path.h) into the samples of four
- * channels; then receiver and processing. Phases are those of double ranges.
+ * go through the radar equation, the antenna's pattern at their own direction, and the air (radar_path.h) into the
+ * samples of four channels; then receiver and processing. Phases are those of double ranges.
  *
- * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main lobe's null; ground
- * bounce and what one entity mirrors to another; range rates that change within the interval; the internal motion of ground
- * within the interval (it moves between intervals). An entity partly hidden gives its visible share of power. */
+ * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main
+ * lobe's null; ground bounce and what one entity mirrors to another; range rates that change within the interval;
+ * the internal motion of ground within the interval (it moves between intervals). An entity partly hidden gives its
+ * visible share of power. */
 #ifndef SENSOR_RADAR_SEEKER_RADAR_H
 #define SENSOR_RADAR_SEEKER_RADAR_H
 

@@ -41,19 +41,20 @@ typedef struct Making {
     Arena            *arena;
 } Making;
 
-/* From the antenna to a place: range, unit direction, cosines along right and down, whether it is ahead and within the window (grown
- * by more_m). */
+/* From the antenna to a place: range, unit direction, cosines along right and down, whether it is ahead and within
+ * the window (grown by more_m). */
 typedef struct Sight {
     double range_m, d_enu[3], cos_right, cos_down;
     bool   within;
 } Sight;
 void making_sight(Sight *out, const Making *making, const double p_enu[3], double more_m);
 
-/* Range rate of a place that moves, relative to the antenna; and over the reference's as growth of the two-way path a pulse. */
+/* Range rate of a place that moves, relative to the antenna; and over the reference's as growth of the two-way path
+ * a pulse. */
 double making_range_rate(const Making *making, const Sight *sight, const double v_enu_mps[3]);
 
-/* Its amplitudes in the four channels: what is scattered (m, received h or v along the antenna's right and up by transmitted), at a
- * range and direction, through the air. */
+/* Its amplitudes in the four channels: what is scattered (m, received h or v along the antenna's right and up by
+ * transmitted), at a range and direction, through the air. */
 void making_amplitudes(double complex amplitude[interval_channels], const Making *making, const Sight *sight,
                        const ScatterMatrix *s);
 

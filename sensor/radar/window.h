@@ -1,5 +1,5 @@
-/* sensor/radar/window.h: weights across pulses or frequencies that trade resolution for side lobes, and the figures by which
- * they are judged.
+/* sensor/radar/window.h: weights across pulses or frequencies that trade resolution for side lobes, and the figures
+ * by which they are judged.
  *
  * Symmetric forms of length N. Sources: F. J. Harris, Proc. IEEE 66(1), 1978 (Hann, Hamming, Kaiser, Dolph-Chebyshev);
  * T. T. Taylor, IRE Trans. AP-3, 1955 (Taylor). Held against independent figures in tests/sensor/test_window.c. */
@@ -19,7 +19,8 @@ typedef struct Window {
 
 /* w[n], greatest value 1. n >= 2. O(n), Chebyshev O(n^2). STATUS_BAD_VALUE: a parameter out of its range. */
 Status window_weights(double *w, int n, const Window *window);
-/* `rect`, `hann`, `hamming`, `taylor:5:40` (nbar, dB), `chebyshev:60` (dB), `kaiser:6` (beta). NULL, or what is accepted. */
+/* `rect`, `hann`, `hamming`, `taylor:5:40` (nbar, dB), `chebyshev:60` (dB), `kaiser:6` (beta). NULL, or what is
+ * accepted. */
 const char *window_parse(Window *out, const char *text);
 
 /* Of the response to a point, by a transform of n weights zero-padded to window_padding n. */

@@ -50,7 +50,8 @@ static void speed_is_power(void **state)
     CHECK_NEAR(before, 1, 1e-6);
 }
 
-/* Uphill and in turns the engine gives more, downhill less, never less than idling or more than all; nonsense counts as nothing. */
+/* Uphill and in turns the engine gives more, downhill less, never less than idling or more than all; nonsense counts
+ * as nothing. */
 static void slopes_and_turns_are_power(void **state)
 {
     (void)state;
@@ -95,7 +96,8 @@ static void wrecks_burn_out(void **state)
     CHECK(at(&s, 1e5).burning == 1);
 }
 
-/* Engine smoke is an engine that runs, but for a wreck's; a plume from what is damaged smoulders, from what is whole it is a screen. */
+/* Engine smoke is an engine that runs, but for a wreck's; a plume from what is damaged smoulders, from what is whole
+ * it is a screen. */
 static void smoke_is_evidence(void **state)
 {
     (void)state;

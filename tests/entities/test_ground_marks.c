@@ -118,7 +118,8 @@ static void a_tank_leaves_tracks_and_a_stand(void **state)
     fixture_close(&f);
 }
 
-/* An engine that runs, stops, and runs again: two stands of one place; one that runs at the first report has done so for an hour. */
+/* An engine that runs, stops, and runs again: two stands of one place; one that runs at the first report has done so
+ * for an hour. */
 static void an_engine_that_starts_again_is_another_stand(void **state)
 {
     (void)state;

@@ -276,8 +276,8 @@ static double open_m2(const Patches *s)
     return sum;
 }
 
-/* Two boxes that share a face are a longer box: its faces alone are outside, means and blends take nothing from the inner ones,
- * and no ray starts from these. */
+/* Two boxes that share a face are a longer box: its faces alone are outside, means and blends take nothing from the
+ * inner ones, and no ray starts from these. */
 static void glued_boxes_are_one(void **state)
 {
     (void)state;
@@ -311,8 +311,8 @@ static void glued_boxes_are_one(void **state)
     model_destroy(&m);
 }
 
-/* A block on a larger one: its base, and of the larger one's top as much, are inside; points of the top avoid it. On a joint, what is
- * so in every pose. */
+/* A block on a larger one: its base, and of the larger one's top as much, are inside; points of the top avoid it. On
+ * a joint, what is so in every pose. */
 static void a_block_covers_what_it_stands_on(void **state)
 {
     (void)state;
@@ -376,8 +376,9 @@ static bool is_fixed(const Model *m, int node)
     return node == 0;
 }
 
-/* Surface of the union of a model's parts of node 0 (and what is fixed to it) by the formula of Crofton: over all lines of a sphere,
- * twice its great circle's area times the mean number of times that a line goes in or out of the union. */
+/* Surface of the union of a model's parts of node 0 (and what is fixed to it) by the formula of Crofton: over all
+ * lines of a sphere, twice its great circle's area times the mean number of times that a line goes in or out of the
+ * union. */
 static double union_m2(const Model *m, int lines)
 {
     double    sum = 0, centre[3], radius = 0;

@@ -1,4 +1,5 @@
-/* Scattering centres against the hits and edges that they stand for: the field over a band, and from antennas that have moved on. */
+/* Scattering centres against the hits and edges that they stand for: the field over a band, and from antennas that
+ * have moved on. */
 #include "tests/check.h"
 
 #include "render/radar/centres.h"

@@ -68,8 +68,8 @@ static void slabs_match_line_by_line_bands(void **state)
     }
 }
 
-/* Edwards's exponential wide-band model (1976; Modest, Radiative Heat Transfer, table 11.3) of the 4.3 um band of CO2 at 1 atm,
- * from measured spectra: nothing of it is in the narrow-band model above. Band width A, cm-1. */
+/* Edwards's exponential wide-band model (1976; Modest, Radiative Heat Transfer, table 11.3) of the 4.3 um band of
+ * CO2 at 1 atm, from measured spectra: nothing of it is in the narrow-band model above. Band width A, cm-1. */
 static double edwards_width_per_cm(double temp_k, double co2_atm_m)
 {
     static const double per_cm[3] = {1351, 667, 2396}, t0_k = 100;

@@ -1,5 +1,5 @@
-/* Kept fields of targets: bins hold what they should, a field serves its bin to the error stated, and neither order nor lack of room
- * changes a bit. */
+/* Kept fields of targets: bins hold what they should, a field serves its bin to the error stated, and neither order
+ * nor lack of room changes a bit. */
 #include "tests/check.h"
 
 #include "render/radar/field.h"
@@ -14,8 +14,8 @@ static ScatterAntenna at(double az_deg, double el_deg, double range_m)
     return a;
 }
 
-/* Any direction is within half of a bin's diagonal of its middle, the middle is in its own bin, and ranges are within an eighth of
- * an octave. */
+/* Any direction is within half of a bin's diagonal of its middle, the middle is in its own bin, and ranges are
+ * within an eighth of an octave. */
 static void bins_are_about_their_middles(void **state)
 {
     (void)state;

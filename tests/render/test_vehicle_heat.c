@@ -1,5 +1,6 @@
-/* tests/render/test_vehicle_heat.c: entities' temperatures over time, on weather from paper: nothing comes from nothing, the
- * sun's side is warm, engines, guns, exhausts, speed and bodies are what balances on paper give, and the past decides. */
+/* tests/render/test_vehicle_heat.c: entities' temperatures over time, on weather from paper: nothing comes from
+ * nothing, the sun's side is warm, engines, guns, exhausts, speed and bodies are what balances on paper give, and
+ * the past decides. */
 #include "tests/render/vehicle_stage.h"
 
 #include "render/heat/surface_flux.h"
@@ -51,8 +52,8 @@ static void run(VehicleHeat *heat, Scene *s, double from_s, double to_s)
     CHECK(vehicle_heat_counters(heat)->failed == 0);
 }
 
-/* Mean by area of a role's patches on the side n (axes of their node; NULL: all) that face within 60 degrees of it, at the
- * snapshot's time. */
+/* Mean by area of a role's patches on the side n (axes of their node; NULL: all) that face within 60 degrees of it,
+ * at the snapshot's time. */
 static double mean_k(const VehicleHeat *heat, Scene *s, HeatRole role, const double *n)
 {
     double sum = 0, m2 = 0;
@@ -157,8 +158,8 @@ static void engines_warm_and_stay_warm(void **state)
 }
 
 
-/* A jet as wide as the points of a patch lie apart, on the hull's rear, warms it, and the turret's front hardly; away from the entity it warms
- * nothing, nor does an engine that is off. */
+/* A jet as wide as the points of a patch lie apart, on the hull's rear, warms it, and the turret's front hardly;
+ * away from the entity it warms nothing, nor does an engine that is off. */
 static void exhaust_warms_what_it_blows_on(void **state)
 {
     (void)state;
@@ -184,8 +185,8 @@ static void exhaust_warms_what_it_blows_on(void **state)
     CHECK_NEAR(back_k[3], 288, 0.01);
 }
 
-/* A node that starts again ten minutes later goes on within a tenth of what an assumed past would be off; another model's, older or
- * broken files do not count. */
+/* A node that starts again ten minutes later goes on within a tenth of what an assumed past would be off; another
+ * model's, older or broken files do not count. */
 static void a_restart_goes_on(void **state)
 {
     (void)state;
@@ -368,7 +369,8 @@ static void contrast_is_to_the_ground_below(void **state)
     ground_k_m = ground_k_s = 0;
 }
 
-/* Of nine entities the last is left out of eight places, counted, and as warm as the air; one that goes is forgotten. */
+/* Of nine entities the last is left out of eight places, counted, and as warm as the air; one that goes is
+ * forgotten. */
 static void room_is_bounded(void **state)
 {
     (void)state;
@@ -389,8 +391,9 @@ static void room_is_bounded(void **state)
     vehicle_heat_destroy(heat);
 }
 
-/* What appears at once is worked out one after the other, each before it is shown, and with the temperatures that it has
- * where nothing limits the work, but for the second or two that it began later; a change is not waited for by all. */
+/* What appears at once is worked out one after the other, each before it is shown, and with the temperatures that it
+ * has where nothing limits the work, but for the second or two that it began later; a change is not waited for by
+ * all. */
 static void crowds_wait(void **state)
 {
     (void)state;
@@ -437,8 +440,9 @@ static void crowds_wait(void **state)
     for (int k = 0; k < 2; k++) vehicle_heat_destroy(heat[k]);
 }
 
-/* A model that is met after the first tick: its patches are cut by another thread, and its entity waits for a time that depends on
- * nothing but its size; then it begins as one whose patches were there. One that goes before that is no trouble. */
+/* A model that is met after the first tick: its patches are cut by another thread, and its entity waits for a time
+ * that depends on nothing but its size; then it begins as one whose patches were there. One that goes before that is
+ * no trouble. */
 static void a_new_model_is_cut_meanwhile(void **state)
 {
     (void)state;

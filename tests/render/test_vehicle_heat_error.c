@@ -1,5 +1,5 @@
-/* tests/render/test_vehicle_heat_error.c: the estimate of what steps and the past's single steps leave out of entities' temperatures, against
- * steps of a second and a past of eight times as many, with error control. */
+/* tests/render/test_vehicle_heat_error.c: the estimate of what steps and the past's single steps leave out of
+ * entities' temperatures, against steps of a second and a past of eight times as many, with error control. */
 #include "tests/render/vehicle_stage.h"
 
 /* A clear day about the equinox at 45 degrees north; Unix time 0 is noon. */

@@ -1,5 +1,6 @@
-/* tests/render/test_vehicle_neighbours.c: entities that stand by each other: shares of view as published view factors and many
- * rays of this file give them, heat that goes from one to the other, shadow, exhaust, and what must change no bit. */
+/* tests/render/test_vehicle_neighbours.c: entities that stand by each other: shares of view as published view
+ * factors and many rays of this file give them, heat that goes from one to the other, shadow, exhaust, and what must
+ * change no bit. */
 #include "tests/render/hand_models.h"
 #include "tests/render/vehicle_stage.h"
 
@@ -124,8 +125,8 @@ static double worst_of(const Crowd *a, int i, const Crowd *b, int j)
 
 /* ---- views -------------------------------------------------------------------------------- */
 
-/* Two equal parallel rectangles opposite each other, sides over their distance x and y: Incropera & DeWitt, table 13.2; Howell,
- * A Catalog of Radiation Heat Transfer Configuration Factors, C-11. */
+/* Two equal parallel rectangles opposite each other, sides over their distance x and y: Incropera & DeWitt, table
+ * 13.2; Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-11. */
 static double facing_rectangles(double x, double y)
 {
     const double x1 = sqrt(1 + x * x), y1 = sqrt(1 + y * y);
@@ -358,7 +359,8 @@ static void a_wall_sends_light(void **state)
     CHECK_NEAR(light_w / want_w, 1, 0.25); /* windows and bricks are not seen alike, nor its foot and its eaves */
 }
 
-/* Of two that see each other, areas times shares are the same both ways: what one loses to the other, that one gains. */
+/* Of two that see each other, areas times shares are the same both ways: what one loses to the other, that one
+ * gains. */
 static void what_one_loses_the_other_gains(void **state)
 {
     (void)state;
@@ -420,7 +422,8 @@ static void an_enclosure_of_several_stays_as_it_is(void **state)
     }
 }
 
-/* The sun is low in the east, behind a house: a tank is as warm as one without a sun; when the house goes, its side warms. */
+/* The sun is low in the east, behind a house: a tank is as warm as one without a sun; when the house goes, its side
+ * warms. */
 static void shade_is_as_no_sun(void **state)
 {
     (void)state;
@@ -463,7 +466,8 @@ static void a_day(void)
     weather.ground_k = 300, weather.wind_enu_mps[0] = 2;
 }
 
-/* What is far away, a missile that flies by, frames that are drawn and the order of ids change no bit; what is near does. */
+/* What is far away, a missile that flies by, frames that are drawn and the order of ids change no bit; what is near
+ * does. */
 static void what_must_change_no_bit(void **state)
 {
     (void)state;
@@ -499,7 +503,8 @@ static void what_must_change_no_bit(void **state)
     CHECK(worst_of(&crowd[3], 0, &crowd[5], 0) == 0 && worst_of(&crowd[3], 1, &crowd[5], 1) == 0);
 }
 
-/* A truck behind an aircraft's engine is warmed as far as its jet is warm; beside it, or with the engine off, not at all. */
+/* A truck behind an aircraft's engine is warmed as far as its jet is warm; beside it, or with the engine off, not at
+ * all. */
 static void a_jet_warms_what_is_behind_it(void **state)
 {
     (void)state;
@@ -547,7 +552,8 @@ static void a_burning_wreck_warms_the_side_that_faces_it(void **state)
     vehicle_heat_destroy(heat);
 }
 
-/* A wreck that burns 100 m away warms nothing; towed here, it is felt within three seconds, and no longer once it has left. */
+/* A wreck that burns 100 m away warms nothing; towed here, it is felt within three seconds, and no longer once it
+ * has left. */
 static void who_comes_is_felt_and_who_leaves_is_not(void **state)
 {
     (void)state;

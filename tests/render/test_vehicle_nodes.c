@@ -1,5 +1,5 @@
-/* tests/render/test_vehicle_nodes.c: nodes and surfaces of vehicles' networks besides their skin in the air: a skin as its sidecar
- * says, fuel, the ground under tracks and wheels, water about hulls, and what lies inside. */
+/* tests/render/test_vehicle_nodes.c: nodes and surfaces of vehicles' networks besides their skin in the air: a skin
+ * as its sidecar says, fuel, the ground under tracks and wheels, water about hulls, and what lies inside. */
 #include "tests/render/vehicle_stage.h"
 
 #include "render/heat/surface_flux.h"
@@ -59,8 +59,8 @@ static void range_k(double *low_k, double *high_k, const VehicleHeat *heat, Scen
     free(pose);
 }
 
-/* A cube of 1 m by OBJ, material and thickness by its sidecar: capacity is density times heat capacity times thickness times area,
- * conduction through it and along it conductivity's. */
+/* A cube of 1 m by OBJ, material and thickness by its sidecar: capacity is density times heat capacity times
+ * thickness times area, conduction through it and along it conductivity's. */
 static void a_skin_is_as_its_sidecar_says(void **state)
 {
     (void)state;
@@ -170,8 +170,8 @@ static void fuel_follows_its_engine(void **state)
     vehicle_heat_destroy(heat);
 }
 
-/* Ground warmer than all else warms what stands on it, and not what is lifted from it; one that drives gives the ground the heat
- * of its tracks and tyres. */
+/* Ground warmer than all else warms what stands on it, and not what is lifted from it; one that drives gives the
+ * ground the heat of its tracks and tyres. */
 static void ground_touches_tracks_and_wheels(void **state)
 {
     (void)state;
@@ -206,14 +206,14 @@ static void ground_touches_tracks_and_wheels(void **state)
         CHECK_NEAR(high_k[0], 288, 1e-3);
         CHECK(high_k[1] > high_k[2] + 0.3 && high_k[1] < 318);
         CHECK(rolls_k[0] < rolls_k[1] - 1 && rolls_k[0] > 289);
-        /* prints of the kinds: a tank of 40 t has some 0.8 bar under its tracks (5 m2, of which pads are a third to all), a truck of 10 t
-         * some 3 to 6 bar in its tyres */
+        /* prints of the kinds: a tank of 40 t has some 0.8 bar under its tracks (5 m2, of which pads are a third to
+         * all), a truck of 10 t some 3 to 6 bar in its tyres */
         CHECK(t ? print_m2 > 0.15 && print_m2 < 0.8 : print_m2 > 1.5 && print_m2 < 6);
     }
 }
 
-/* A ship between air of 300 K and water of 280 K, an hour: below its waterline it is as warm as the water, well above as the air.
- * Its waterline is where the water is; what it has inside is no part of dt_k. */
+/* A ship between air of 300 K and water of 280 K, an hour: below its waterline it is as warm as the water, well
+ * above as the air. Its waterline is where the water is; what it has inside is no part of dt_k. */
 static void water_cools_hulls(void **state)
 {
     (void)state;

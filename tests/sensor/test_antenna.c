@@ -1,10 +1,11 @@
-/* The dish's patterns against published widths and side lobes and against sums over its aperture; angles by monopulse. */
+/* The dish's patterns against published widths and side lobes and against sums over its aperture; angles by
+ * monopulse. */
 #include "tests/check.h"
 
 #include "sensor/radar/antenna.h"
 
-/* Skolnik's table of tapered circular apertures: half-power width in wavelengths over diameter, first side lobe, relative gain;
- * printed to three figures. */
+/* Skolnik's table of tapered circular apertures: half-power width in wavelengths over diameter, first side lobe,
+ * relative gain; printed to three figures. */
 static void widths_and_lobes_are_published_ones(void **state)
 {
     (void)state;
@@ -21,7 +22,8 @@ static void widths_and_lobes_are_published_ones(void **state)
     }
 }
 
-/* Sums over the aperture itself, in steps of 1/200 of its radius; what that leaves of its round edge, 1e-3 of the peak. */
+/* Sums over the aperture itself, in steps of 1/200 of its radius; what that leaves of its round edge, 1e-3 of the
+ * peak. */
 static void patterns_are_sums_over_the_aperture(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Detection at a constant rate of false alarms: multipliers against computed ones, the rate in noise by counting, targets that are
- * found. */
+/* Detection at a constant rate of false alarms: multipliers against computed ones, the rate in noise by counting,
+ * targets that are found. */
 #include "tests/check.h"
 
 #include "sensor/radar/cfar.h"
@@ -36,8 +36,9 @@ static void ordered_multipliers_solve_their_product(void **state)
 
 enum { rows = 64, columns = 512, planes = 40 };
 
-/* Peaks over the threshold of noise alone, beside the rate asked. A cell is a false alarm only where it is the greatest of its
- * nine; at these thresholds its neighbours seldom pass it, so that the count is less than pfa by a few per cent at most. */
+/* Peaks over the threshold of noise alone, beside the rate asked. A cell is a false alarm only where it is the
+ * greatest of its nine; at these thresholds its neighbours seldom pass it, so that the count is less than pfa by a
+ * few per cent at most. */
 static void rate_in_noise(double ordered)
 {
     static double  power[rows * columns];

@@ -67,7 +67,8 @@ static void samples_are_the_sum(void **state)
     pool_destroy(pool);
 }
 
-/* A delay that stays while the path grows by 0.1 mm a pulse: at the band's edge pi B / c of the path that is off, 9.5 pulses of it. */
+/* A delay that stays while the path grows by 0.1 mm a pulse: at the band's edge pi B / c of the path that is off,
+ * 9.5 pulses of it. */
 static void delay_is_that_of_the_middle(void **state)
 {
     (void)state;

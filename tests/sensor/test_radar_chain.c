@@ -1,5 +1,5 @@
-/* A radar's receiver and processing, with echoes whose answers are known on paper: signal to noise by the radar equation, places,
- * speeds and directions of points, images of I/Q errors, noise of a converter. */
+/* A radar's receiver and processing, with echoes whose answers are known on paper: signal to noise by the radar
+ * equation, places, speeds and directions of points, images of I/Q errors, noise of a converter. */
 #include "tests/check.h"
 
 #include "render/radar/radar_equation.h"
@@ -52,8 +52,8 @@ static RangeDoppler process(const Interval *interval, const char *range_window, 
 
 static double power_of(double complex v) { return creal(v) * creal(v) + cimag(v) * cimag(v); }
 
-/* Skolnik's equation in decibels, by hand: 15 W, 3 (4.77 dB), 10 m2 at 3 km; antenna 0.75 (pi 0.2 / 0.0031893)^2 = 44.64 dB;
- * 64 pulses of 20 us; noise figure 8 dB. P G^2 l^2 s / ((4 pi)^3 R^4 L):
+/* Skolnik's equation in decibels, by hand: 15 W, 3 (4.77 dB), 10 m2 at 3 km; antenna 0.75 (pi 0.2 / 0.0031893)^2 =
+ * 44.64 dB; 64 pulses of 20 us; noise figure 8 dB. P G^2 l^2 s / ((4 pi)^3 R^4 L):
  *     11.76 + 89.28 - 49.93 + 10 - 32.98 - 139.08 - 4.77 = -115.72 dBW; energy of 64 pulses: -28.93 dBs: -144.65 dBJ
  *     k 290 K: -203.98, and 8 dB: -195.98; signal to noise: 51.33 dB. */
 static void signal_to_noise_is_the_radar_equations(void **state)
@@ -121,7 +121,8 @@ static void points_are_measured(void **state)
     CHECK(got[0].rcs_m2 > 20); /* strongest first */
 }
 
-/* Q that is stronger or turned: a point's mirror image at minus its range, -20 log10 |gain + j phase| + 6.02 dB below it. */
+/* Q that is stronger or turned: a point's mirror image at minus its range, -20 log10 |gain + j phase| + 6.02 dB
+ * below it. */
 static void iq_errors_make_an_image(void **state)
 {
     (void)state;
@@ -136,7 +137,8 @@ static void iq_errors_make_an_image(void **state)
     CHECK_NEAR(10 * log10(power_of(row[-16]) / power_of(row[16])), 20 * log10(hypot(0.02, 0.015) / 2), 0.2);
 }
 
-/* A converter's noise: one twelfth of a count squared each for I and Q, where some noise dithers it; phases that scatter take exp(-sigma^2) of the peak. */
+/* A converter's noise: one twelfth of a count squared each for I and Q, where some noise dithers it; phases that
+ * scatter take exp(-sigma^2) of the peak. */
 static void converter_and_oscillator_add_their_noise(void **state)
 {
     (void)state;

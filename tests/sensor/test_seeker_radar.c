@@ -1,5 +1,5 @@
-/* The radar of a seeker over ground: its power against an integral over the ground that the test makes itself, its place in
- * Doppler, and the same bits whatever made them. */
+/* The radar of a seeker over ground: its power against an integral over the ground that the test makes itself, its
+ * place in Doppler, and the same bits whatever made them. */
 #include "tests/check.h"
 
 #include "sensor/radar/seeker_radar.h"
@@ -79,8 +79,8 @@ static SeekerRadar *open_radar(uint64_t seed)
     return radar;
 }
 
-/* Sum over ground of the power that each square metre returns: classes, heights and the dish's pattern asked for anew, places and
- * integral the test's own. */
+/* Sum over ground of the power that each square metre returns: classes, heights and the dish's pattern asked for
+ * anew, places and integral the test's own. */
 static double power_by_integral(const RadarFrame *frame)
 {
     static ClutterTable table;

@@ -1,10 +1,11 @@
-/* Windows of radar processing against the figures that SciPy's windows have, zero-padded 256 times, and what is known on paper. */
+/* Windows of radar processing against the figures that SciPy's windows have, zero-padded 256 times, and what is
+ * known on paper. */
 #include "tests/check.h"
 
 #include "sensor/radar/window.h"
 
-/* data/radar/signal/windows_psf.csv: N = 256, SciPy's hann, hamming, taylor, chebwin, kaiser (sym = True). Its widths are between
- * samples 1 / 256 of a bin apart, as ours are. */
+/* data/radar/signal/windows_psf.csv: N = 256, SciPy's hann, hamming, taylor, chebwin, kaiser (sym = True). Its
+ * widths are between samples 1 / 256 of a bin apart, as ours are. */
 static const struct {
     const char *window;
     double      width, pslr_db, islr_db, noise_bins;

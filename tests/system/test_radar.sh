@@ -83,5 +83,8 @@ P
 
 run replay "$tmp/demo.pcap" --out "$tmp/none" "${small[@]}" --set radar.preset=hubble
 check "an unknown radar is refused, and the known ones said" [ $code = 1 ] && complained 'hubble.*seeker_94, seeker_35, search_ku'
+printf 'radar: {preset: hubble}\n' >"$tmp/bad.yaml"
+run check "$tmp/bad.yaml"
+check "check: refused with file, line and key" [ $code = 1 ] && complained 'bad.yaml:1: radar.preset'
 check "and nothing rendered" [ "$(find "$tmp/none" -name '*.exr' 2>/dev/null | wc -l)" = 0 ]
 finish

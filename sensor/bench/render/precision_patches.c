@@ -1,5 +1,5 @@
-/* sensor/bench/render/precision_patches.c: the number of patches of a vehicle: temperatures over its surface, as a picture blends
- * them, against those of the most patches. */
+/* sensor/bench/render/precision_patches.c: the number of patches of a vehicle: temperatures over its surface, as a
+ * picture blends them, against those of the most patches. */
 #include "sensor/bench/render/rows.h"
 
 #include "render/heat/surface_flux.h"
