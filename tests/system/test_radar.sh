@@ -45,7 +45,8 @@ got = radar["detections"][0]
 print("range %.1f m; sphere %.3f / %.3f dBsm; SNR %.2f, on paper %.2f dB; found at %+.3f m, %.2f dBsm, %.2f dB, %+.4f %+.4f deg" % (
     range_m, target["rcs_dbsm"]["hh"], target["rcs_dbsm"]["vv"], target["snr_db"], snr_db, got["range_m"] - range_m,
     got["rcs_dbsm"], got["snr_db"], got["az_deg"] - target["az_deg"], got["el_deg"] - target["el_deg"]))
-good = abs(range_m - 3000) < 30 and radar["detections_in_all"] == 1
+good = abs(range_m - 3000) < 30
+good &= all(d["rcs_dbsm"] < got["rcs_dbsm"] - 50 for d in radar["detections"][1:]) # its phase noise, 0.5 degrees over 128 pulses
 good &= all(abs(target["rcs_dbsm"][p] - 10) < 0.2 for p in ("hh", "vv")) and target["rcs_dbsm"]["hv"] < -15
 good &= abs(target["snr_db"] - snr_db) < 0.2
 good &= abs(got["rcs_dbsm"] - target["rcs_dbsm"]["hh"]) < 0.2   # I and Q differ by 0.1 dB
