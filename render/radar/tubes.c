@@ -244,6 +244,7 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
         return status;
     }
     out->spacing_m = work.grid.spacing_m;
+    work.widest_m = target->entity.radius_m;
     out->rays = (long long)work.grid.count[0] * work.grid.count[1];
     status = open_work(&work, threads, target);
     const long long tiles = (long long)work.grid.tiles[0] * work.grid.tiles[1];

@@ -46,6 +46,7 @@ typedef struct TubeWork {
     TubeGrid           grid;
     double             k;
     bool               monostatic;
+    double             widest_m; /* a footprint's sides: wider ones are no tube any more */
     RadarSurface      *surface; /* [part_count] */
     Warp              *warp;    /* [part_count] */
     TubeWorker        *worker;

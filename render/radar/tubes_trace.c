@@ -264,7 +264,7 @@ static bool arrive(Tube *tube, Facing *facing, const TubeTile *tile, const TubeW
         v3_add_scaled(tube->side[s], tube->side[s], -v3_dot(facing->n, tube->side[s]) / against, tube->d);
     memcpy(tube->p, facing->p, sizeof tube->p);
     tube->bounces++;
-    return true;
+    return v3_length(tube->side[0]) <= work->widest_m && v3_length(tube->side[1]) <= work->widest_m;
 }
 
 /* Change of the smooth normal over a displacement on the facet. */

@@ -15,6 +15,7 @@ Status bench_precision_heat(Bench *bench);
 Status bench_precision_network(Bench *bench);
 Status bench_precision_patches(Bench *bench);
 Status bench_precision_gas(Bench *bench);
+Status bench_precision_radar(Bench *bench);
 /* Of the suite `speed`: precision_network.c. */
 Status bench_speed_network(Bench *bench);
 /* Of the suite `crowd`: speed_crowd.c. */

@@ -1,0 +1,117 @@
+/* sensor/bench/render/precision_radar.c: the field that a target scatters: ray tubes a wavelength, mirrors of a path. */
+#include "sensor/bench/render/rows.h"
+
+#include "render/radar/field.h"
+#include "render/radar/radar_model.h"
+#include "sensor/bench/turn.h"
+
+static const double tank_hz = 16e9;
+enum { looks = 6, tank_settings = 5 };
+
+/* Fields of a tank from some sides. */
+typedef struct TankSet {
+    const RadarTarget *target;
+    Pool              *pool;
+    TubeConfig         tubes;
+    TubeHits           hits;
+    ScatterMatrix      s[looks];
+    Status             status;
+} TankSet;
+
+static void look_at_tank(void *user)
+{
+    TankSet *t = user;
+    for (int i = 0; i < looks && t->status == STATUS_OK; i++) {
+        ScatterAntenna antenna;
+        radar_look(&antenna, (20 + 57 * i) * rad_per_deg, (5 + 5 * i) * rad_per_deg, 2000);
+        t->status = tubes_trace(&t->hits, t->target, &antenna, &antenna, &t->tubes, t->pool);
+        if (t->status == STATUS_OK) t->status = field_at(&t->s[i], tank_hz, &t->hits, t->pool);
+    }
+    bench_keep(t);
+}
+
+static double power(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
+
+/* Root of the power of the difference over the power, co-polarised, %. */
+static double field_error(const TankSet *got, const TankSet *want)
+{
+    double off = 0, whole = 0;
+    for (int i = 0; i < looks; i++) {
+        off += power(got->s[i].hh - want->s[i].hh) + power(got->s[i].vv - want->s[i].vv);
+        whole += power(want->s[i].hh) + power(want->s[i].vv);
+    }
+    return 100 * sqrt(off / whole);
+}
+
+static TankSet tank_set(const RadarModel *model, Pool *pool, double more_rays)
+{
+    TankSet t = {.target = model->target, .pool = pool, .tubes = tubes_default_config(tank_hz)};
+    t.tubes.rays_per_wavelength *= more_rays;
+    t.tubes.rays_per_radius *= more_rays;
+    return t;
+}
+
+static Status knob(Bench *bench, TankSet set[], TankSet *fine, const char *const name[], int by_default,
+                   const BenchTunable *tunable)
+{
+    BenchWork    work[tank_settings];
+    BenchSetting point[tank_settings] = {0};
+    look_at_tank(fine);
+    Status status = fine->status;
+    for (int k = 0; k < tank_settings && status == STATUS_OK; k++) {
+        look_at_tank(&set[k]);
+        status = set[k].status;
+        work[k] = (BenchWork){look_at_tank, &set[k], looks};
+        point[k] = (BenchSetting){.setting = name[k], .error = field_error(&set[k], fine), .is_default = k == by_default,
+                                  .bytes = 75.0 * (double)set[k].hits.count};
+    }
+    if (status == STATUS_OK) bench_tunable(bench, tunable, work, point, tank_settings);
+    for (int k = 0; k < tank_settings; k++) tubes_free(&set[k].hits);
+    tubes_free(&fine->hits);
+    return status;
+}
+
+static Status knob_tubes(Bench *bench, const RadarModel *model, Pool *pool)
+{
+    static const char *const name[tank_settings] = {"0.6", "1.25", "1.8", "2.5", "3.5"};
+    static const double      more[tank_settings] = {0.48, 1, 1.44, 2, 2.8};
+    TankSet set[tank_settings], fine = tank_set(model, pool, bench_quick(bench) ? 5 : 8);
+    bench_progress(bench, "ray tubes");
+    for (int k = 0; k < tank_settings; k++) set[k] = tank_set(model, pool, more[k]);
+    return knob(bench, set, &fine, name, 1,
+                &(BenchTunable){"ray tubes a wavelength", "render/radar/tubes.h", "a look at a tank at 16 GHz", "%",
+                                "field, rms of six looks; 6 tubes or more", 18});
+}
+
+static Status knob_mirrors(Bench *bench, const RadarModel *model, Pool *pool)
+{
+    static const char *const name[tank_settings] = {"2", "3", "5", "8", "16"};
+    static const int         mirrors[tank_settings] = {2, 3, 5, 8, 16};
+    TankSet set[tank_settings], fine = tank_set(model, pool, 1);
+    bench_progress(bench, "mirrors of ray tubes");
+    fine.tubes.bounces = 40;
+    for (int k = 0; k < tank_settings; k++) {
+        set[k] = tank_set(model, pool, 1);
+        set[k].tubes.bounces = mirrors[k];
+    }
+    return knob(bench, set, &fine, name, 3,
+                &(BenchTunable){"mirrors of a ray tube", "render/radar/tubes.h", "a look at a tank at 16 GHz", "%",
+                                "field, rms of six looks; 40 mirrors", 13});
+}
+
+Status bench_precision_radar(Bench *bench)
+{
+    RadarMaterials materials = {0};
+    RadarModel     model = {0};
+    Pool          *pool = NULL;
+    Status         status = radar_materials_load(&materials);
+    if (status == STATUS_OK) status = radar_model_open(&model, "tank", &materials, radar_sag_m(tank_hz));
+    if (status == STATUS_OK) status = pool_create(&pool, bench_threads(bench));
+    if (status == STATUS_OK) status = knob_tubes(bench, &model, pool);
+    if (status == STATUS_OK) status = knob_mirrors(bench, &model, pool);
+    if (status != STATUS_OK) log_error("bench: precision: radar: %s", status_name(status));
+    pool_destroy(pool);
+    radar_model_close(&model);
+    radar_materials_close(&materials);
+    return status;
+}
