@@ -74,7 +74,7 @@ for knob in "Earth to local frame" "latitude. longitude. height" "geoid between 
             "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "a small target's place" "electrons of a radiance" \
             "steps of the ground's heat" "elements of the ground's heat" "slopes of the ground's heat" "steps of a vehicle's heat" "patches of a vehicle" \
             "cells of past shade" "display" "converter" \
-            "display's curve"; do
+            "display's curve" "ray tubes a wavelength" "mirrors of a ray tube"; do
     check "precision has one default of: $knob" \
         [ "$(grep -cE "^precision,\"?$knob: .*,yes,.*,(\* )?default$" "$tmp/precision.csv")" = 1 ]
     check "precision has other settings of: $knob" \
@@ -87,7 +87,6 @@ for when in morning noon afternoon; do
     done
 done
 has precision "shade of past hours: ground that was never shaded"
-for absent in "shooting and bouncing"; do has precision "$absent.*none in this version"; done
 
 # ---- the page, and two runs side by side
 if command -v python3 >/dev/null; then

@@ -298,16 +298,6 @@ static Status knob_sky(Precision *p)
 
 /* ---- the suite --------------------------------------------------------------------------------- */
 
-static void say_absent(Bench *bench)
-{
-    static const char *const absent[] =
-        {"radar by shooting and bouncing rays: none in this version"};
-    for (size_t k = 0; k < sizeof absent / sizeof *absent; k++) {
-        const BenchRow row = bench_row(absent[k]);
-        bench_add(bench, &row);
-    }
-}
-
 Status bench_precision(Bench *bench)
 {
     Precision p;
@@ -320,6 +310,5 @@ Status bench_precision(Bench *bench)
     if (status == STATUS_OK) status = precision_plants(bench);
     if (status == STATUS_OK) status = precision_detectors(bench);
     if (status != STATUS_OK) log_error("bench: precision: %s", status_name(status));
-    if (status == STATUS_OK) say_absent(bench);
     return status;
 }
