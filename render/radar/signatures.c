@@ -112,6 +112,8 @@ static Status make(Signature *out, Signatures *s, int model, const Model *of, in
     const double begun_s = wall_clock_s();
     TubeConfig   config = tubes_default_config(s->config.frequency_hz);
     config.rays_per_wavelength = s->config.rays_per_wavelength;
+    config.warp_m = s->config.warp_m;
+    config.warp_seed = (uint64_t)model;
     *out = (Signature){.model = model, .damage = damage, .middle = *middle};
     out->joint = malloc((size_t)of->node_count * sizeof *out->joint);
     if (!out->joint) return STATUS_NO_MEMORY;

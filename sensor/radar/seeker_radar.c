@@ -42,7 +42,7 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     if (status == STATUS_OK)
         status = signatures_create(&r->signatures,
                                    &(SignatureConfig){.frequency_hz = wave->centre_hz, .aspect_rad = 0.3 * rad_per_deg,
-                                                      .rays_per_wavelength = 0.5, .most_octets = (size_t)1 << 30,
+                                                      .rays_per_wavelength = 0.5, .warp_m = config->warp_m, .most_octets = (size_t)1 << 30,
                                                       .isa = config->isa},
                                    r->catalog, &r->materials);
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);

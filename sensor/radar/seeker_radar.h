@@ -26,6 +26,7 @@ typedef struct SeekerRadarConfig {
     const char *catalog;         /* path; its models are built anew, as fine as the wavelength needs */
     const char *isa;
     bool        ground;          /* scatterers of the ground */
+    double      warp_m;          /* unevenness of surfaces, rms (render/radar/warp.h) */
     double      wind_mps;
     uint64_t    seed;
 } SeekerRadarConfig;

@@ -52,6 +52,7 @@ typedef struct Config {
         double lobe_deg;
         char   preset[32];         /* a row of etc/radars.csv; none */
         bool   ground;             /* of the preset: the ground scatters */
+        double warp_mm;            /* likewise: unevenness of surfaces */
     } radar;
     struct {
         int    port, exercise;     /* exercise -1: the one with the most PDUs, -2: all */

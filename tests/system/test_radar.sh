@@ -26,7 +26,7 @@ vehicles:
 Y
 exercise "$tmp/sphere_scene.yaml" "$tmp/ball.pcap"
 seen=(--host 1:3001:31 --set sensor.gimbal_limit_deg=180 --set exercise.aim=1:3001:11 --bands radar --set models.catalog="$tmp/catalog.csv")
-replay "$tmp/ball.pcap" "$tmp/ball" "${seen[@]}" --only 5 --set radar.preset=search_ku --set radar.ground=false
+replay "$tmp/ball.pcap" "$tmp/ball" "${seen[@]}" --only 5 --set radar.preset=search_ku --set radar.ground=false --set radar.warp_mm=0
 check "a sphere" [ $code = 0 ]; [ $code = 0 ] || tail -n 3 "$tmp/stderr"
 python3 - "$tmp/ball" <<'P' || fail "a sphere of 10 m2"
 import json, math, sys
