@@ -63,7 +63,7 @@ static const double sea_freezes_k = 271.35;
 static Status ground_there(PlaceHeat *out, WorldVehicles *v, double unix_s, const double p_enu[3])
 {
     const World *world = v->world;
-    if (v->scene_s != unix_s || !v->scene) {
+    if (v->scene_s != unix_s || !v->scene || v->scene->shadow != world->shadow) { /* benches change its shadows */
         arena_reset(v->arena);
         const Status status = world_heat_at(&v->scene, world, NULL, unix_s, v->arena);
         if (status != STATUS_OK) return status;

@@ -18,7 +18,7 @@ mutants_table() {
     cat <<'TABLE'
 material/dis7/optical: optical\.G: /target signals|error budget
 sun/tank/sun: sun\.azimuth_deg /temperature|optical|mwir|lwir|target signals|error budget
-sun_light/tank/temperature: targets/optical|mwir|lwir|target signals|error budget
+sun_light/tank/optical: optical\./temperature|mwir|lwir|target signals|error budget
 dead_reckoning/dis7/pose: host\./.*
 dead_reckoning_body/tank/pose: host\./.*
 delay/dis7/motion: targets\[[0-9:]+\]\.age_s /.*
