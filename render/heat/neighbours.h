@@ -17,7 +17,7 @@ typedef enum NearWhy { NEAR_SEEN = 1, NEAR_SUN = 2, NEAR_JET = 4 } NearWhy;
 typedef struct NearBody {
     DisEntityId id;
     double      p_enu[3], v_enu_mps[3];
-    double      radius_m;          /* 0: it is nobody's neighbour */
+    double      radius_m;          /* 0: it counts as no neighbour */
     double      jet_m;             /* how far its exhaust may reach; 0: it has none */
 } NearBody;
 

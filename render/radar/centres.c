@@ -8,8 +8,6 @@ typedef struct Cells {
     double u[3], right[3], up[3];    /* line of sight, and across it */
 } Cells;
 
-static double sinc(double x) { return fabs(x) < 1e-4 ? 1 - x * x / 6 : sin(x) / x; }
-
 static uint64_t mix(uint64_t x)
 {
     x ^= x >> 31;
@@ -145,7 +143,7 @@ static void share_of_hit(Share *out, const TubeHits *h, size_t i, double k, cons
                        (scatter_path(way, rx, last) - scatter_path(way, &h->rx, last));
     for (int x = 0; x < 3; x++) out->middle[x] = 0.5 * (first[x] + last[x]);
     /* -j k / 2 pi, and the footprint's share */
-    const double share = k / (2 * pi_rad) * sinc(k * (double)h->slope_m[0][i]) * sinc(k * (double)h->slope_m[1][i]);
+    const double share = k / (2 * pi_rad) * scatter_sinc(k * (double)h->slope_m[0][i]) * scatter_sinc(k * (double)h->slope_m[1][i]);
     for (int p = 0; p < 4; p++) {
         const double re = (double)h->amplitude[2 * p][i], im = (double)h->amplitude[2 * p + 1][i];
         out->s[p] = CMPLX(share * im, -share * re);
@@ -160,7 +158,7 @@ static void share_of_edge(Share *out, const EdgeSegment *e, const TubeHits *h, d
                           const ScatterAntenna *rx)
 {
     double       way[3], power = 0;
-    const double share = sinc(0.5 * k * e->slope * e->length_m);
+    const double share = scatter_sinc(0.5 * k * e->slope * e->length_m);
     out->path_m = e->path_m;
     if (tx != &h->tx || rx != &h->rx)
         out->path_m += scatter_path(way, tx, e->p) - scatter_path(way, &h->tx, e->p) +

@@ -3,7 +3,6 @@
 
 #include <assert.h>
 
-static const double   speed_of_light_mps = 299792458.0;
 static const uint32_t speckle_stream = 0x434c5500, place_stream = 0x434c5520, texture_stream = 0x434c5540;
 
 /* ---- cells -------------------------------------------------------------------------------------------- */
@@ -199,7 +198,7 @@ static void add_terms(ScatterMatrix *s, const ClutterScatterer *from, int first,
 void clutter_see(ScatterMatrix *out, const ClutterGrid *grid, const ClutterTable *table,
                  const ClutterScatterer *scatterer, const ClutterGround *ground, const ClutterLook *look)
 {
-    const double  wavelength_m = speed_of_light_mps / look->frequency_hz, k2 = 4 * pi_rad / wavelength_m;
+    const double  wavelength_m = light_mps / look->frequency_hz, k2 = 4 * pi_rad / wavelength_m;
     ClutterBand   band;
     ClutterMotion motion[SURFACE_COUNT];
     const bool    in_band = clutter_band_of(&band, look->frequency_hz);

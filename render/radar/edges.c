@@ -115,8 +115,7 @@ static void each_segment(View *view, const Wedge *wedge, int count)
 static void add_segment(ScatterMatrix *out, const EdgeSegment *s, double k_per_m)
 {
     const double half = k_per_m * s->slope * s->length_m / 2;
-    const double sinc = fabs(half) < 1e-4 ? 1 - half * half / 6 : sin(half) / half;
-    const double complex wave = sinc * cexp(-I * k_per_m * s->path_m);
+    const double complex wave = scatter_sinc(half) * cexp(-I * k_per_m * s->path_m);
     out->hh += s->amplitude[0][0] * wave;
     out->hv += s->amplitude[0][1] * wave;
     out->vh += s->amplitude[1][0] * wave;

@@ -29,8 +29,6 @@ static double moved_by(const Sweep *sweep, size_t i)
            (scatter_path(way, &sweep->rx, last) - scatter_path(way, &h->rx, last));
 }
 
-static double sinc(double x) { return fabs(x) < 1e-4 ? 1 - x * x / 6 : sin(x) / x; }
-
 static double path_of(const Sweep *sweep, size_t i)
 {
     return sweep->hits->path_m[i] + (sweep->moved ? moved_by(sweep, i) : 0);
@@ -43,7 +41,7 @@ static void add_plain(double *sum, const Sweep *sweep, size_t i)
     const double    path_m = path_of(sweep, i);
     for (int f = 0; f < sweep->count; f++) {
         const double k = sweep->first_k + f * sweep->step_k;
-        const double share = sinc(k * (double)h->slope_m[0][i]) * sinc(k * (double)h->slope_m[1][i]);
+        const double share = scatter_sinc(k * (double)h->slope_m[0][i]) * scatter_sinc(k * (double)h->slope_m[1][i]);
         const double x = share * cos(k * path_m), y = -share * sin(k * path_m);
         for (int p = 0; p < 8; p += 2) {
             const double re = (double)h->amplitude[p][i], im = (double)h->amplitude[p + 1][i];
@@ -81,7 +79,7 @@ static inline void turning_step(Turning *t)
     t->re = re;
 }
 
-/* Some hits at once, four frequencies at a time: exp(-j k path) and both sines turn from step to step. sinc(k s) =
+/* Some hits at once, four frequencies at a time: exp(-j k path) and both sines turn from step to step. scatter_sinc(k s) =
  * sin(k s) / (k s): the s are in the amplitude here, the k in finish. Slopes below 3e-5 of a radian count as that, so
  * that rounding does not grow. */
 static void add_turning(double *sum, const Sweep *sweep, size_t i)

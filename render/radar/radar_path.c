@@ -3,6 +3,7 @@
 
 #include "render/radar/cloud_attenuation.h"
 #include "render/radar/rain_attenuation.h"
+#include "render/radar/scatter.h"
 #include "terrain/weather/vapour.h"
 
 static const double earth_m = 6371000, level_m = 100, top_m = 20000, fade_m = 2000;
@@ -150,7 +151,7 @@ static void add_gas(RadarLoss *out, const Walk *walk, Span span)
             out->wet_db += gauss_w[g] * half_m * 1e-3 * gas.wet_db_km;
             ppm_m += gauss_w[g] * half_m * (gas.dry_ppm + gas.wet_ppm);
         }
-    out->dispersion_rad += 2 * pi_rad * walk->path->f_ghz * 1e9 / 299792458.0 * 1e-6 * ppm_m;
+    out->dispersion_rad += 2 * pi_rad * walk->path->f_ghz * 1e9 / light_mps * 1e-6 * ppm_m;
 }
 
 static double liquid_db(const Walk *walk, Span span, double g_m3)

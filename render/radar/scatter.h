@@ -19,6 +19,8 @@
 
 #include <complex.h>
 
+static const double light_mps = 299792458.0;
+
 typedef struct ScatterMatrix {
     double complex hh, hv, vh, vv; /* m; first index: received polarisation, second: transmitted */
 } ScatterMatrix;
@@ -55,6 +57,9 @@ static inline void scatter_turn(ScatterMatrix *s, const double h[3], const doubl
     s->hv = -c * w * hh + c * c * hv - w * w * vh + c * w * vv;
     s->vh = -c * w * hh - w * w * hv + c * c * vh + c * w * vv;
 }
+
+/* Share of the field that is left where its phase varies evenly over a stretch, by x from the middle to an end. */
+static inline double scatter_sinc(double x) { return fabs(x) < 1e-4 ? 1 - x * x / 6 : sin(x) / x; }
 
 /* |p - a| - |a| of an antenna at a, m, and the unit direction from p to it. To a rounding of |p|, at any range: the
  * difference of squares over the sum of lengths, where lengths alone would lose |a|'s rounding. */

@@ -43,6 +43,4 @@ void radar_look(ScatterAntenna *out, double azimuth_rad, double elevation_rad, d
 /* Chord error that keeps the phase within 2.4 degrees: lambda / 300, 720 deg of phase over lambda of depth. */
 double radar_sag_m(double frequency_hz);
 
-static const double light_mps = 299792458.0;
-
 #endif

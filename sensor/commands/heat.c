@@ -2,7 +2,7 @@
 #include "sensor/commands/heat.h"
 
 #include "sensor/commands/heat_day.h"
-#include "sensor/node/overwrite.h"
+#include "sensor/commands/output_files.h"
 
 #include <errno.h>
 #include <sys/stat.h>
@@ -120,35 +120,17 @@ static int parse(HeatOptions *o, int argc, char **argv)
 
 /* ---- files ------------------------------------------------------------------------------------------ */
 
-enum { file_csv, file_svg, file_mwir, file_lwir, file_count, path_size = 4096 };
-typedef char Path[path_size];
+enum { file_csv, file_svg, file_mwir, file_lwir, file_count };
 
-static Status make_paths(Path path[file_count], const HeatOptions *o)
+static Status make_paths(OutputPath path[file_count], const HeatOptions *o)
 {
     static const char *const names[file_count] = {"nodes.csv", "nodes.svg", "mwir.png", "lwir.png"};
-    const char *slash = strrchr(o->name, '/'), *last = slash ? slash + 1 : o->name;
-    char        folder[path_size - 32];
-    const int   length = o->out ? snprintf(folder, sizeof folder, "%s", o->out)
-                                : snprintf(folder, sizeof folder, "%.*s_heat", (int)strcspn(last, "."), last);
-    if (length >= (int)sizeof folder) {
-        log_error("heat: the folder's name is too long; choose a shorter one with --out");
-        return STATUS_BAD_VALUE;
-    }
-    for (int k = 0; k < file_count; k++) {
-        snprintf(path[k], path_size, "%s/%s", folder, names[k]);
-        const Status status = overwrite_file("heat", path[k], o->overwrite);
-        if (status != STATUS_OK) return status;
-    }
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        log_error("heat: cannot create %s: %s; choose another folder with --out", folder, strerror(errno));
-        return STATUS_IO;
-    }
-    return STATUS_OK;
+    return output_files(path, names, file_count, "heat", o->out, o->name, ".", o->overwrite);
 }
 
 static Status write_text_file(const char *path, const HeatDay *day, const char *about)
 {
-    char  part[path_size + 8];
+    char  part[output_path_size + 8];
     snprintf(part, sizeof part, "%s.part", path);
     FILE *to = fopen(part, "w");
     bool  good = to != NULL;
@@ -163,7 +145,7 @@ static Status write_text_file(const char *path, const HeatDay *day, const char *
 }
 
 static Status write_files(const HeatDay *day, const HeatImages *images, const ModelStage *stage, const HeatOptions *o,
-                          Path path[])
+                          OutputPath path[])
 {
     char about[256], drive[64] = "engine stopped";
     if (*o->drive) snprintf(drive, sizeof drive, "drives %s", o->drive);
@@ -216,7 +198,7 @@ static void print_summary(const HeatDay *day)
 
 int heat_command(int argc, char **argv)
 {
-    static Path path[file_count];
+    static OutputPath path[file_count];
     HeatOptions o;
     thread_flush_denormals();
     for (int i = 1; i < argc; i++)

@@ -3,7 +3,7 @@
 #include "sensor/commands/rcs.h"
 
 #include "sensor/commands/rcs_sweep.h"
-#include "sensor/node/overwrite.h"
+#include "sensor/commands/output_files.h"
 
 #include <errno.h>
 #include <sys/stat.h>
@@ -148,30 +148,12 @@ static int parse(RcsOptions *o, int argc, char **argv)
 
 /* ---- files ------------------------------------------------------------------------------------------ */
 
-enum { file_csv, file_svg, file_png, file_count, path_size = 4096 };
-typedef char Path[path_size];
+enum { file_csv, file_svg, file_png, file_count };
 
-static Status make_paths(Path path[file_count], const RcsOptions *o)
+static Status make_paths(OutputPath path[file_count], const RcsOptions *o)
 {
     static const char *const names[file_count] = {"rcs.csv", "rcs.svg", "isar.png"};
-    const char *slash = strrchr(o->config.name, '/'), *last = slash ? slash + 1 : o->config.name;
-    char        folder[path_size - 32];
-    const int   length = o->out ? snprintf(folder, sizeof folder, "%s", o->out)
-                                : snprintf(folder, sizeof folder, "%.*s_rcs", (int)strcspn(last, ".:"), last);
-    if (length >= (int)sizeof folder) {
-        log_error("rcs: the folder's name is too long; choose a shorter one with --out");
-        return STATUS_BAD_VALUE;
-    }
-    for (int k = 0; k < file_count; k++) {
-        snprintf(path[k], path_size, "%s/%s", folder, names[k]);
-        const Status status = overwrite_file("rcs", path[k], o->overwrite);
-        if (status != STATUS_OK) return status;
-    }
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        log_error("rcs: cannot create %s: %s; choose another folder with --out", folder, strerror(errno));
-        return STATUS_IO;
-    }
-    return STATUS_OK;
+    return output_files(path, names, file_count, "rcs", o->out, o->config.name, ".:", o->overwrite);
 }
 
 static void put_csv(FILE *to, const void *user) { rcs_write_csv(to, user); }
@@ -213,7 +195,7 @@ static Status make_picture(RcsSweep *sweep, const char *path)
 
 int rcs_command(int argc, char **argv)
 {
-    static Path path[file_count];
+    static OutputPath path[file_count];
     RcsOptions  o;
     thread_flush_denormals();
     for (int i = 1; i < argc; i++)

@@ -1,6 +1,7 @@
 /* sensor/publish/coco.c: a run's coco.json, from the same records as truth.jsonl and the truth plane. */
 #include "sensor/publish/coco.h"
 
+#include "sensor/publish/json_write.h"
 #include "sensor/publish/coco_file.h"
 #include "sensor/publish/coco_mask.h"
 #include "sensor/publish/target_class.h"
@@ -35,11 +36,6 @@ Status coco_open(Coco **out, const char *folder, const char *ending, CocoLimits 
 }
 
 /* ---- one frame -------------------------------------------------------------------------------- */
-
-static void set_number(json_t *object, const char *key, double value)
-{
-    if (isfinite(value)) json_object_set_new(object, key, json_real(value));
-}
 
 static json_t *image_json(const Coco *c, const FrameRecord *r, Band band, long long id)
 {

@@ -3,7 +3,6 @@
 
 #include "sensor/publish/image_file.h"
 
-#include <errno.h>
 #include <stdlib.h>
 
 typedef struct RadarFiles {
@@ -24,26 +23,18 @@ static bool path_of(char path[frame_path_size], const RadarFiles *to, const Fram
 
 /* ---- range profile -------------------------------------------------------------------------------- */
 
-static Status write_profile(const char *path, const RadarFrame *r)
+static void put_profile(FILE *file, const void *user)
 {
-    FILE *file = fopen(path, "w");
-    if (!file) {
-        log_error("radar: cannot write %s: %s", path, strerror(errno));
-        return STATUS_IO;
-    }
-    const int samples = r->preset->wave.samples;
-    fprintf(file, "# %s; power: mean of all pulses, W; re, im: the middle pulse, sqrt(W), of the transmitted polarisation (%s) and of "
-                  "the other; relative to the noise of %.6g W\nrange_m,power_w,re,im,cross_re,cross_im\n",
-            r->preset->name, r->preset->transmits_h ? "h" : "v", r->receiver.noise_w * r->map.noise_share * r->preset->wave.pulses);
+    const RadarFrame *r = user;
+    const int         samples = r->preset->wave.samples;
+    fprintf(file, "# %s; power: mean of all pulses, W; re, im: the middle pulse, sqrt(W), of the transmitted polarisation (%s) and "
+                  "of the other\nrange_m,power_w,re,im,cross_re,cross_im\n",
+            r->preset->name, r->preset->transmits_h ? "h" : "v");
     for (int i = 0; i < samples; i++) {
         const double complex same = r->profile[i], cross = r->profile[samples + i];
         fprintf(file, "%.4f,%.6g,%.6g,%.6g,%.6g,%.6g\n", r->reference_m + (i - samples / 2) * r->map.metre_per_column,
                 r->profile_w[i], creal(same), cimag(same), creal(cross), cimag(cross));
     }
-    const bool ok = !ferror(file);
-    if (fclose(file) == 0 && ok) return STATUS_OK;
-    log_error("radar: cannot write %s: %s", path, strerror(errno));
-    return STATUS_IO;
 }
 
 /* ---- map ------------------------------------------------------------------------------------------- */
@@ -119,7 +110,7 @@ static Status write_picture(const char *path, const RadarFrame *r)
 static Status write_files(RadarFiles *to, const Frame *f)
 {
     char   path[frame_path_size];
-    Status status = path_of(path, to, f, "csv") ? write_profile(path, f->radar) : STATUS_BAD_VALUE;
+    Status status = path_of(path, to, f, "csv") ? text_write_file("radar", path, put_profile, f->radar) : STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = path_of(path, to, f, "exr") ? write_map(path, f) : STATUS_BAD_VALUE;
     if (status == STATUS_OK && to->of.config->publish.png)
         status = path_of(path, to, f, "png") ? write_picture(path, f->radar) : STATUS_BAD_VALUE;

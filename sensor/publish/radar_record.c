@@ -1,15 +1,10 @@
 /* sensor/publish/radar_record.c: see radar_record.h. */
 #include "sensor/publish/radar_record.h"
 
+#include "sensor/publish/json_write.h"
 #include "sensor/publish/plane_hash.h"
 
 #include <jansson.h>
-
-/* JSON has no NaN or infinity: absent. */
-static void set_number(json_t *object, const char *key, double value)
-{
-    if (isfinite(value)) json_object_set_new(object, key, json_real(value));
-}
 
 static double db(double ratio) { return 10 * log10(ratio); }
 

@@ -1,6 +1,7 @@
 /* sensor/publish/records.c: truth.jsonl and run.json, line by line. */
 #include "sensor/publish/records.h"
 
+#include "sensor/publish/json_write.h"
 #include "sensor/publish/radar_record.h"
 #include "sensor/publish/target_class.h"
 
@@ -8,12 +9,6 @@
 #include <gnu/libc-version.h>
 #include <jansson.h>
 #include <unistd.h>
-
-/* JSON has no NaN: values not computed are absent. */
-static void set_number(json_t *object, const char *key, double value)
-{
-    if (isfinite(value)) json_object_set_new(object, key, json_real(value));
-}
 
 static void set_text(json_t *object, const char *key, const char *bytes, size_t count)
 {

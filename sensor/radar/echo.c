@@ -1,11 +1,10 @@
 /* sensor/radar/echo.c: see echo.h. */
 #include "sensor/radar/echo.h"
 
+#include "render/radar/scatter.h"
 #include "sensor/detector/transform.h"
 
 #include <stdlib.h>
-
-static const double light_mps = 299792458.0;
 
 enum { width = 8, oversampling = 2 };
 static const double beta = 2.30 * width; /* Barnett et al., equation 1.14, for twice the points */

@@ -1,11 +1,10 @@
 /* sensor/radar/interval.c: see interval.h. */
 #include "sensor/radar/interval.h"
 
+#include "render/radar/scatter.h"
 #include "sensor/detector/transform.h"
 
 #include <stdlib.h>
-
-static const double light_mps = 299792458.0;
 
 struct IntervalPlan {
     int        samples, pulses;

@@ -1,6 +1,8 @@
 /* sensor/radar/radar_preset.c: reads rows of etc/radars.csv. */
 #include "sensor/radar/radar_preset.h"
 
+#include "render/radar/scatter.h"
+
 enum {
     CENTRE, BANDWIDTH, SAMPLES, PULSES, REPEAT, PULSE, POWER, LOSS, DISH, TAPER, NOISE_FIGURE, PHASE_NOISE, IQ_GAIN, IQ_PHASE,
     BITS, PFA, numbers
@@ -76,7 +78,7 @@ static Status read_row(RadarPreset *out, const Table *t, int row)
     p.transmits_h = *transmit == 'h';
     p.wave = (Waveform){.centre_hz = 1e9 * x[CENTRE], .bandwidth_hz = 1e6 * x[BANDWIDTH], .pulse_s = 1e-6 * x[PULSE],
                         .repeat_hz = 1e3 * x[REPEAT], .samples = (int)x[SAMPLES], .pulses = (int)x[PULSES]};
-    p.antenna = (Antenna){.diameter_m = x[DISH], .taper = (int)x[TAPER], .wavelength_m = 299792458.0 / p.wave.centre_hz};
+    p.antenna = (Antenna){.diameter_m = x[DISH], .taper = (int)x[TAPER], .wavelength_m = light_mps / p.wave.centre_hz};
     p.receiver.noise_figure = pow(10, x[NOISE_FIGURE] / 10);
     p.receiver.phase_noise_rad = x[PHASE_NOISE] * rad_per_deg;
     p.receiver.iq_gain = pow(10, x[IQ_GAIN] / 20) - 1;
