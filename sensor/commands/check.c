@@ -210,9 +210,12 @@ static bool radar_is_valid(const Check *c)
     const char *preset = c->config->radar.preset;
     char        path[4096];
     RadarPreset radar;
+    const char *own = c->config->radar.table;
+    if (*own && radar_preset_check(own) != STATUS_OK)
+        return report(c, "radar.table", "a .csv with the columns of etc/radars.csv; that file describes them");
     if (strcmp(preset, "none") == 0) return true;
-    if (!etc_path(path, sizeof path, "radars.csv") || radar_preset_read(&radar, path, preset) != STATUS_OK)
-        return report(c, "radar.preset", "`none`, or a row of etc/radars.csv");
+    if ((!*own && !etc_path(path, sizeof path, "radars.csv")) || radar_preset_read(&radar, *own ? own : path, preset) != STATUS_OK)
+        return report(c, "radar.preset", "`none`, or a row of etc/radars.csv or of radar.table");
     return true;
 }
 

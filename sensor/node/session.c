@@ -242,7 +242,7 @@ static Status open_radar(Session *s)
     char                 catalog[4096];
     if (strcmp(config->radar.preset, "none") == 0) return STATUS_OK;
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    return seeker_radar_create(&s->radar, &(SeekerRadarConfig){.preset = config->radar.preset, .catalog = catalog,
+    return seeker_radar_create(&s->radar, &(SeekerRadarConfig){.preset = config->radar.preset, .table = config->radar.table, .catalog = catalog,
                                                                .isa = shared->isa, .ground = config->radar.ground,
                                                                .warp_m = 1e-3 * config->radar.warp_mm,
                                                                .wind_mps = config->weather.wind_mps,

@@ -27,13 +27,13 @@ static void put_profile(FILE *file, const void *user)
 {
     const RadarFrame *r = user;
     const int         samples = r->preset->wave.samples;
-    fprintf(file, "# %s; power: mean of all pulses, W; re, im: the middle pulse, sqrt(W), of the transmitted polarisation (%s) and "
-                  "of the other\nrange_m,power_w,re,im,cross_re,cross_im\n",
-            r->preset->name, r->preset->transmits_h ? "h" : "v");
+    fprintf(file, "# %s, %s; power: mean of all pulses, W; re, im: the middle pulse, sqrt(W), of the transmitted polarisation (%s) and "
+                  "of the other; mti: power behind the canceller of %d\nrange_m,power_w,re,im,cross_re,cross_im,mti_w\n",
+            r->preset->name, waveform_name[r->preset->wave.kind], r->preset->transmits_h ? "h" : "v", r->preset->mti_rows);
     for (int i = 0; i < samples; i++) {
         const double complex same = r->profile[i], cross = r->profile[samples + i];
-        fprintf(file, "%.4f,%.6g,%.6g,%.6g,%.6g,%.6g\n", r->reference_m + (i - samples / 2) * r->map.metre_per_column,
-                r->profile_w[i], creal(same), cimag(same), creal(cross), cimag(cross));
+        fprintf(file, "%.4f,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", r->reference_m + (i - samples / 2) * r->map.metre_per_column,
+                r->profile_w[i], creal(same), cimag(same), creal(cross), cimag(cross), r->mti_w[i]);
     }
 }
 

@@ -23,6 +23,27 @@ static json_t *detection_json(const Detection *d)
     direction_json(o, d->cos_right, d->cos_down);
     set_number(o, "snr_db", db(d->snr));
     set_number(o, "rcs_dbsm", db(d->rcs_m2));
+    json_object_set_new(o, "moving", json_boolean(d->moving));
+    return o;
+}
+
+static json_t *timing_json(const RadarFrame *r)
+{
+    const WaveformTiming *t = &r->timing;
+    const Waveform       *w = &r->preset->wave;
+    json_t               *o = json_object();
+    json_object_set_new(o, "kind", json_string(waveform_name[w->kind]));
+    set_number(o, "pulse_us", 1e6 * w->pulse_s);
+    set_number(o, "sample_us", 1e6 * t->sample_s);
+    set_number(o, "profile_ms", 1e3 * t->profile_s);
+    set_number(o, "row_ms", 1e3 * t->row_s);
+    set_number(o, "interval_ms", 1e3 * t->interval_s);
+    set_number(o, "window_m", t->window_m);
+    set_number(o, "unambiguous_m", t->unambiguous_m);
+    set_number(o, "blind_mps", t->blind_mps);
+    set_number(o, "coupling_s", t->coupling_s);
+    set_number(o, "smear_s", t->smear_s);
+    set_number(o, "beat_hz_m", t->beat_hz_m);
     return o;
 }
 
@@ -68,8 +89,11 @@ json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const C
 {
     json_t *o = json_object(), *detections = json_array(), *targets = json_array();
     json_object_set_new(o, "preset", json_string(r->preset->name));
+    json_object_set_new(o, "waveform", timing_json(r));
     set_number(o, "reference_m", r->reference_m);
     set_number(o, "reference_rate_mps", r->reference_rate_mps);
+    set_number(o, "ground_rate_mps", r->ground_rate_mps);
+    set_number(o, "notch_mps", r->notch_mps);
     set_number(o, "air_db", r->air_db);
     set_number(o, "noise_dbw", db(r->receiver.noise_w * r->map.noise_share));
     json_object_set_new(o, "saturated", json_integer(r->receiver.saturated));

@@ -18,6 +18,7 @@ typedef struct Detection {
     double cos_right, cos_down;    /* direction, along the antenna's axes */
     double snr;                    /* power over the noise about it, less 1 */
     double rcs_m2;                 /* if one echo from where it was found */
+    bool   moving;                 /* clear of the ground's range rate in its direction (mti.h); of the caller */
 } Detection;
 
 /* What a map's reference stands for. */

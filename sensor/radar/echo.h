@@ -1,18 +1,21 @@
-/* sensor/radar/echo.h: what a receiver samples of many point echoes over the pulses of a coherent interval.
+/* sensor/radar/echo.h: what a receiver samples of many point echoes over the rows of a coherent interval.
  *
- * Samples m = 0 .. samples - 1 lie at frequencies centre + (m - samples / 2) step: the samples over time of a
- * deramped chirp or FMCW sweep, or the steps of a stepped waveform. An echo of complex amplitude a whose two-way
- * path is longer by path_m than that to the reference (which the receiver follows) adds
+ * An echo of complex amplitude a, whose two-way path is longer by path_m than that to the reference and grows by
+ * path_per_pulse_m from row to row, adds to sample m of row n, at the frequency f and the time t of waveform.h,
  *
- *     a exp(-j 2 pi f_m path / c)
+ *     a exp(-j 2 pi f(m) (path + path_per_pulse repeat t(m, n)) / c)
  *
- * Paths beyond half of c / step, either way, fold over as they do in a real receiver: leave those out that the gate
- * cuts. Over the pulses the path grows evenly: its phase exactly, its delay taken at the middle of the interval, for
- * paths that change by a small part of c / (step samples) in all. Sums are by gridding: each echo is spread over 8
- * points of a delay grid of twice the samples, which is transformed and divided by the kernel's transform
- * ("exponential of semicircle": Barnett, Magland & af Klinteberg, SIAM J. Sci. Comput. 41(5), 2019). Error below
- * 1e-6 of the sum of amplitudes (tests/sensor/test_echo.c). Sums are in the order of the echoes, for any number of
- * threads. */
+ * times what its Doppler leaves of it within one sample, where a pulse has a single frequency: sinc(f rate pulse / c).
+ * Paths fold over at half of c / step in frequency, either way, as they do in a real receiver, and by the range from
+ * pulse to pulse (waveform_fold_m): leave those out that the receiver cuts off.
+ *
+ * Sums are by gridding: each echo is spread over 8 points of a delay grid of twice the samples, which is transformed
+ * and divided by the kernel's transform ("exponential of semicircle": Barnett, Magland & af Klinteberg, SIAM J. Sci.
+ * Comput. 41(5), 2019). Within a row a rate adds a phase q u^2, u = -1 .. 1 over the samples: a shift of the delay is
+ * its linear part; this rest is a series of Bessel functions times Chebyshev polynomials in 2 u^2 - 1 (Jacobi and Anger;
+ * Abramowitz & Stegun 9.1.42 .. 47), each a grid of its own, as many as |q| needs. Error below 1e-6 of the sum of
+ * amplitudes for echoes that keep their paths; for others 3e-3 of their amplitude at the band's ends, 1e-4 in its middle;
+ * for |q| up to 70 (tests/sensor/test_echo.c). Sums are in the order of the echoes, for any number of threads. */
 #ifndef SENSOR_RADAR_ECHO_H
 #define SENSOR_RADAR_ECHO_H
 
@@ -21,7 +24,7 @@
 #include <complex.h>
 
 typedef struct Echo {
-    double path_m, path_per_pulse_m; /* in the middle of the interval; from pulse to pulse */
+    double path_m, path_per_pulse_m; /* in the middle of the interval; from row to row */
     double complex amplitude[interval_channels];
 } Echo;
 
@@ -35,5 +38,10 @@ void   echo_add(EchoGrid *grid, const Echo *echo, int count, Pool *pool);
 /* sample[channels][pulses][samples] of all that were added; forgets them. */
 void   echo_sum(double complex *sample, EchoGrid *grid);
 void   echo_forget(EchoGrid *grid);
+/* Of echoes added from here on: growth of the reference's own two-way path from row to row that the receiver does not
+ * follow, so that it is in every echo. 0 at first; while nothing is added. */
+void   echo_unfollowed(EchoGrid *grid, double path_per_pulse_m);
+/* STATUS_NO_MEMORY once a grid for fast echoes could not be had: sums since are wrong. */
+Status echo_status(const EchoGrid *grid);
 
 #endif

@@ -119,6 +119,12 @@ void interval_pulse(double complex *out, IntervalPlan *p, const Interval *in, in
     for (int m = 0; m < p->samples; m++) out[m] = row[2 * m] + I * row[2 * m + 1];
 }
 
+const double *interval_pulses(IntervalPlan *p, const Interval *in, int channel)
+{
+    compress(p, in->sample + (size_t)channel * (size_t)p->samples * (size_t)p->pulses);
+    return p->rows;
+}
+
 void interval_profile(double *profile, IntervalPlan *p, const Interval *in, int channel)
 {
     compress(p, in->sample + (size_t)channel * (size_t)p->samples * (size_t)p->pulses);

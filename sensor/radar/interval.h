@@ -3,23 +3,17 @@
  *
  * Samples are in units of sqrt(W) at the antenna's port: a steady echo of received power p has |sample| = sqrt(p)
  * everywhere. The map is scaled alike: a point echo peaks at sqrt(p), whatever the windows. The receiver follows the
- * reference path, so range and Doppler are relative to it. */
+ * reference path, so range and Doppler are relative to it. Rows are pulses, sweeps or bursts (waveform.h). */
 #ifndef SENSOR_RADAR_INTERVAL_H
 #define SENSOR_RADAR_INTERVAL_H
 
+#include "sensor/radar/waveform.h"
 #include "sensor/radar/window.h"
 
 #include <complex.h>
 
 /* Of the sum beam, the two difference beams, and of the sum beam in the polarisation that is not transmitted. */
 enum { CHANNEL_SUM, CHANNEL_RIGHT, CHANNEL_DOWN, CHANNEL_CROSS, interval_channels };
-
-typedef struct Waveform {
-    double centre_hz, bandwidth_hz; /* step between samples: bandwidth / samples */
-    double pulse_s;                 /* that is transmitted, and over which its samples are taken */
-    double repeat_hz;               /* of pulses */
-    int    samples, pulses;         /* both even */
-} Waveform;
 
 typedef struct Interval {
     Waveform        wave;
@@ -47,6 +41,8 @@ double interval_noise_share(const IntervalPlan *plan);
 double interval_lobe(const IntervalPlan *plan, bool doppler, double cells);
 /* Complex range profile of one pulse: out[samples]. */
 void   interval_pulse(double complex *out, IntervalPlan *plan, const Interval *in, int channel, int pulse);
+/* Of all pulses of a channel: [pulses][samples] complex; valid until the plan is used again. */
+const double *interval_pulses(IntervalPlan *plan, const Interval *in, int channel);
 /* Range profile of one channel over all pulses, without Doppler: profile[samples], mean power over pulses. */
 void   interval_profile(double *profile, IntervalPlan *plan, const Interval *in, int channel);
 

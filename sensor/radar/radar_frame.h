@@ -27,11 +27,15 @@ typedef struct RadarTruth {
 typedef struct RadarFrame {
     const RadarPreset *preset;
     double          reference_m, reference_rate_mps; /* the middle of the range window, and how it moves */
+    WaveformTiming  timing;
+    double          ground_rate_mps;   /* of still ground on the axis */
+    double          notch_mps;         /* detections so near to the ground's range rate in their direction count as ground */
     double          air_db;            /* one way, over the reference range */
     RangeDoppler    map;
     double complex *profile;           /* [2][samples]: range profiles of the middle pulse, sqrt(W): the transmitted polarisation, the
                                         * other */
     double         *profile_w;         /* [samples]: sum channel, mean power of all pulses */
+    double         *mti_w;             /* [samples]: the same behind the canceller, its gain for noise being 1 */
     int             detections, detections_in_all; /* the strongest; how many passed the threshold */
     const Detection *detection;
     int             targets;

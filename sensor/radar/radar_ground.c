@@ -12,7 +12,7 @@ static void lit_rectangle(double low_m[2], double high_m[2], const Making *m, do
     const double *p = m->scene->view->p_enu, reach = m->frame->reference_m;
     const double  level = hypot(m->ahead[0], m->ahead[1]), azimuth = atan2(m->ahead[1], m->ahead[0]);
     const double  wide = fmin(lobe_rad / fmax(level - lobe_rad, 0.05), pi_rad), margin_m = 50 + 0.02 * reach;
-    const double  range_m[2] = {fmax(reach - m->half_window_m, 0), reach + m->half_window_m};
+    const double  range_m[2] = {m->near_m, m->far_m};
     low_m[0] = low_m[1] = INFINITY;
     high_m[0] = high_m[1] = -INFINITY;
     for (int end = 0; end < 2; end++) {

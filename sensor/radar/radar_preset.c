@@ -1,11 +1,11 @@
-/* sensor/radar/radar_preset.c: reads rows of etc/radars.csv. */
+/* sensor/radar/radar_preset.c: reads rows of etc/radars.csv or of a table like it. */
 #include "sensor/radar/radar_preset.h"
 
 #include "render/radar/scatter.h"
 
 enum {
     CENTRE, BANDWIDTH, SAMPLES, PULSES, REPEAT, PULSE, POWER, LOSS, DISH, TAPER, NOISE_FIGURE, PHASE_NOISE, IQ_GAIN, IQ_PHASE,
-    BITS, PFA, numbers
+    BITS, PFA, COMPENSATED, FAR, MTI, numbers
 };
 
 static const struct {
@@ -28,7 +28,13 @@ static const struct {
     [IQ_PHASE] = {"iq_phase_deg", -45, 45},
     [BITS] = {"bits", 0, 24},
     [PFA] = {"pfa", 1e-15, 0.5},
+    [COMPENSATED] = {"compensated", 0, 1},
+    [FAR] = {"far_km", 0, 500},
+    [MTI] = {"mti", 2, 3},
 };
+
+/* Bandwidth times the time of a profile, Hz s: 1000 m/s of path then bend the phase by 52 rad, which echo.h bears. */
+static const double most_bend = 1e7;
 
 static Status refuse(const Table *t, int row, const char *column, const char *value, const char *accepted)
 {
@@ -42,13 +48,35 @@ static Status read_window(Window *out, const Table *t, int row, const char *name
     return accepted ? refuse(t, row, name, text, accepted) : STATUS_OK;
 }
 
+/* What the kinds of waveform ask of each other's columns. */
+static Status check_waveform(const Table *t, int row, const Waveform *w, double far_m, int mti_rows)
+{
+    char         accepted[96];
+    const double most_s = 1 / (w->kind == WAVEFORM_STEPPED ? w->repeat_hz * w->samples : w->repeat_hz);
+    if (w->pulse_s > most_s * (1 + 1e-12))
+        return refuse(t, row, "pulse_us", table_text(t, row, table_column(t, "pulse_us")), "up to 1 / repeat_khz");
+    if (w->kind == WAVEFORM_PULSE_DOPPLER && fabs(w->repeat_hz * w->samples / w->bandwidth_hz - 1) > 1e-9) {
+        snprintf(accepted, sizeof accepted, "for pulse_doppler samples times repeat_khz: %.9g", 1e-6 * w->repeat_hz * w->samples);
+        return refuse(t, row, "bandwidth_mhz", table_text(t, row, table_column(t, "bandwidth_mhz")), accepted);
+    }
+    const double long_s = waveform_step_s(w) * w->samples;
+    if (w->bandwidth_hz * long_s > most_bend) {
+        snprintf(accepted, sizeof accepted, "up to %.4g, for a profile that takes %.4g ms", 1e-6 * most_bend / long_s, 1e3 * long_s);
+        return refuse(t, row, "bandwidth_mhz", table_text(t, row, table_column(t, "bandwidth_mhz")), accepted);
+    }
+    if (mti_rows > w->pulses) return refuse(t, row, "mti", table_text(t, row, table_column(t, "mti")), "up to pulses");
+    if (far_m > 0 && !isfinite(waveform_fold_m(w)))
+        return refuse(t, row, "far_km", table_text(t, row, table_column(t, "far_km")), "0, for stepped and fmcw");
+    return STATUS_OK;
+}
+
 static Status read_row(RadarPreset *out, const Table *t, int row)
 {
-    static const char *const words[] = {"name", "transmit", "range_window", "doppler_window", "source"};
+    static const char *const words[] = {"name", "waveform", "transmit", "range_window", "doppler_window", "source"};
     int         column[numbers];
     double      x[numbers];
     RadarPreset p = {.receiver.noise_counts = 1};
-    if (!table_columns(column, t, words, 5, "radars")) return STATUS_BAD_VALUE;
+    if (!table_columns(column, t, words, sizeof words / sizeof *words, "radars")) return STATUS_BAD_VALUE;
     for (int i = 0; i < numbers; i++) {
         if (!table_columns(&column[i], t, &number[i].name, 1, "radars")) return STATUS_BAD_VALUE;
         const Status status = table_number(&x[i], t, row, column[i], number[i].low, number[i].high);
@@ -59,7 +87,7 @@ static Status read_row(RadarPreset *out, const Table *t, int row)
         bool        even;
         const char *accepted;
     } whole[] = {{SAMPLES, true, "an even number"}, {PULSES, true, "an even number"}, {TAPER, false, "0, 1 or 2"},
-                 {BITS, false, "0, or a whole number in 2 .. 24"}};
+                 {BITS, false, "0, or a whole number in 2 .. 24"}, {COMPENSATED, false, "0 or 1"}, {MTI, false, "2 or 3"}};
     for (size_t i = 0; i < sizeof whole / sizeof *whole; i++) {
         const double value = x[whole[i].which];
         if (fmod(value, whole[i].even ? 2 : 1) != 0 || (whole[i].which == BITS && value == 1))
@@ -67,17 +95,22 @@ static Status read_row(RadarPreset *out, const Table *t, int row)
     }
     if (x[SAMPLES] * x[PULSES] > 1 << 22)
         return refuse(t, row, "pulses", table_text(t, row, column[PULSES]), "samples times pulses up to 4194304");
-    if (x[PULSE] * x[REPEAT] > 1000 * (1 + 1e-12))
-        return refuse(t, row, "pulse_us", table_text(t, row, column[PULSE]), "up to 1 / repeat_khz");
     if (x[BANDWIDTH] > 500 * x[CENTRE])
         return refuse(t, row, "bandwidth_mhz", table_text(t, row, column[BANDWIDTH]), "up to half of centre_ghz");
+    const char *waveform = table_text(t, row, table_column(t, "waveform"));
+    int         kind = 0;
+    while (kind < waveform_kinds && strcmp(waveform, waveform_name[kind]) != 0) kind++;
+    if (kind == waveform_kinds) return refuse(t, row, "waveform", waveform, "lfm, stepped, pulse_doppler or fmcw");
     const char *transmit = table_text(t, row, table_column(t, "transmit"));
     if (strcmp(transmit, "h") != 0 && strcmp(transmit, "v") != 0) return refuse(t, row, "transmit", transmit, "h or v");
 
     snprintf(p.name, sizeof p.name, "%s", table_text(t, row, table_column(t, "name")));
     p.transmits_h = *transmit == 'h';
-    p.wave = (Waveform){.centre_hz = 1e9 * x[CENTRE], .bandwidth_hz = 1e6 * x[BANDWIDTH], .pulse_s = 1e-6 * x[PULSE],
+    p.wave = (Waveform){.kind = (WaveformKind)kind, .uncompensated = x[COMPENSATED] == 0, .centre_hz = 1e9 * x[CENTRE], .bandwidth_hz = 1e6 * x[BANDWIDTH], .pulse_s = 1e-6 * x[PULSE],
                         .repeat_hz = 1e3 * x[REPEAT], .samples = (int)x[SAMPLES], .pulses = (int)x[PULSES]};
+    if (p.wave.kind == WAVEFORM_STEPPED) p.wave.repeat_hz /= x[SAMPLES]; /* of bursts */
+    p.far_m = 1e3 * x[FAR];
+    p.mti_rows = (int)x[MTI];
     p.antenna = (Antenna){.diameter_m = x[DISH], .taper = (int)x[TAPER], .wavelength_m = light_mps / p.wave.centre_hz};
     p.receiver.noise_figure = pow(10, x[NOISE_FIGURE] / 10);
     p.receiver.phase_noise_rad = x[PHASE_NOISE] * rad_per_deg;
@@ -87,7 +120,8 @@ static Status read_row(RadarPreset *out, const Table *t, int row)
     p.power_w = x[POWER];
     p.loss = pow(10, x[LOSS] / 10);
     p.pfa = x[PFA];
-    Status status = read_window(&p.range_window, t, row, "range_window");
+    Status status = check_waveform(t, row, &p.wave, p.far_m, p.mti_rows);
+    if (status == STATUS_OK) status = read_window(&p.range_window, t, row, "range_window");
     if (status == STATUS_OK) status = read_window(&p.doppler_window, t, row, "doppler_window");
     if (status == STATUS_OK) *out = p;
     return status;

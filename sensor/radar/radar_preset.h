@@ -1,4 +1,4 @@
-/* sensor/radar/radar_preset.h: a radar as a row of etc/radars.csv. */
+/* sensor/radar/radar_preset.h: a radar as a row of etc/radars.csv, or of a user's table (radar.table). */
 #ifndef SENSOR_RADAR_RADAR_PRESET_H
 #define SENSOR_RADAR_RADAR_PRESET_H
 
@@ -13,6 +13,8 @@ typedef struct RadarPreset {
     Window   range_window, doppler_window;
     double   power_w, loss;     /* in a pulse; a factor */
     double   pfa;
+    double   far_m;             /* farthest range whose echoes fold into the window; 0: those within it alone */
+    int      mti_rows;          /* of the canceller: 2 or 3 */
     bool     transmits_h;       /* else vertical */
 } RadarPreset;
 

@@ -5,7 +5,7 @@
 
 double receiver_noise_w(const Receiver *receiver, const Waveform *wave)
 {
-    return radar_noise_w(wave->samples / wave->pulse_s, receiver->noise_figure);
+    return radar_noise_w(waveform_noise_hz(wave), receiver->noise_figure);
 }
 
 static void add_noise(Interval *interval, double sigma, uint64_t seed, uint32_t stream, uint32_t number)
@@ -17,6 +17,20 @@ static void add_noise(Interval *interval, double sigma, uint64_t seed, uint32_t 
         const size_t n = count - first < block ? count - first : block;
         random_normals(draw, 2 * n, seed, stream, number, 2 * first);
         for (size_t i = 0; i < n; i++) interval->sample[first + i] += sigma * (draw[2 * i] + I * draw[2 * i + 1]);
+    }
+}
+
+/* A pulse is a row, but of a stepped burst each sample. */
+static void add_phase_noise(Interval *interval, double sigma, uint64_t seed, uint32_t stream, uint32_t number)
+{
+    const Waveform *wave = &interval->wave;
+    const int       length = wave->kind == WAVEFORM_STEPPED ? 1 : wave->samples;
+    const size_t    plane = (size_t)wave->pulses * (size_t)wave->samples;
+    for (size_t first = 0; first < plane; first += (size_t)length) {
+        const double         phase = sigma * random_normal(seed, stream, number, first / (size_t)length);
+        const double complex turn = cos(phase) + I * sin(phase);
+        for (int c = 0; c < interval_channels; c++)
+            for (int i = 0; i < length; i++) interval->sample[(size_t)c * plane + first + (size_t)i] *= turn;
     }
 }
 
@@ -32,18 +46,12 @@ void receiver_apply(ReceiverReport *report, Interval *interval, const Receiver *
                     uint32_t number)
 {
     const Waveform *wave = &interval->wave;
-    const size_t    row = (size_t)wave->samples, count = interval_channels * (size_t)wave->pulses * row;
+    const size_t    count = interval_channels * (size_t)wave->pulses * (size_t)wave->samples;
     double complex *v = interval->sample;
     *report = (ReceiverReport){.noise_w = receiver_noise_w(r, wave), .counts_per_sqrt_w = 1};
     const double sigma = sqrt(report->noise_w / 2); /* of I, and of Q */
 
-    if (r->phase_noise_rad > 0)
-        for (int p = 0; p < wave->pulses; p++) {
-            const double         phase = r->phase_noise_rad * random_normal(seed, stream + 1, number, (uint64_t)p);
-            const double complex turn = cos(phase) + I * sin(phase);
-            for (int c = 0; c < interval_channels; c++)
-                for (size_t i = 0; i < row; i++) v[((size_t)c * (size_t)wave->pulses + (size_t)p) * row + i] *= turn;
-        }
+    if (r->phase_noise_rad > 0) add_phase_noise(interval, r->phase_noise_rad, seed, stream + 1, number);
     add_noise(interval, sigma, seed, stream, number);
     if (r->iq_gain != 0 || r->iq_phase_rad != 0) {
         const double across = (1 + r->iq_gain) * sin(r->iq_phase_rad), along = (1 + r->iq_gain) * cos(r->iq_phase_rad);

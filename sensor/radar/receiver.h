@@ -1,9 +1,10 @@
 /* sensor/radar/receiver.h: what a radar's receiver does to the voltages at its antenna: thermal noise, phase noise
  * of its oscillator, errors between its I and Q channels, and conversion to counts.
  *
- * Noise power in a sample: k 290 K F samples / pulse length, so that a pulse compressed from all its samples has the
- * signal to noise of a matched filter, P pulse / (k 290 K F). The antenna is taken to look at 290 K. Phase noise:
- * one normal phase a pulse, common to all channels (what stays of the oscillator's noise within a pulse's delay).
+ * Noise power in a sample: k 290 K F waveform_noise_hz, so that a pulse compressed from all its samples has the signal
+ * to noise of a matched filter, P pulse / (k 290 K F). The antenna is taken to look at 290 K. Phase noise: one normal
+ * phase a pulse (a sweep; each pulse of a burst), common to all channels and ranges: what stays of the oscillator's noise
+ * after the echo's delay, which nearer echoes have less of in truth.
  * The converter's gain puts the noise at noise_counts, or less where the interval's largest I or Q would pass nine
  * tenths of its range: a gain control that acts within the interval. Samples go back to sqrt(W) by that gain. Draws
  * are functions of seed, stream and interval number (pitviper_random). */

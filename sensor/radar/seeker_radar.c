@@ -2,6 +2,7 @@
 #include "sensor/radar/seeker_radar_private.h"
 
 #include "render/radar/radar_equation.h"
+#include "sensor/radar/mti.h"
 
 #include <stdlib.h>
 
@@ -13,7 +14,10 @@ static const double no_reference_m = 1000; /* where there is neither an aim nor 
 static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
 {
     char   path[4096], water[4096];
-    Status status = etc_path(path, sizeof path, "radars.csv") ? radar_preset_read(&r->preset, path, config->preset) : STATUS_BAD_VALUE;
+    const bool own = config->table && *config->table;
+    Status status = own || etc_path(path, sizeof path, "radars.csv")
+                        ? radar_preset_read(&r->preset, own ? config->table : path, config->preset)
+                        : STATUS_BAD_VALUE;
     if (status != STATUS_OK) return status;
     if (!clutter_band_of(&r->band, r->preset.wave.centre_hz) && config->ground) {
         log_error("radar: %s: no ground is known at %g GHz (etc/radar/clutter.csv: 12-18, 27-40, 75-110); set radar.ground: false",
@@ -76,7 +80,10 @@ void making_sight(Sight *out, const Making *m, const double p_enu[3], double mor
     v3_scale(out->d_enu, 1 / fmax(out->range_m, 1e-3), to);
     out->cos_right = v3_dot(out->d_enu, m->right);
     out->cos_down = v3_dot(out->d_enu, m->down);
-    out->within = v3_dot(out->d_enu, m->ahead) > 0 && fabs(out->range_m - m->frame->reference_m) < m->half_window_m + more_m;
+    const double fold_m = waveform_fold_m(&m->preset->wave);
+    double       off_m = out->range_m - m->frame->reference_m;
+    if (m->preset->far_m > 0 && out->range_m < m->preset->far_m + more_m) off_m -= fold_m * nearbyint(off_m / fold_m);
+    out->within = v3_dot(out->d_enu, m->ahead) > 0 && fabs(off_m) < m->half_window_m + more_m;
 }
 
 double making_range_rate(const Making *m, const Sight *sight, const double v_enu_mps[3])
@@ -89,7 +96,8 @@ void making_amplitudes(double complex amplitude[interval_channels], const Making
     const RadarPreset   *p = m->preset;
     const AntennaGain    gain = antenna_gain(&p->antenna, sight->cos_right, sight->cos_down);
     const RadarLink      link = {p->power_w, 1, 1, p->antenna.wavelength_m, sight->range_m, p->loss};
-    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-2 * m->air_np_m * sight->range_m));
+    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-2 * m->air_np_m * sight->range_m)) *
+                        waveform_share(&p->wave, sight->range_m);
     const double complex same = unit * gain.sum * (p->transmits_h ? s->hh : s->vv);
     const double complex other = unit * gain.sum * (p->transmits_h ? s->vh : s->hv);
     amplitude[CHANNEL_SUM] = same * gain.sum;
@@ -126,6 +134,22 @@ static void aim_window(Making *m)
     f->reference_rate_mps = v3_dot(v, m->ahead);
 }
 
+/* The window, and what the receiver follows. */
+static void follow(Making *m)
+{
+    RadarFrame   *f = m->frame;
+    const double  row_s = 1 / m->preset->wave.repeat_hz, far_m = m->preset->far_m;
+    const double *right = m->right, *down = m->down, *v = m->scene->v_enu_mps;
+    if (m->preset->wave.kind == WAVEFORM_FMCW) f->reference_m = m->half_window_m;
+    m->near_m = far_m > 0 ? 0 : fmax(f->reference_m - m->half_window_m, 0);
+    m->far_m = fmax(far_m, f->reference_m + m->half_window_m);
+    echo_unfollowed(m->radar->echoes, m->preset->wave.uncompensated ? 2 * f->reference_rate_mps * row_s : 0);
+    f->ground_rate_mps = -v3_dot(v, m->ahead);
+    /* the ground's rates over the beam: within its width either way, and two cells of Doppler for the window */
+    f->notch_mps = hypot(v3_dot(v, right), v3_dot(v, down)) * antenna_width_rad(&m->preset->antenna) +
+                   2 * f->timing.blind_mps / m->preset->wave.pulses;
+}
+
 /* Loss by the air over the reference range, taken as even along it. */
 static Status air_between(Making *m)
 {
@@ -146,6 +170,26 @@ static Status air_between(Making *m)
     m->frame->air_db = radar_loss_db(&loss);
     if (!isfinite(m->frame->air_db)) m->frame->air_db = 0;
     m->air_np_m = m->frame->air_db * log(10) / 10 / m->frame->reference_m;
+    return STATUS_OK;
+}
+
+/* ---- moving targets --------------------------------------------------------------------------------- */
+
+static Status indicate_moving(Making *m, const Interval *interval, Detection *detection)
+{
+    RadarFrame     *f = m->frame;
+    const Waveform *wave = &m->preset->wave;
+    f->mti_w = arena_alloc(m->arena, (size_t)wave->samples, sizeof *f->mti_w);
+    if (!f->mti_w) return STATUS_NO_MEMORY;
+    mti_profile(f->mti_w, interval_pulses(m->radar->plan, interval, CHANNEL_SUM), wave, m->preset->mti_rows,
+                2 * (f->ground_rate_mps - f->reference_rate_mps) / wave->repeat_hz);
+    for (int i = 0; i < f->detections; i++) {
+        Detection   *d = &detection[i];
+        const double along = sqrt(fmax(0, 1 - d->cos_right * d->cos_right - d->cos_down * d->cos_down));
+        const double ground_mps = along * f->ground_rate_mps - d->cos_right * v3_dot(m->scene->v_enu_mps, m->right) -
+                                  d->cos_down * v3_dot(m->scene->v_enu_mps, m->down);
+        d->moving = mti_moves(d->range_rate_mps, ground_mps, f->notch_mps, f->timing.blind_mps);
+    }
     return STATUS_OK;
 }
 
@@ -177,7 +221,7 @@ static Status process(Making *m, Interval *interval)
     if (f->detections_in_all < 0) return STATUS_NO_MEMORY;
     f->detections = f->detections_in_all < detections_most ? f->detections_in_all : detections_most;
     f->detection = detection;
-    return STATUS_OK;
+    return indicate_moving(m, interval, detection);
 }
 
 static Status make(Making *m)
@@ -194,12 +238,15 @@ static Status make(Making *m)
     interval.sample = arena_alloc(m->arena, interval_channels * (size_t)wave->pulses * (size_t)wave->samples, sizeof *interval.sample);
     if (!interval.sample) return STATUS_NO_MEMORY;
     aim_window(m);
+    follow(m);
     status = air_between(m);
     if (status == STATUS_OK) status = making_targets(m);
     if (status == STATUS_OK && m->radar->ground && scene->world->landscape) status = making_ground(m);
     if (status == STATUS_OK) status = visibility_status(visibility);
+    if (status == STATUS_OK) status = echo_status(m->radar->echoes);
     if (status != STATUS_OK) return status;
     echo_sum(interval.sample, m->radar->echoes);
+    if (wave->uncompensated) m->frame->reference_rate_mps = 0; /* it is in every echo */
     receiver_apply(&m->frame->receiver, &interval, &m->preset->receiver, m->radar->seed, stream_noise, scene->number);
     return process(m, &interval);
 }
@@ -214,6 +261,7 @@ Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const Ra
                 .half_window_m = p->wave.samples * light_mps / (4 * p->wave.bandwidth_hz),
                 .widest = 16 / (pi_rad * p->antenna.diameter_m / p->antenna.wavelength_m)};
     *frame = (RadarFrame){.preset = p};
+    waveform_timing(&frame->timing, &p->wave);
     const double *r = scene->view->r_enu_from_cam;
     for (int k = 0; k < 3; k++) {
         m.right[k] = r[3 * k];

@@ -2,7 +2,8 @@
  * it.
  *
  * At the frame's time a coherent interval is centred. The beam is the sensor's boresight; the range window is about
- * the reference: the range to the aim, else to the ground along the boresight. Within beam and window
+ * the reference: the range to the aim, else to the ground along the boresight; of FMCW it begins at 0. Within beam and
+ * window, and beyond it where echoes fold over (RadarPreset.far_m),
  *
  *     entities   by their scattering centres (render/radar), each with its own range rate from the motion of its part
  *     ground     by scatterers fixed to it (render/radar/clutter.h), where relief, plants and entities leave it in sight
@@ -11,7 +12,7 @@
  * samples of four channels; then receiver and processing. Phases are those of double ranges.
  *
  * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main
- * lobe's null; ground bounce and what one entity mirrors to another; range rates that change within the interval;
+ * lobe's null; ground bounce and what one entity mirrors to another; range rates that change within the interval; what FMCW's transmitter leaks into its receiver;
  * the internal motion of ground within the interval (it moves between intervals). An entity partly hidden gives its
  * visible share of power. */
 #ifndef SENSOR_RADAR_SEEKER_RADAR_H
@@ -22,7 +23,8 @@
 #include "sensor/radar/radar_frame.h"
 
 typedef struct SeekerRadarConfig {
-    const char *preset;          /* a row of etc/radars.csv */
+    const char *preset;          /* a row of the table */
+    const char *table;           /* path; NULL or empty: etc/radars.csv */
     const char *catalog;         /* path; its models are built anew, as fine as the wavelength needs */
     const char *isa;
     bool        ground;          /* scatterers of the ground */

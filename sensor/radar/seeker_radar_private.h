@@ -35,14 +35,15 @@ typedef struct Making {
     RadarFrame       *frame;
     double            right[3], down[3], ahead[3]; /* of the antenna, ENU */
     double            half_window_m;               /* of range */
+    double            near_m, far_m;               /* ranges between which echoes can be in it, fold by fold */
     double            widest;                      /* sine off the axis beyond which entities are left out */
     double            air_np_m;                    /* power, one way, 1/m */
     Pool             *pool;
     Arena            *arena;
 } Making;
 
-/* From the antenna to a place: range, unit direction, cosines along right and down, whether it is ahead and within
- * the window (grown by more_m). */
+/* From the antenna to a place: range, unit direction, cosines along right and down, whether it is ahead and its
+ * echo within the window (grown by more_m), if by folding over. */
 typedef struct Sight {
     double range_m, d_enu[3], cos_right, cos_down;
     bool   within;

@@ -191,6 +191,7 @@ static const ReferenceField radar_fields[] = {
     {"im", "number", "sqrt(W)", "", "", "its imaginary part"},
     {"cross_re", "number", "sqrt(W)", "", "", "the same in the other polarisation"},
     {"cross_im", "number", "sqrt(W)", "", "", "its imaginary part"},
+    {"mti_w", "number", "W", "", "", "power behind the canceller of the ground (moving-target indication), whose gain for noise is 1"},
 };
 
 const Reference reference_radar = {
@@ -225,7 +226,7 @@ static const ReferenceField radar_map_fields[] = {
     {"header mps_per_row", "double", "m/s", "", "", "range rate"},
     {"header noise_w", "double", "W", "", "", "thermal noise in a cell"},
     {"header unit", "string", "", "", "", "sqrt(W)"},
-    {"header radar", "string", "", "", "", "row of etc/radars.csv"},
+    {"header radar", "string", "", "", "", "row of etc/radars.csv or radar.table"},
     {"header frame", "int", "", "from 0", "", "number of the frame"},
     {"header time_s", "double", "s", "exercise time", "", "middle of the coherent interval"},
     {"header host", "string", "", "site:application:entity", "", "the entity that carries the radar"},

@@ -118,6 +118,8 @@ static const Setting keys[] = {
     {"radar.preset", SETTING_TEXT, AT(radar.preset), 0, 0, NULL, "",
      "none, or a row of etc/radars.csv: a radar with phase on the sensor's axis, whose range profiles, maps of range and Doppler "
      "and detections are products"},
+    {"radar.table", SETTING_PATH, AT(radar.table), 0, 0, NULL, "",
+     "a .csv with the columns of etc/radars.csv, whose rows radar.preset names in place of those"},
     {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of the ground; with a preset"},
     {"radar.warp_mm", SETTING_DOUBLE, AT(radar.warp_mm), 0, 20, NULL, "mm",
      "unevenness of entities' surfaces for that radar, rms over 0.5 m: models are planer than sheet metal; 0: as they are"},
@@ -479,7 +481,7 @@ Status config_own_tables(const Config *config)
 {
     if (!is_readable("models.catalog", config->models.catalog) ||
         !is_readable("models.materials", config->models.materials) ||
-        !is_readable("sensor.table", config->sensor.table))
+        !is_readable("sensor.table", config->sensor.table) || !is_readable("radar.table", config->radar.table))
         return STATUS_BAD_VALUE;
     const bool fits = etc_own_set("catalog.csv", config->models.catalog) &&
                       etc_own_set("materials.csv", config->models.materials) &&

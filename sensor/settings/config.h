@@ -50,7 +50,8 @@ typedef struct Config {
         double bin_m;
         int    bins;
         double lobe_deg;
-        char   preset[32];         /* a row of etc/radars.csv; none */
+        char   preset[32];         /* a row of etc/radars.csv, or of `table`; none */
+        char   table[1024];        /* radars in place of etc/radars.csv; empty: none */
         bool   ground;             /* of the preset: the ground scatters */
         double warp_mm;            /* likewise: unevenness of surfaces */
     } radar;

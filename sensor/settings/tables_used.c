@@ -143,6 +143,7 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
         status = add_csv_of(out, folder, "radar/");
     snprintf(name, sizeof name, "atmosphere/%.100s", config->weather.atmosphere);
     if (status == STATUS_OK) status = add_folder(out, name);
+    if (*config->radar.table && status == STATUS_OK) status = add_in(out, "radar/", config->radar.table);
     if (*config->sensor.table && status == STATUS_OK) status = add_in(out, "", config->sensor.table);
     if (strpbrk(config->weather.day, "/.") && status == STATUS_OK) status = add_in(out, "weather/", config->weather.day);
     return status == STATUS_OK ? add_models(out, catalog) : status;

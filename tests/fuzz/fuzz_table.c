@@ -13,6 +13,7 @@
 #include "render/radar/gas_attenuation.h"
 #include "render/radar/clutter_table.h"
 #include "sensor/detector/sheet.h"
+#include "sensor/radar/radar_preset.h"
 
 #include <stdlib.h>
 
@@ -23,7 +24,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const char *const name[] = {"catalog.csv",  "heat.csv",     "effects.csv",
                                        "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet",
-                                       "radar/oxygen_lines.csv", "radar/water_lines.csv", "radar/clutter.csv"};
+                                       "radars.csv", "radar/oxygen_lines.csv", "radar/water_lines.csv", "radar/clutter.csv"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
     switch (index % (names + 3)) {
@@ -139,6 +140,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             materials_close(&materials);
         if (table_column(&table, "surface") >= 0 && materials_open(&materials, materials_path, path, NULL) == STATUS_OK)
             materials_close(&materials);
+        if (table_column(&table, "pulse_us") >= 0) (void)radar_preset_check(path);
         static ClutterTable clutter;
         if (table_column(&table, "texture_m") >= 0 && clutter_table_open(&clutter, path) == STATUS_OK)
             for (int surface = 0; surface < SURFACE_COUNT; surface++)

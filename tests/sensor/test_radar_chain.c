@@ -108,7 +108,8 @@ static void points_are_measured(void **state)
             seen |= 1 << i;
             /* noise moves them by some snr^-0.5 of a cell; the others' side lobes, 60 dB down and more, by less */
             const double some = 3 / sqrt(got[k].snr);
-            CHECK_NEAR(got[k].range_m - reference_m, point[i].range_m, some * map.metre_per_column);
+            /* a pulse of 20 us over 500 MHz at 94 GHz: 3.76 ms of range rate farther */
+            CHECK_NEAR(got[k].range_m - reference_m, point[i].range_m + 3.76e-3 * point[i].range_rate_mps, some * map.metre_per_column);
             CHECK_NEAR(got[k].range_rate_mps + 220, point[i].range_rate_mps, some * map.mps_per_row);
             /* three times Barton's width / (1.6 (2 snr)^0.5) of monopulse */
             const double angle = 3 * antenna_width_rad(&dish) / (1.6 * sqrt(2 * got[k].snr));

@@ -4,8 +4,8 @@
 #include "sensor/radar/radar_preset.h"
 
 static const char header[] =
-    "name,centre_ghz,bandwidth_mhz,samples,pulses,repeat_khz,pulse_us,power_w,loss_db,dish_m,taper,transmit,"
-    "noise_figure_db,phase_noise_deg,iq_gain_db,iq_phase_deg,bits,range_window,doppler_window,pfa,source\n";
+    "name,waveform,centre_ghz,bandwidth_mhz,samples,pulses,repeat_khz,pulse_us,power_w,loss_db,dish_m,taper,transmit,"
+    "noise_figure_db,phase_noise_deg,iq_gain_db,iq_phase_deg,bits,range_window,doppler_window,pfa,compensated,far_km,mti,source\n";
 
 static void bundled_rows_are_read(void **state)
 {
@@ -18,6 +18,11 @@ static void bundled_rows_are_read(void **state)
     CHECK_NEAR(p.antenna.wavelength_m, 3.18928e-3, 1e-8);
     CHECK_NEAR(p.loss, 3.1622776601683795, 1e-12);
     CHECK(p.wave.samples == 512 && p.range_window.kind == WINDOW_TAYLOR && !p.transmits_h);
+    CHECK(p.wave.kind == WAVEFORM_LFM && !p.wave.uncompensated && p.mti_rows == 2 && p.far_m == 0);
+    CHECK(radar_preset_read(&p, path, "stepped_35") == STATUS_OK && p.wave.kind == WAVEFORM_STEPPED);
+    CHECK_NEAR(p.wave.repeat_hz, 100e3 / 256, 1e-9); /* of bursts */
+    CHECK(radar_preset_read(&p, path, "pulse_doppler_ku") == STATUS_OK && p.far_m == 20e3 && p.mti_rows == 3);
+    CHECK(radar_preset_read(&p, path, "fmcw_94") == STATUS_OK && p.wave.kind == WAVEFORM_FMCW);
     log_set_sink(check_listen, NULL);
     CHECK(radar_preset_read(&p, path, "none_such") == STATUS_BAD_VALUE);
     log_set_sink(NULL, NULL);
@@ -30,19 +35,29 @@ static void bad_rows_are_refused(void **state)
     static const struct {
         const char *row, *column;
     } bad[] = {
-        {"x,0,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "centre_ghz"},
-        {"x,94,60000,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "bandwidth_mhz"},
-        {"x,1,600,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "bandwidth_mhz"},
-        {"x,94,500,511,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "samples"},
-        {"x,94,500,65536,4096,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "pulses"},
-        {"x,94,500,512,64,20,51,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "pulse_us"},
-        {"x,94,500,512,64,20,20,10,5,0.2,0.5,v,8,2,0,0,12,hann,hann,1e-6,s\n", "taper"},
-        {"x,94,500,512,64,20,20,10,5,0.2,1,x,8,2,0,0,12,hann,hann,1e-6,s\n", "transmit"},
-        {"x,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,1,hann,hann,1e-6,s\n", "bits"},
-        {"x,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,bell,hann,1e-6,s\n", "range_window"},
-        {"x,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,kaiser:99,1e-6,s\n", "doppler_window"},
-        {"x,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,0,s\n", "pfa"},
-        {"x,94,500,512,64,20,nan,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,s\n", "pulse_us"},
+        {"x,lfm,0,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "centre_ghz"},
+        {"x,lfm,94,60000,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "bandwidth_mhz"},
+        {"x,lfm,1,600,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "bandwidth_mhz"},
+        {"x,lfm,94,500,511,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "samples"},
+        {"x,lfm,94,500,65536,4096,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "pulses"},
+        {"x,lfm,94,500,512,64,20,51,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "pulse_us"},
+        {"x,lfm,94,500,512,64,20,20,10,5,0.2,0.5,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "taper"},
+        {"x,lfm,94,500,512,64,20,20,10,5,0.2,1,x,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "transmit"},
+        {"x,lfm,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,1,hann,hann,1e-6,1,0,2,s\n", "bits"},
+        {"x,lfm,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,bell,hann,1e-6,1,0,2,s\n", "range_window"},
+        {"x,lfm,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,kaiser:99,1e-6,1,0,2,s\n", "doppler_window"},
+        {"x,lfm,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,0,1,0,2,s\n", "pfa"},
+        {"x,lfm,94,500,512,64,20,nan,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "pulse_us"},
+        {"x,chirp,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "waveform"},
+        {"x,stepped,94,500,512,64,20,51,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "pulse_us"},
+        {"x,stepped,94,500,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,2,s\n", "bandwidth_mhz"}, /* 25.6 ms */
+        {"x,stepped,94,200,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,9,2,s\n", "far_km"},
+        {"x,fmcw,94,200,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,9,2,s\n", "far_km"},
+        {"x,pulse_doppler,94,20,512,64,20,1,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,9,2,s\n", "bandwidth_mhz"},
+        {"x,lfm,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,0.5,0,2,s\n", "compensated"},
+        {"x,lfm,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,501,2,s\n", "far_km"},
+        {"x,lfm,94,500,512,64,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,4,s\n", "mti"},
+        {"x,lfm,94,500,512,2,20,20,10,5,0.2,1,v,8,2,0,0,12,hann,hann,1e-6,1,0,3,s\n", "mti"},
     };
     RadarPreset p;
     char        path[text_file_size], text[1024];
