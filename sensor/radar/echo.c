@@ -196,6 +196,11 @@ static int sharing(const EchoGrid *g, double path_per_pulse_m)
 
 static double sinc_of(double x) { return fabs(x) > 1e-9 ? sin(x) / x : 1; }
 
+static double *row_of(EchoGrid *g, int rank, int channel, int pulse)
+{
+    return g->grid[rank] + 2 * ((size_t)channel * (size_t)g->pulses + (size_t)pulse) * (size_t)g->points;
+}
+
 static void add_echo(EchoGrid *g, const Echo *e, int first_pulse, int end)
 {
     double               weight[width];
@@ -214,9 +219,7 @@ static void add_echo(EchoGrid *g, const Echo *e, int first_pulse, int end)
             for (int r = 0; r < ranks; r++) {
                 const double complex here = factor[r] * phase;
                 for (int c = 0; c < interval_channels; c++)
-                    if (e->amplitude[c] != 0)
-                        deposit(g->grid[r] + 2 * ((size_t)c * (size_t)g->pulses + (size_t)p) * (size_t)g->points, g->points, first,
-                                weight, e->amplitude[c] * here);
+                    if (e->amplitude[c] != 0) deposit(row_of(g, r, c, p), g->points, first, weight, e->amplitude[c] * here);
             }
             phase *= turn;
         }

@@ -106,7 +106,8 @@ static Status read_row(RadarPreset *out, const Table *t, int row)
 
     snprintf(p.name, sizeof p.name, "%s", table_text(t, row, table_column(t, "name")));
     p.transmits_h = *transmit == 'h';
-    p.wave = (Waveform){.kind = (WaveformKind)kind, .uncompensated = x[COMPENSATED] == 0, .centre_hz = 1e9 * x[CENTRE], .bandwidth_hz = 1e6 * x[BANDWIDTH], .pulse_s = 1e-6 * x[PULSE],
+    p.wave = (Waveform){.kind = (WaveformKind)kind, .uncompensated = x[COMPENSATED] == 0,
+                        .centre_hz = 1e9 * x[CENTRE], .bandwidth_hz = 1e6 * x[BANDWIDTH], .pulse_s = 1e-6 * x[PULSE],
                         .repeat_hz = 1e3 * x[REPEAT], .samples = (int)x[SAMPLES], .pulses = (int)x[PULSES]};
     if (p.wave.kind == WAVEFORM_STEPPED) p.wave.repeat_hz /= x[SAMPLES]; /* of bursts */
     p.far_m = 1e3 * x[FAR];

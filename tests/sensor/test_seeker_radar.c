@@ -8,7 +8,7 @@
 #include "render/radar/radar_equation.h"
 
 static double      height_m = 250, aim_m = 900, reference_m = 900; /* of the axis; of the window */
-static const char *preset = "seeker_35";
+static const char *preset = "seeker_35", *own_table = NULL;
 
 typedef struct Stage {
     Landscape  landscape;
@@ -75,7 +75,7 @@ static RadarScene scene_of(const double v_enu_mps[3], uint32_t number, const Wea
 static SeekerRadar *open_radar(uint64_t seed)
 {
     SeekerRadar *radar;
-    CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = preset, .catalog = stage.catalog_path, .isa = "avx2",
+    CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = preset, .table = own_table, .catalog = stage.catalog_path, .isa = "avx2",
                                                            .ground = true, .wind_mps = 0, .seed = seed}) == STATUS_OK);
     return radar;
 }
@@ -197,6 +197,52 @@ static void ground_is_where_it_must_be_in_doppler(void **state)
             moment += creal(c * conj(c)) * (y - frame->map.rows / 2);
         }
     CHECK(fabs(moment / power) < 1);
+
+    /* none of it moves, and the canceller, locked to it, leaves little: its rates differ by some 2 m/s of 86 */
+    double profile_w = 0, mti_w = 0;
+    for (int x = 0; x < frame->map.columns; x++) profile_w += frame->profile_w[x], mti_w += frame->mti_w[x];
+    printf("canceller of the ground: %.1f dB; %d detections\n", 10 * log10(profile_w / mti_w), frame->detections);
+    CHECK(frame->detections > 0 && 10 * log10(profile_w / mti_w) > 15);
+    for (int i = 0; i < frame->detections; i++) CHECK(!frame->detection[i].moving);
+    CHECK_NEAR(frame->timing.interval_s, 64 / 20e3, 1e-12);
+    seeker_radar_destroy(radar);
+}
+
+/* A receiver that follows the range alone: the ground approaches at some 220 m/s, and the map of 64 rows spans 85.655. */
+static void a_rate_not_followed_is_on_the_map(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "name,waveform,centre_ghz,bandwidth_mhz,samples,pulses,repeat_khz,pulse_us,power_w,loss_db,dish_m,taper,transmit,"
+        "noise_figure_db,phase_noise_deg,iq_gain_db,iq_phase_deg,bits,range_window,doppler_window,pfa,compensated,far_km,mti,source\n"
+        "mine,lfm,35,500,512,64,20,20,30,5,0.18,1,v,5,0,0,0,0,taylor:5:40,hann,1e-6,0,0,3,test\n";
+    const double  v[3] = {150, 150, -60};
+    const Weather weather = weather_default();
+    char          path[text_file_size];
+    text_file(path, text);
+    preset = "mine", own_table = path;
+    SeekerRadar *radar = open_radar(3);
+    preset = "seeker_35", own_table = NULL;
+    remove(path);
+    const RadarScene  scene = scene_of(v, 1, &weather);
+    const RadarFrame *frame;
+    arena_reset(stage.arena);
+    CHECK(seeker_radar_measure(&frame, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
+    const double down = 250.0 / 900, rate = -(150 * sqrt(2) * sqrt(1 - down * down) + 60 * down), span = 85.65499;
+    const int    want = 32 + (int)lround((rate - span * nearbyint(rate / span)) / span * 64);
+    double       most = 0;
+    int          at = -1;
+    for (int y = 0; y < 64; y++) {
+        double power = 0;
+        for (int x = 0; x < 512; x++) {
+            const double complex c = frame->map.cell[y * 512 + x];
+            power += creal(c * conj(c));
+        }
+        if (power > most) most = power, at = y;
+    }
+    CHECK(frame->reference_rate_mps == 0 && abs(at - want) <= 1 && want != 32);
+    CHECK_NEAR(frame->ground_rate_mps, rate, 1e-9);
+    for (int i = 0; i < frame->detections; i++) CHECK(!frame->detection[i].moving);
     seeker_radar_destroy(radar);
 }
 
@@ -229,6 +275,7 @@ int main(void)
         cmocka_unit_test(ground_has_the_power_of_its_integral),
         cmocka_unit_test(ground_folds_over),
         cmocka_unit_test(ground_is_where_it_must_be_in_doppler),
+        cmocka_unit_test(a_rate_not_followed_is_on_the_map),
         cmocka_unit_test(the_same_bits),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);

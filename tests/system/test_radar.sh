@@ -84,6 +84,21 @@ P
 
 run replay "$tmp/demo.pcap" --out "$tmp/none" "${small[@]}" --set radar.preset=hubble
 check "an unknown radar is refused, and the known ones said" [ $code = 1 ] && complained 'hubble.*seeker_94, seeker_35, search_ku'
+
+# each waveform, from a table of one's own; a table that is not one
+table=$(dirname "$0")/../../etc/radars.csv
+for kind in "stepped_35 stepped" "pulse_doppler_ku pulse_doppler" "fmcw_94 fmcw"; do
+    set -- $kind
+    { printf '# mine\n'; grep '^name,' "$table"; grep "^$1," "$table" | sed 's/^[a-z_0-9]*/mine/'; } >"$tmp/radars.csv"
+    replay "$tmp/ball.pcap" "$tmp/$2" "${seen[@]}" --only 5 --set radar.preset=mine --set radar.table="$tmp/radars.csv" \
+        --set radar.ground=false --set radar.warp_mm=0
+    check "$2, of a table of one's own" [ $code = 0 ]; [ $code = 0 ] || tail -n 3 "$tmp/stderr"
+    check "its kind in the truth, and a column of the canceller" grep -q "\"kind\": *\"$2\"" "$tmp/$2/truth.jsonl"
+done
+sed 's/,stepped,/,chirped,/; s/,fmcw,/,chirped,/' "$tmp/radars.csv" >"$tmp/bad.csv"
+printf 'radar: {table: %s, preset: mine}\n' "$tmp/bad.csv" >"$tmp/bad.yaml"
+run check "$tmp/bad.yaml"
+check "check: a table of radars refused with its line and column" [ $code = 1 ] && complained 'bad.csv:3: waveform: .chirped.'
 printf 'radar: {preset: hubble}\n' >"$tmp/bad.yaml"
 run check "$tmp/bad.yaml"
 check "check: refused with file, line and key" [ $code = 1 ] && complained 'bad.yaml:1: radar.preset'
