@@ -57,6 +57,7 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
     json_object_set_new(o, "entity", json_string(text));
     set_number(o, "range_m", t->range_m);
     set_number(o, "range_rate_mps", t->range_rate_mps);
+    set_number(o, "appears_m", t->appears_m);
     direction_json(o, t->cos_right, t->cos_down);
     set_number(o, "visible_fraction", t->visible);
     for (int p = 0; p < 3; p++) set_number(rcs, polarisation[p], db(t->rcs_m2[p]));

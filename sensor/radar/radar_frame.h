@@ -13,6 +13,7 @@
 typedef struct RadarTruth {
     int    entity;                     /* index in the snapshot */
     double range_m, range_rate_mps;    /* of the origin of its model */
+    double appears_m;                  /* range at which its echo is on the profile: folded over, coupled to its range rate */
     double cos_right, cos_down;
     double visible;                    /* share of its box that relief, plants and other entities leave */
     double rcs_m2[3];                  /* hh, vv, hv, at the centre frequency, as if wholly visible */

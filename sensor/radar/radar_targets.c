@@ -122,6 +122,7 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
     const double share = truth->visible * pow(cabs(amplitude[CHANNEL_SUM]), 2);
     truth->snr = share / (receiver_noise_w(&preset->receiver, &preset->wave) * interval_noise_share(m->radar->plan));
     truth->range_rate_mps = making_range_rate(m, sight, t->v_enu_mps);
+    truth->appears_m = making_appears_m(m, sight, truth->range_rate_mps);
 }
 
 static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *truth)

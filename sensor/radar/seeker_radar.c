@@ -91,6 +91,12 @@ double making_range_rate(const Making *m, const Sight *sight, const double v_enu
     return v3_dot(sight->d_enu, v_enu_mps) - v3_dot(sight->d_enu, m->scene->v_enu_mps);
 }
 
+double making_appears_m(const Making *m, const Sight *sight, double range_rate_mps)
+{
+    const double followed_mps = m->preset->wave.uncompensated ? 0 : m->frame->reference_rate_mps, middle_m = m->frame->reference_m;
+    return middle_m + waveform_appears_m(&m->preset->wave, sight->range_m - middle_m, range_rate_mps - followed_mps);
+}
+
 void making_amplitudes(double complex amplitude[interval_channels], const Making *m, const Sight *sight, const ScatterMatrix *s)
 {
     const RadarPreset   *p = m->preset;

@@ -54,6 +54,9 @@ void making_sight(Sight *out, const Making *making, const double p_enu[3], doubl
  * a pulse. */
 double making_range_rate(const Making *making, const Sight *sight, const double v_enu_mps[3]);
 
+/* The range at which a profile has its echo: folded over, and coupled to its range rate. */
+double making_appears_m(const Making *making, const Sight *sight, double range_rate_mps);
+
 /* Its amplitudes in the four channels: what is scattered (m, received h or v along the antenna's right and up by
  * transmitted), at a range and direction, through the air. */
 void making_amplitudes(double complex amplitude[interval_channels], const Making *making, const Sight *sight,

@@ -55,3 +55,13 @@ void waveform_timing(WaveformTiming *out, const Waveform *w)
     out->smear_s = 2 * out->profile_s;
     if (w->kind == WAVEFORM_LFM || w->kind == WAVEFORM_FMCW) out->beat_hz_m = 2 * w->bandwidth_hz / (light_mps * w->pulse_s);
 }
+
+double waveform_appears_m(const Waveform *w, double off_m, double rate_mps)
+{
+    WaveformTiming t;
+    waveform_timing(&t, w);
+    const double fold_m = waveform_fold_m(w);
+    if (isfinite(fold_m)) off_m -= fold_m * nearbyint(off_m / fold_m);
+    off_m += t.coupling_s * rate_mps;
+    return off_m - t.window_m * nearbyint(off_m / t.window_m);
+}

@@ -55,6 +55,10 @@ double waveform_share(const Waveform *wave, double range_m);
  * received. */
 double waveform_fold_m(const Waveform *wave);
 
+/* Where on the range window an echo appears, from its middle: off_m beyond the reference, with a range rate that the
+ * receiver does not follow: folded over and coupled. */
+double waveform_appears_m(const Waveform *wave, double off_m, double rate_mps);
+
 /* Times and limits that follow. */
 typedef struct WaveformTiming {
     double sample_s;           /* from one sample to the next */

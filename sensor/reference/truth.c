@@ -205,6 +205,8 @@ static const ReferenceField fields[] = {
     {"radar.targets[].entity", "string", "", "site:application:entity", "", "id"},
     {"radar.targets[].range_m", "number", "m", "from the sensor", "", "to the origin of its model"},
     {"radar.targets[].range_rate_mps", "number", "m/s", "above 0: receding", "", "of that origin"},
+    {"radar.targets[].appears_m", "number", "m", "from the sensor", "", "range at which the profile has that origin: folded over, and "
+     "coupled to its range rate"},
     {"radar.targets[].az_deg", "number", "deg", "camera, right positive", "", "direction of that origin"},
     {"radar.targets[].el_deg", "number", "deg", "camera, up positive", "", "likewise"},
     {"radar.targets[].visible_fraction", "number", "", "0 .. 1", "", "share of its box in sight; its power is reduced by it"},

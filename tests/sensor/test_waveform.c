@@ -134,6 +134,7 @@ static void rates_move_echoes_in_range(void **state)
             for (int row = 0; row < w->pulses; row += w->pulses - 1) {
                 const double t_s = (row - 0.5 * (w->pulses - 1)) / w->repeat_hz;
                 const double want_m = at_m + sign * (shift_m[kind] + rate_mps[kind] * t_s);
+                CHECK_NEAR(waveform_appears_m(w, at_m, sign * rate_mps[kind]), at_m + sign * shift_m[kind], 1e-6);
                 /* delays are in steps of what the band's ends part by 2e-3 rad */
                 CHECK_NEAR(peak_near(&chain, row, want_m, 1.5 * c_mps / (2 * w->bandwidth_hz)), want_m, 2e-3 * c_mps / (2 * w->bandwidth_hz));
             }
@@ -170,6 +171,7 @@ static void a_burst_smears_unless_followed(void **state)
         const double    turn = pi_rad * w->centre_hz * 2 * rate_mps / c_mps * w->pulse_s, within = pow(sin(turn) / turn, 2);
         const double    window_m = c_mps * 256 / (2 * 512e6), row_s = 0.5 * 2.56e-3; /* row 8 of 16 is half a row late */
         const double    middle_m = 2 + uncompensated * (rate_mps * (row_s + 35e9 * 2.56e-3 / 512e6) + window_m);
+        CHECK_NEAR(waveform_appears_m(w, 2, uncompensated * rate_mps), middle_m - uncompensated * rate_mps * row_s, 1e-3);
         const double    peak = uncompensated ? bent(q, 0, 512e6) : 1, left = uncompensated ? within : 1;
         echo_unfollowed(chain.grid, uncompensated ? 2 * rate_mps / w->repeat_hz : 0);
         (void)map_of(&chain, 2, 0);
@@ -206,6 +208,7 @@ static void pulse_doppler_folds_over_and_is_deaf(void **state)
             size_t               peak = 0;
             for (size_t i = 0; i < (size_t)samples * (size_t)rows; i++)
                 if (power_of(cell[i]) > power_of(cell[peak])) peak = i;
+            CHECK_NEAR(waveform_appears_m(w, 20 * cell_m + folds * fold_m, 0), 20 * cell_m, 1e-3);
             CHECK(peak == (size_t)(rows / 2 - 30) * (size_t)samples + (size_t)(samples / 2 + 20));
             /* within a pulse of 1 us its own Doppler takes sinc^2; 256 rows of 10 us of up to 1800 m/s walk by 4.6 m of 11.7 */
             const double turn = pi_rad * 2 * (blind * blind_mps - 30 * row_mps) / c_mps * 16.5e9 * 1e-6;
