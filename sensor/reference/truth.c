@@ -167,7 +167,7 @@ static const ReferenceField fields[] = {
     {"error.BAND.total_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"radar", "object", "", "", "with radar.preset none", "what the radar on the sensor's axis measured, and the truth of it"},
     {"radar.preset", "string", "", "", "", "row of etc/radars.csv or radar.table"},
-    {"radar.waveform", "object", "", "", "", "its times, and what they limit (etc/reference/radar_waveforms.md)"},
+    {"radar.waveform", "object", "", "", "", "its times, and what they limit (etc/reference/radar_seeker.md)"},
     {"radar.waveform.kind", "string", "", "", "", "lfm, stepped, pulse_doppler or fmcw"},
     {"radar.waveform.pulse_us", "number", "us", "", "", "length of a pulse; of fmcw of a sweep"},
     {"radar.waveform.sample_us", "number", "us", "", "", "from one frequency of a profile to the next; 0: at once"},
