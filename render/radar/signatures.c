@@ -7,7 +7,7 @@ enum { most_lists = 256 };
 
 typedef struct Signature {
     int            model, damage;
-    ScatterAntenna middle;
+    SignatureLook  middle;
     double        *joint;     /* [node_count] */
     TotalField     field;
     size_t         octets;
@@ -40,6 +40,35 @@ void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double
     middle->u[1] = cos(el) * sin(az);
     middle->u[2] = sin(el);
     middle->range_m = isinf(antenna->range_m) ? INFINITY : exp2(nearbyint(4 * log2(antenna->range_m)) / 4);
+}
+
+static const double plane_rad = 1 * rad_per_deg, plane_m = 0.02;
+
+void signature_look_bin(SignatureLook *middle, const SignatureLook *look, double aspect_rad)
+{
+    memset(middle, 0, sizeof *middle);
+    signature_bin(&middle->tx, &look->tx, aspect_rad);
+    signature_bin(&middle->rx, &look->rx, aspect_rad);
+    if (!look->image[0] && !look->image[1]) return;
+    const ScatterAntenna normal = {{look->plane.n[0], look->plane.n[1], look->plane.n[2]}, INFINITY};
+    ScatterAntenna       of;
+    signature_bin(&of, &normal, plane_rad);
+    memcpy(middle->image, look->image, sizeof look->image);
+    memcpy(middle->plane.n, of.u, sizeof of.u);
+    middle->plane.height_m = plane_m * nearbyint(look->plane.height_m / plane_m);
+}
+
+SignatureLook signature_look(const ScatterAntenna *antenna) { return (SignatureLook){.tx = *antenna, .rx = *antenna}; }
+
+static bool same_antenna(const ScatterAntenna *a, const ScatterAntenna *b)
+{
+    return a->range_m == b->range_m && memcmp(a->u, b->u, sizeof a->u) == 0;
+}
+
+static bool same_look(const SignatureLook *a, const SignatureLook *b)
+{
+    return same_antenna(&a->tx, &b->tx) && same_antenna(&a->rx, &b->rx) && a->image[0] == b->image[0] &&
+           a->image[1] == b->image[1] && memcmp(&a->plane, &b->plane, sizeof a->plane) == 0;
 }
 
 Status signatures_create(Signatures **out, const SignatureConfig *config, const Catalog *catalog,
@@ -106,7 +135,7 @@ static void make_room(Signatures *s)
     }
 }
 
-static Status make(Signature *out, Signatures *s, int model, const Model *of, int damage, const ScatterAntenna *middle,
+static Status make(Signature *out, Signatures *s, int model, const Model *of, int damage, const SignatureLook *middle,
                    Pool *pool)
 {
     const double begun_s = wall_clock_s();
@@ -118,7 +147,9 @@ static Status make(Signature *out, Signatures *s, int model, const Model *of, in
     out->joint = malloc((size_t)of->node_count * sizeof *out->joint);
     if (!out->joint) return STATUS_NO_MEMORY;
     memcpy(out->joint, s->joint, (size_t)of->node_count * sizeof *out->joint);
-    const Status status = total_field_trace(&out->field, s->target[model], middle, middle, &config, true, pool);
+    Status status = total_field_trace(&out->field, s->target[model], &middle->tx, &middle->rx, &config, true, pool);
+    if (status == STATUS_OK && (middle->image[0] || middle->image[1]))
+        status = ground_hide(&out->field, s->target[model], &middle->plane, middle->image, pool);
     s->counters.made++;
     s->counters.rays += (uint64_t)out->field.hits.rays;
     s->counters.spent_s += wall_clock_s() - begun_s;
@@ -127,23 +158,22 @@ static Status make(Signature *out, Signatures *s, int model, const Model *of, in
 }
 
 Status signatures_find(const TotalField **out, Signatures *s, int model, const double *joint, int damage,
-                       const ScatterAntenna *antenna, Pool *pool)
+                       const SignatureLook *look, Pool *pool)
 {
-    const Model   *of = catalog_model(s->catalog, model);
-    ScatterAntenna middle;
-    Status         status = STATUS_OK;
+    const Model  *of = catalog_model(s->catalog, model);
+    SignatureLook middle;
+    Status        status = STATUS_OK;
     if (!s->target[model]) status = radar_target_create(&s->target[model], of, s->materials, s->config.isa);
     if (status != STATUS_OK) return status;
     for (int n = 0; n < of->node_count; n++) s->joint[n] = joint && of->node[n].roll_radius_m == 0 ? joint[n] : 0;
     model_pose(s->pose, of, s->joint);
     radar_target_pose(s->target[model], s->pose, damage);
     s->found = s->target[model];
-    signature_bin(&middle, antenna, s->config.aspect_rad);
+    signature_look_bin(&middle, look, s->config.aspect_rad);
     s->calls++;
     for (int i = 0; i < s->count; i++) {
         Signature *l = &s->list[i];
-        if (l->model != model || l->damage != damage || l->middle.range_m != middle.range_m ||
-            memcmp(l->middle.u, middle.u, sizeof middle.u) != 0 ||
+        if (l->model != model || l->damage != damage || !same_look(&l->middle, &middle) ||
             memcmp(l->joint, s->joint, (size_t)of->node_count * sizeof *s->joint) != 0)
             continue;
         l->used = s->calls;

@@ -1,5 +1,5 @@
 /* render/radar/signatures.h: fields of targets, kept for reuse: one for each model, pose of its parts, damage, and
- * bin of aspect.
+ * bins of the transmitter's and the receiver's aspect (and of the ground, where one of them is an image in it).
  *
  * A field (total_field.h: ray tubes and edges) is made for the middle of its bin, so what is kept and when it was
  * made change no bit: for an antenna elsewhere in the bin it follows by the change of each path (field.h,
@@ -10,7 +10,7 @@
 #define RENDER_RADAR_SIGNATURES_H
 
 #include "entities/catalog/catalog.h"
-#include "render/radar/total_field.h"
+#include "render/radar/ground_plane.h"
 
 typedef struct SignatureConfig {
     double      frequency_hz;        /* centre of the band */
@@ -28,19 +28,30 @@ typedef struct SignatureCounters {
 
 typedef struct Signatures Signatures;
 
+/* What a field is for: antennas in the target's frame. */
+typedef struct SignatureLook {
+    ScatterAntenna tx, rx;
+    bool           image[2];  /* whether transmitter, receiver is an image in the ground (ground_plane.h) */
+    GroundPlane    plane;     /* where one is. Kept for a degree of its normal and 2 cm of its height */
+} SignatureLook;
+
 /* catalog, materials: must outlive it. */
 Status signatures_create(Signatures **out, const SignatureConfig *config, const Catalog *catalog,
                          const RadarMaterials *materials);
 void   signatures_destroy(Signatures *signatures); /* accepts NULL */
-/* The field of a model of the catalog for an antenna in its frame; valid until the next call. joint: values of its
+/* The field of a model of the catalog for antennas in its frame; valid until the next call. joint: values of its
  * joints (snapshot_pose), NULL: at rest. One thread at a time; pool may be NULL. */
 Status signatures_find(const TotalField **out, Signatures *signatures, int model, const double *joint, int damage,
-                       const ScatterAntenna *antenna, Pool *pool);
+                       const SignatureLook *look, Pool *pool);
+/* Transmitter and receiver at one place, nothing by way of the ground. */
+SignatureLook signature_look(const ScatterAntenna *antenna);
 /* The model as it is posed in the field found last. */
 const RadarTarget *signatures_target(const Signatures *signatures);
 const SignatureCounters *signatures_counters(const Signatures *signatures);
 
 /* The middle of the bin that an antenna is in. */
 void signature_bin(ScatterAntenna *middle, const ScatterAntenna *antenna, double aspect_rad);
+/* The middles of a look's bins; what does not count for it is zero. */
+void signature_look_bin(SignatureLook *middle, const SignatureLook *look, double aspect_rad);
 
 #endif

@@ -134,7 +134,8 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     radar_antenna(&t->antenna, m->scene->view->p_enu, t->p_enu, t->r_enu_from_body);
     *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down,
                           .visible = visible_share(m, t, t->of)};
-    Status status = signatures_find(&field, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &t->antenna, m->pool);
+    const SignatureLook direct = signature_look(&t->antenna);
+    Status status = signatures_find(&field, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &direct, m->pool);
     if (status != STATUS_OK) return status;
     t->pose = signatures_target(r->signatures)->pose;
 

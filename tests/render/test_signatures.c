@@ -54,8 +54,9 @@ static Signatures *open(Catalog **catalog, int *model, RadarMaterials *materials
 static ScatterMatrix look(Signatures *s, int model, const double *joint, const ScatterAntenna *a)
 {
     const TotalField *field;
-    ScatterMatrix     m;
-    CHECK(signatures_find(&field, s, model, joint, 0, a, NULL) == STATUS_OK);
+    const SignatureLook of = signature_look(a);
+    ScatterMatrix       m;
+    CHECK(signatures_find(&field, s, model, joint, 0, &of, NULL) == STATUS_OK);
     CHECK(total_field_sweep(&m, 1, frequency_hz, 0, field, a, a, NULL) == STATUS_OK);
     return m;
 }
@@ -112,6 +113,34 @@ static void lists_are_reused_and_change_no_bit(void **state)
     catalog_close(catalog);
 }
 
+/* Looks that differ by receiver, by what is an image or by the ground have lists of their own; a ground that is the
+ * same within its bin has not, and none counts where nothing is an image. */
+static void looks_are_told_apart(void **state)
+{
+    (void)state;
+    Catalog       *catalog;
+    RadarMaterials materials;
+    int            model;
+    Signatures    *s = open(&catalog, &model, &materials, 1 << 30);
+    SignatureLook  look_of[7];
+    const ScatterAntenna a = at(20, 15, 2000), below = at(20, -15, 2000);
+    for (int i = 0; i < 7; i++)
+        look_of[i] = (SignatureLook){.tx = a, .rx = i == 0 ? a : below, .image = {false, i > 1}, .plane = {{0, 0, -1}, 0.5}};
+    look_of[3].plane.height_m = 0.505;
+    look_of[4].plane.height_m = 0.55;
+    look_of[5].plane.n[0] = sin(3 * rad_per_deg), look_of[5].plane.n[2] = -cos(3 * rad_per_deg);
+    look_of[6].image[1] = false;
+    static const unsigned made[7] = {1, 2, 3, 3, 4, 5, 5};
+    for (int i = 0; i < 7; i++) {
+        const TotalField *field;
+        CHECK(signatures_find(&field, s, model, NULL, 0, &look_of[i], NULL) == STATUS_OK);
+        CHECK(signatures_counters(s)->made == made[i]);
+    }
+    signatures_destroy(s);
+    radar_materials_close(&materials);
+    catalog_close(catalog);
+}
+
 /* Against lists made for each look itself, beside what another turn of their own grid of tubes changes: rms over looks,
  * over the rms field. Reuse adds nothing that is seen beside the grid's own error. */
 static void a_list_serves_its_bin(void **state)
@@ -152,6 +181,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bins_are_about_their_middles),
         cmocka_unit_test(lists_are_reused_and_change_no_bit),
+        cmocka_unit_test(looks_are_told_apart),
         cmocka_unit_test(a_list_serves_its_bin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
