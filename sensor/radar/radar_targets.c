@@ -99,11 +99,11 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
     ScatterMatrix whole = {0};
     for (int i = 0; i < centres->count; i++) {
         const ScatterCentre *c = &centres->centre[i];
-        const double complex phase = cexp(-I * k * c->path_m);
+        const double complex phase = CMPLX(cos(k * c->path_m), -sin(k * c->path_m));
         ScatterMatrix        s = c->s;
         whole.hh += s.hh * phase, whole.hv += s.hv * phase, whole.vh += s.vh * phase, whole.vv += s.vv * phase;
         scatter_turn(&s, h_enu, v_enu, m->right);
-        const double vv_m2 = 4 * pi_rad * pow(cabs(s.vv), 2);
+        const double vv_m2 = 4 * pi_rad * (creal(s.vv) * creal(s.vv) + cimag(s.vv) * cimag(s.vv));
         if (vv_m2 > truth->strongest_m2) {
             truth->strongest_m2 = vv_m2;
             memcpy(truth->strongest_body, c->p, sizeof c->p);
@@ -127,24 +127,19 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
 static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *truth)
 {
     const RadarPreset *p = m->preset;
-    const TotalField  *field;
+    const Signature   *signature;
     SeekerRadar       *r = m->radar;
-    const double       interval_s = p->wave.pulses / p->wave.repeat_hz, pulse_s = 1 / p->wave.repeat_hz;
-    double             across_mps[3], v[3];
+    const double       pulse_s = 1 / p->wave.repeat_hz;
     radar_antenna(&t->antenna, m->scene->view->p_enu, t->p_enu, t->r_enu_from_body);
-    *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down,
-                          .visible = visible_share(m, t, t->of)};
+    *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down};
     const SignatureLook direct = signature_look(&t->antenna);
-    Status status = signatures_find(&field, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &direct, m->pool);
+    Status status = signatures_find(&signature, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &direct, m->pool);
     if (status != STATUS_OK) return status;
-    t->pose = signatures_target(r->signatures)->pose;
-
-    v3_sub(v, t->v_enu_mps, m->scene->v_enu_mps);
-    v3_add_scaled(across_mps, v, -v3_dot(v, sight->d_enu), sight->d_enu);
-    const double turn_rad = interval_s * (v3_length(across_mps) / sight->range_m + v3_length(t->entity->w_body_rps));
-    status = centres_make(&r->centres, field, &t->antenna, &t->antenna,
-                          &(CentresConfig){.frequency_hz = p->wave.centre_hz, .bandwidth_hz = p->wave.bandwidth_hz,
-                                           .turn_rad = turn_rad, .phase_rad = 0.1});
+    if (!signature) m->missing++;
+    if (m->missing > 0) return STATUS_OK; /* the rest is asked for alone */
+    t->pose = signatures_pose(r->signatures);
+    truth->visible = visible_share(m, t, t->of);
+    status = centres_make(&r->centres, signature, &t->antenna, &t->antenna);
     if (status != STATUS_OK) return status;
 
     double h_enu[3], v_enu[3];

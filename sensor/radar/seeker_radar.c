@@ -29,6 +29,13 @@ static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
     return gas_lines_read(&r->gases, path, water);
 }
 
+SignaturesConfig seeker_radar_signatures(const RadarPreset *preset, double warp_m, const char *isa)
+{
+    return (SignaturesConfig){.frequency_hz = preset->wave.centre_hz, .bandwidth_hz = preset->wave.bandwidth_hz,
+                              .aspect_rad = 0.3 * rad_per_deg, .rays_per_wavelength = 0.5, .warp_m = warp_m,
+                              .most_octets = (size_t)1 << 30, .isa = isa};
+}
+
 Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
 {
     SeekerRadar *r = calloc(1, sizeof *r);
@@ -39,12 +46,12 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     Status status = open_tables(r, config);
     const Waveform *wave = &r->preset.wave;
     if (status == STATUS_OK) status = catalog_open(&r->catalog, config->catalog, radar_sag_m(wave->centre_hz));
-    if (status == STATUS_OK)
-        status = signatures_create(&r->signatures,
-                                   &(SignatureConfig){.frequency_hz = wave->centre_hz, .aspect_rad = 0.3 * rad_per_deg,
-                                                      .rays_per_wavelength = 0.5, .warp_m = config->warp_m, .most_octets = (size_t)1 << 30,
-                                                      .isa = config->isa},
-                                   r->catalog, &r->materials);
+    SignaturesConfig signatures = seeker_radar_signatures(&r->preset, config->warp_m, config->isa);
+    if (status == STATUS_OK && config->library && *config->library)
+        status = signature_library_open(&r->library, config->library, &signatures, &r->materials);
+    if (r->library) signatures.store = signature_library_store(r->library);
+    signatures.background = config->background;
+    if (status == STATUS_OK) status = signatures_create(&r->signatures, &signatures, r->catalog, &r->materials);
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
     if (status == STATUS_OK)
         status = interval_plan_create(&r->plan, wave, &r->preset.range_window, &r->preset.doppler_window);
@@ -61,6 +68,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     echo_grid_destroy(r->echoes);
     centres_free(&r->centres);
     signatures_destroy(r->signatures);
+    signature_library_close(r->library);
     radar_materials_close(&r->materials);
     if (r->catalog) catalog_close(r->catalog);
     free(r);
@@ -196,6 +204,7 @@ static Status make(Making *m)
     aim_window(m);
     status = air_between(m);
     if (status == STATUS_OK) status = making_targets(m);
+    if (m->missing > 0) return status;
     if (status == STATUS_OK && m->radar->ground && scene->world->landscape) status = making_ground(m);
     if (status == STATUS_OK) status = visibility_status(visibility);
     if (status != STATUS_OK) return status;
@@ -221,8 +230,11 @@ Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const Ra
         m.ahead[k] = r[3 * k + 2];
     }
     const Status status = make(&m);
-    if (status != STATUS_OK) echo_forget(radar->echoes);
+    if (status != STATUS_OK || m.missing > 0) echo_forget(radar->echoes);
     frame->spent_s = wall_clock_s() - begun_s;
-    if (status == STATUS_OK) *out = frame;
+    radar->left_out += m.missing > 0;
+    if (status == STATUS_OK) *out = m.missing > 0 ? NULL : frame;
     return status;
 }
+
+SignatureCounters seeker_radar_counters(const SeekerRadar *radar) { return signatures_counters(radar->signatures); }

@@ -18,6 +18,7 @@
 #define SENSOR_RADAR_SEEKER_RADAR_H
 
 #include "render/frame/world.h"
+#include "render/radar/signatures.h"
 #include "render/scene/view.h"
 #include "sensor/radar/radar_frame.h"
 
@@ -29,6 +30,8 @@ typedef struct SeekerRadarConfig {
     double      warp_m;          /* unevenness of surfaces, rms (render/radar/warp.h) */
     double      wind_mps;
     uint64_t    seed;
+    const char  *library;        /* folder of signatures, read and added to; NULL or empty: none */
+    bool         background;     /* signatures that are missing are made in a thread of their own; the update is left out */
 } SeekerRadarConfig;
 
 typedef struct SeekerRadar SeekerRadar;
@@ -49,7 +52,11 @@ typedef struct RadarScene {
     uint32_t        number;      /* of the frame: for its noise */
 } RadarScene;
 
-/* *out in the arena. */
+/* What a radar of this configuration makes signatures with, now or beforehand. */
+SignaturesConfig seeker_radar_signatures(const RadarPreset *preset, double warp_m, const char *isa);
+
+/* *out in the arena. NULL: left out, as signatures are still being made in the background. */
 Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool, Arena *arena);
+SignatureCounters seeker_radar_counters(const SeekerRadar *radar);
 
 #endif

@@ -8,6 +8,7 @@
 #include "render/radar/signatures.h"
 #include "sensor/radar/echo.h"
 #include "sensor/radar/seeker_radar.h"
+#include "sensor/radar/signature_library.h"
 
 struct SeekerRadar {
     RadarPreset    preset;
@@ -16,7 +17,9 @@ struct SeekerRadar {
     uint64_t       seed;
     Catalog       *catalog;      /* its own: as fine as the wavelength needs */
     RadarMaterials materials;
+    SignatureLibrary *library;   /* NULL: none */
     Signatures    *signatures;
+    uint64_t       left_out;     /* updates, for want of signatures */
     Centres        centres;      /* of the target at work */
     ClutterTable   clutter;
     ClutterGrid    cells;
@@ -37,6 +40,7 @@ typedef struct Making {
     double            half_window_m;               /* of range */
     double            widest;                      /* sine off the axis beyond which entities are left out */
     double            air_np_m;                    /* power, one way, 1/m */
+    int               missing;                     /* entities whose signatures are still to be made */
     Pool             *pool;
     Arena            *arena;
 } Making;
