@@ -244,6 +244,7 @@ static Status open_radar(Session *s)
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
     return seeker_radar_create(&s->radar, &(SeekerRadarConfig){.preset = config->radar.preset, .catalog = catalog,
                                                                .isa = shared->isa, .ground = config->radar.ground,
+                                                               .ground_bounce = config->radar.ground_bounce,
                                                                .warp_m = 1e-3 * config->radar.warp_mm,
                                                                .wind_mps = config->weather.wind_mps,
                                                                .seed = (uint64_t)config->seed});

@@ -42,6 +42,18 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
     json_object_set_new(o, "rcs_dbsm", rcs);
     set_number(o, "snr_db", db(t->snr));
     json_object_set_new(o, "centres", json_integer(t->centres));
+    if (t->bounce.coherence > 0) {
+        const double *const m2[3] = {t->bounce.rcs_m2, t->bounce.once_m2, t->bounce.twice_m2};
+        static const char *const name[3] = {"rcs_dbsm", "once_dbsm", "twice_dbsm"};
+        json_t *bounce = json_object();
+        set_number(bounce, "coherence", t->bounce.coherence);
+        for (int i = 0; i < 3; i++) {
+            json_t *by = json_object();
+            for (int p = 0; p < 3; p++) set_number(by, polarisation[p], db(m2[i][p]));
+            json_object_set_new(bounce, name[i], by);
+        }
+        json_object_set_new(o, "ground_bounce", bounce);
+    }
     if (t->strongest_m2 > 0) {
         json_t      *s = json_object(), *at = json_array();
         const Model *model = catalog_model(catalog, e->model);

@@ -9,19 +9,27 @@
 #include "sensor/radar/detect.h"
 #include "sensor/radar/radar_preset.h"
 
+/* What the ground near an entity adds by mirroring (render/radar/ground_bounce.h); hh, vv, hv, m^2, as if wholly visible. */
+typedef struct RadarBounceTruth {
+    double coherence;                  /* share of the amplitude that the ground mirrors, the larger polarisation; 0: left out */
+    double once_m2[3], twice_m2[3];    /* by the ground one way (both ways round together), by the ground both ways */
+    double rcs_m2[3];                  /* of all paths together, the direct one included */
+} RadarBounceTruth;
+
 /* Truth of one entity within beam and range window. */
 typedef struct RadarTruth {
     int    entity;                     /* index in the snapshot */
     double range_m, range_rate_mps;    /* of the origin of its model */
     double cos_right, cos_down;
     double visible;                    /* share of its box that relief, plants and other entities leave */
-    double rcs_m2[3];                  /* hh, vv, hv, at the centre frequency, as if wholly visible */
+    double rcs_m2[3];                  /* hh, vv, hv, at the centre frequency, as if wholly visible and without ground */
     double snr;                        /* by the radar equation, in its cell of the map, if it were a point; 0: none of it is seen */
     int    centres;                    /* scattering centres that it was summed from */
     double strongest_m2;               /* of the strongest of them, vertical polarisation both ways */
     double strongest_body[3];          /* where, m, body axes */
     int    strongest_bounce;           /* mirrors on its path */
     int    strongest_part;             /* of the model */
+    RadarBounceTruth bounce;
 } RadarTruth;
 
 typedef struct RadarFrame {

@@ -5,17 +5,6 @@
 
 enum { sight_points = 27 };
 
-/* An entity at work. */
-typedef struct Target {
-    const SnapshotEntity *entity;
-    int            index, model;            /* in the snapshot; in the radar's catalog */
-    const Model   *of;
-    double         p_enu[3], v_enu_mps[3], r_enu_from_body[9];
-    ScatterAntenna antenna;                 /* seen from it */
-    const NodePose *pose;                   /* [node_count], body axes, as in its list of hits */
-    double        *joint;
-} Target;
-
 /* ---- polarisation and motion ---------------------------------------------------------------------- */
 
 static void basis_of(double h_enu[3], double v_enu[3], const Target *t)
@@ -26,8 +15,7 @@ static void basis_of(double h_enu[3], double v_enu[3], const Target *t)
     m3_mul_v3(v_enu, t->r_enu_from_body, v);
 }
 
-/* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. */
-static void velocity_of(double v_enu[3], const Target *t, int node, const double p_body[3])
+void making_target_velocity(double v_enu[3], const Target *t, int node, const double p_body[3])
 {
     const SnapshotEntity *e = t->entity;
     double                v_body[3], turned[3];
@@ -130,13 +118,14 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     const Signature   *signature;
     SeekerRadar       *r = m->radar;
     const double       pulse_s = 1 / p->wave.repeat_hz;
+    ScatterMatrix      field;
     radar_antenna(&t->antenna, m->scene->view->p_enu, t->p_enu, t->r_enu_from_body);
     *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down};
     const SignatureLook direct = signature_look(&t->antenna);
     Status status = signatures_find(&signature, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &direct, m->pool);
     if (status != STATUS_OK) return status;
     if (!signature) m->missing++;
-    if (m->missing > 0) return STATUS_OK; /* the rest is asked for alone */
+    if (m->missing > 0) return making_bounce(m, t, NULL, truth); /* the rest is asked for alone */
     t->pose = signatures_pose(r->signatures);
     truth->visible = visible_share(m, t, t->of);
     status = centres_make(&r->centres, signature, &t->antenna, &t->antenna);
@@ -145,6 +134,7 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     double h_enu[3], v_enu[3];
     basis_of(h_enu, v_enu, t);
     add_truth(truth, m, t, sight, &r->centres, h_enu, v_enu);
+    centres_field(&field, &r->centres, p->wave.centre_hz);
     if (!(truth->visible > 0)) return STATUS_OK;
     Echo *echo = arena_alloc(m->arena, (size_t)r->centres.count + 1, sizeof *echo);
     if (!echo) return STATUS_NO_MEMORY;
@@ -155,7 +145,7 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
         m3_mul_v3(p_enu, t->r_enu_from_body, c->p);
         v3_add(p_enu, p_enu, t->p_enu);
         making_sight(&to, m, p_enu, 0);
-        velocity_of(moves, t, t->of->part[c->part].node, c->p);
+        making_target_velocity(moves, t, t->of->part[c->part].node, c->p);
         scatter_turn(&c->s, h_enu, v_enu, m->right);
         making_amplitudes(echo[i].amplitude, m, &to, &c->s);
         for (int k = 0; k < interval_channels; k++) echo[i].amplitude[k] *= sqrt(truth->visible);
@@ -163,7 +153,7 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
         echo[i].path_per_pulse_m = 2 * (making_range_rate(m, &to, moves) - m->frame->reference_rate_mps) * pulse_s;
     }
     echo_add(r->echoes, echo, r->centres.count, m->pool);
-    return STATUS_OK;
+    return making_bounce(m, t, &field, truth);
 }
 
 /* False: it cannot be seen by this radar. */

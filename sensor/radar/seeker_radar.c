@@ -23,6 +23,8 @@ static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
     if (!etc_path(path, sizeof path, "radar/clutter.csv")) return STATUS_BAD_VALUE;
     status = clutter_table_open(&r->clutter, path);
     if (status == STATUS_OK) status = radar_materials_load(&r->materials);
+    if (status == STATUS_OK)
+        status = etc_path(path, sizeof path, "radar/ground.csv") ? ground_table_open(&r->mirror, path) : STATUS_BAD_VALUE;
     if (status != STATUS_OK) return status;
     if (!etc_path(path, sizeof path, "radar/oxygen_lines.csv") || !etc_path(water, sizeof water, "radar/water_lines.csv"))
         return STATUS_BAD_VALUE;
@@ -41,6 +43,7 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     SeekerRadar *r = calloc(1, sizeof *r);
     if (!r) return STATUS_NO_MEMORY;
     r->ground = config->ground;
+    r->ground_bounce = config->ground_bounce;
     r->wind_mps = config->wind_mps;
     r->seed = config->seed;
     Status status = open_tables(r, config);

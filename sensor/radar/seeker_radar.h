@@ -5,13 +5,14 @@
  * the reference: the range to the aim, else to the ground along the boresight. Within beam and window
  *
  *     entities   by their scattering centres (render/radar), each with its own range rate from the motion of its part
+ *     and the same by way of the ground near them, once and twice (render/radar/ground_bounce.h)
  *     ground     by scatterers fixed to it (render/radar/clutter.h), where relief, plants and entities leave it in sight
  *
  * go through the radar equation, the antenna's pattern at their own direction, and the air (radar_path.h) into the
  * samples of four channels; then receiver and processing. Phases are those of double ranges.
  *
  * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main
- * lobe's null; ground bounce and what one entity mirrors to another; range rates that change within the interval;
+ * lobe's null; what one entity mirrors to another; range rates that change within the interval;
  * the internal motion of ground within the interval (it moves between intervals). An entity partly hidden gives its
  * visible share of power. */
 #ifndef SENSOR_RADAR_SEEKER_RADAR_H
@@ -27,6 +28,7 @@ typedef struct SeekerRadarConfig {
     const char *catalog;         /* path; its models are built anew, as fine as the wavelength needs */
     const char *isa;
     bool        ground;          /* scatterers of the ground */
+    bool        ground_bounce;   /* the ground mirrors entities */
     double      warp_m;          /* unevenness of surfaces, rms (render/radar/warp.h) */
     double      wind_mps;
     uint64_t    seed;

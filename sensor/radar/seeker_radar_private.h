@@ -4,6 +4,7 @@
 
 #include "render/radar/centres.h"
 #include "render/radar/clutter.h"
+#include "render/radar/ground_bounce.h"
 #include "render/radar/radar_path.h"
 #include "render/radar/signatures.h"
 #include "sensor/radar/echo.h"
@@ -22,6 +23,8 @@ struct SeekerRadar {
     uint64_t       left_out;     /* updates, for want of signatures */
     Centres        centres;      /* of the target at work */
     ClutterTable   clutter;
+    GroundTable    mirror;       /* how the ground reflects */
+    bool           ground_bounce;
     ClutterGrid    cells;
     ClutterBand    band;
     GasLines       gases;
@@ -61,6 +64,23 @@ double making_range_rate(const Making *making, const Sight *sight, const double 
  * transmitted), at a range and direction, through the air. */
 void making_amplitudes(double complex amplitude[interval_channels], const Making *making, const Sight *sight,
                        const ScatterMatrix *s);
+
+/* An entity at work. */
+typedef struct Target {
+    const SnapshotEntity *entity;
+    int            index, model;            /* in the snapshot; in the radar's catalog */
+    const Model   *of;
+    double         p_enu[3], v_enu_mps[3], r_enu_from_body[9];
+    ScatterAntenna antenna;                 /* seen from it */
+    const NodePose *pose;                   /* [node_count], body axes, as in its list of hits */
+    double        *joint;
+} Target;
+/* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. */
+void making_target_velocity(double v_enu_mps[3], const Target *target, int node, const double p_body[3]);
+
+/* Adds the echoes of an entity by way of the ground, whose field is direct without it (body bases), and their truth. With
+ * signatures missing: asks for its own alone. */
+Status making_bounce(Making *making, const Target *target, const ScatterMatrix *direct, RadarTruth *truth);
 
 /* Adds the echoes of entities, and their truth to the frame. */
 Status making_targets(Making *making);

@@ -119,6 +119,8 @@ static const Setting keys[] = {
      "none, or a row of etc/radars.csv: a radar with phase on the sensor's axis, whose range profiles, maps of range and Doppler "
      "and detections are products"},
     {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of the ground; with a preset"},
+    {"radar.ground_bounce", SETTING_BOOL, AT(radar.ground_bounce), 0, 1, NULL, "",
+     "the ground near entities mirrors that radar's waves to them and back; with a preset"},
     {"radar.warp_mm", SETTING_DOUBLE, AT(radar.warp_mm), 0, 20, NULL, "mm",
      "unevenness of entities' surfaces for that radar, rms over 0.5 m: models are planer than sheet metal; 0: as they are"},
     {"exercise.port", SETTING_INT, AT(exercise.port), -1, 65535, NULL, "",
@@ -362,6 +364,7 @@ Config config_default(void)
     c.radar.lobe_deg                = 3;
     strcpy(c.radar.preset, "none");
     c.radar.ground                  = true;
+    c.radar.ground_bounce           = true;
     c.radar.warp_mm                 = 1;
     c.exercise.port                 = -1;
     c.exercise.exercise             = -1;

@@ -52,6 +52,7 @@ typedef struct Config {
         double lobe_deg;
         char   preset[32];         /* a row of etc/radars.csv; none */
         bool   ground;             /* of the preset: the ground scatters */
+        bool   ground_bounce;      /* likewise: the ground mirrors entities */
         double warp_mm;            /* likewise: unevenness of surfaces */
     } radar;
     struct {

@@ -12,6 +12,7 @@
 #include "render/materials/materials.h"
 #include "render/radar/gas_attenuation.h"
 #include "render/radar/clutter_table.h"
+#include "render/radar/ground_table.h"
 #include "sensor/detector/sheet.h"
 
 #include <stdlib.h>
@@ -23,7 +24,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const char *const name[] = {"catalog.csv",  "heat.csv",     "effects.csv",
                                        "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet",
-                                       "radar/oxygen_lines.csv", "radar/water_lines.csv", "radar/clutter.csv"};
+                                       "radar/oxygen_lines.csv", "radar/water_lines.csv", "radar/clutter.csv", "radar/ground.csv"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
     switch (index % (names + 3)) {
@@ -147,6 +148,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                     if (!(clutter_sigma0(row, 0.1, 0.003) >= 0 && clutter_foliage_db(row, 9) >= 0)) abort();
                     if (!(clutter_texture(row, -8) >= 0 && clutter_texture(row, 8) < 1e4)) abort();
                 }
+        static GroundTable ground;
+        if (table_column(&table, "heights") >= 0 && ground_table_open(&ground, path) == STATUS_OK)
+            for (int surface = 0; surface < SURFACE_COUNT; surface++) {
+                const GroundSurface of = ground_surface(&ground.row[surface], 35e9);
+                double complex      te, tm;
+                ground_reflection(&te, &tm, &of, 700, 0.2);
+                if (!(cabs(te) <= 1 + 1e-9 && cabs(tm) <= 1 + 1e-9)) abort();
+            }
         table_close(&table);
     }
     close(file);

@@ -26,7 +26,7 @@ vehicles:
 Y
 exercise "$tmp/sphere_scene.yaml" "$tmp/ball.pcap"
 seen=(--host 1:3001:31 --set sensor.gimbal_limit_deg=180 --set exercise.aim=1:3001:11 --bands radar --set models.catalog="$tmp/catalog.csv")
-replay "$tmp/ball.pcap" "$tmp/ball" "${seen[@]}" --only 5 --set radar.preset=search_ku --set radar.ground=false --set radar.warp_mm=0
+replay "$tmp/ball.pcap" "$tmp/ball" "${seen[@]}" --only 5 --set radar.preset=search_ku --set radar.ground=false --set radar.ground_bounce=false --set radar.warp_mm=0
 check "a sphere" [ $code = 0 ]; [ $code = 0 ] || tail -n 3 "$tmp/stderr"
 python3 - "$tmp/ball" <<'P' || fail "a sphere of 10 m2"
 import json, math, sys
@@ -53,6 +53,24 @@ good &= abs(got["rcs_dbsm"] - target["rcs_dbsm"]["hh"]) < 0.2   # I and Q differ
 good &= got["snr_db"] > 45                                      # over what phase noise and windows leave of so strong an echo
 good &= abs(got["range_m"] - (range_m - 1.78)) < 0.5            # its front; cells are 7.5 m
 good &= abs(got["az_deg"] - target["az_deg"]) < 0.05 and abs(got["range_rate_mps"]) < 0.3
+sys.exit(not good)
+P
+
+# the same by way of the ground: a sphere returns a / 2 at any of these angles, so of a ground that mirrors G once gives 4 G^2 and
+# both ways G^4 of its cross section; all that is found in one cell is all four paths
+replay "$tmp/ball.pcap" "$tmp/bounce" "${seen[@]}" --only 5 --set radar.preset=search_ku --set radar.ground=false --set radar.warp_mm=0
+check "a sphere on the ground" [ $code = 0 ]; [ $code = 0 ] || tail -n 3 "$tmp/stderr"
+python3 - "$tmp/bounce" <<'P' || fail "a sphere on the ground"
+import json, math, sys
+radar = json.loads(open(sys.argv[1] + "/truth.jsonl").read().splitlines()[-1])["radar"]
+target = [t for t in radar["targets"] if t["entity"] == "1:3001:11"][0]
+bounce, got = target["ground_bounce"], radar["detections"][0]
+g_db = 20 * math.log10(bounce["coherence"]) # across: the larger of the two
+once_db, twice_db = bounce["once_dbsm"]["hh"] - 10 - g_db - 20 * math.log10(2), bounce["twice_dbsm"]["hh"] - 10 - 2 * g_db
+print("mirrors %.3f; once %+.2f dB, twice %+.2f dB of a sphere's; all paths %.2f dBsm, found %.2f" % (
+    bounce["coherence"], once_db, twice_db, bounce["rcs_dbsm"]["hh"], got["rcs_dbsm"]))
+good = 0.02 < bounce["coherence"] < 1 and abs(once_db) < 0.5 and abs(twice_db) < 0.5
+good &= abs(got["rcs_dbsm"] - bounce["rcs_dbsm"]["hh"]) < 0.3 and abs(bounce["rcs_dbsm"]["hh"] - 10) > 0.1
 sys.exit(not good)
 P
 
