@@ -165,9 +165,9 @@ static void share_of_edge(Share *out, const EdgeSegment *e, const TubeHits *h, d
                        (scatter_path(way, rx, e->p) - scatter_path(way, &h->rx, e->p));
     memcpy(out->middle, e->p, sizeof e->p);
     for (int p = 0; p < 4; p++) {
-        const double a = e->amplitude[p / 2][p % 2];
+        const double complex a = e->amplitude[p / 2][p % 2];
         out->s[p] = share * a;
-        power += a * a;
+        power += creal(a) * creal(a) + cimag(a) * cimag(a);
     }
     out->amplitude = fabs(share) * sqrt(0.5 * power);
     out->bounce = 0;
