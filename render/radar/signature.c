@@ -135,14 +135,14 @@ static void share_of_hit(Share *out, const TubeHits *h, size_t i, double k)
 static void share_of_edge(Share *out, const EdgeSegment *e, double k)
 {
     double       power = 0;
-    const double share = scatter_sinc(0.5 * k * e->slope * e->length_m);
+    const double share = edge_fade(e, k) * scatter_sinc(0.5 * k * e->slope * e->length_m);
     out->path_m = e->path_m;
     memcpy(out->first, e->p, sizeof e->p);
     memcpy(out->last, e->p, sizeof e->p);
     for (int p = 0; p < 4; p++) {
-        const double a = e->amplitude[p / 2][p % 2];
+        const double complex a = e->amplitude[p / 2][p % 2];
         out->s[p] = share * a;
-        power += a * a;
+        power += creal(a) * creal(a) + cimag(a) * cimag(a);
     }
     out->amplitude = fabs(share) * sqrt(0.5 * power);
     out->bounce = 0;

@@ -22,6 +22,7 @@ Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
         out->tubes.rays_per_radius *= config->rays_per_wavelength / out->tubes.rays_per_wavelength;
         out->tubes.rays_per_wavelength = config->rays_per_wavelength;
     }
+    if (config->splits >= 0) out->tubes.splits = config->splits;
     out->tubes.warp_m = config->warp_mm * 1e-3;
     Status status = radar_materials_load(&out->materials);
     if (status == STATUS_OK)

@@ -15,6 +15,7 @@ typedef struct RcsConfig {
     int         frequencies;
     double      frequency_hz[rcs_most_frequencies];
     double      rays_per_wavelength;     /* 0: the default */
+    int         splits;                  /* of tubes at edges; -1: the default */
     double      warp_mm;                 /* unevenness of surfaces, rms */
     bool        no_edges;
     double      image_deg;               /* azimuth of the picture's middle; NaN: none */
