@@ -29,6 +29,7 @@ const Reference reference_products = {
         "    V/settings.yaml, V/log.txt                      of --sweep: its settings for --config; messages\n"
         "    (on the network)                 help data-pdu  what the seeker sees, as DIS; --set publish.dis=sensor\n"
         "    (on the network)                 help stream-pdu  where its video streams are, with publish.stream\n"
+        "    (on the network)                 help radar-pdu what a radar detected, with publish.dis and radar.preset\n"
         "    (standard output)                help pdus      Entity State PDUs of a log; pitviper inspect --pdus tsv\n"
         "    CASE/record/                     help regress-record  of pitviper regress: the baseline\n"
         "\n"
