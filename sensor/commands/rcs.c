@@ -17,7 +17,8 @@ static const char help[] =
     "joints are at rest and it stands alone: no ground.\n"
     "\n"
     "NAME: a built-in model (tank, truck, helicopter ...). FILE: as `pitviper model show` takes it. SHAPE, of metal,\n"
-    "in m: sphere:R plate:AxB disc:R cylinder:RxL dihedral:AxB trihedral:A corner:A. Writes to FOLDER:\n"
+    "in m: sphere:R plate:AxB disc:R cylinder:RxL dihedral:AxB trihedral:A corner:A. given:CSV: a signature from\n"
+    "elsewhere, as `radar.given` takes them (etc/reference/radar_seeker.md), without a picture. Writes to FOLDER:\n"
     "  rcs.csv    a row each look and frequency: dBsm and complex field, m, as received and transmitted polarisation\n"
     "  rcs.svg    a polar plot of HH and VV at the first frequency\n"
     "  isar.png   a picture by range and cross range at the first frequency, HH and HV: nose up, seen from above\n"
@@ -141,6 +142,7 @@ static int parse(RcsOptions *o, int argc, char **argv)
         i++;
     }
     if (!c->name) return refuse("rcs", "needs a target: a built-in name, a file or a shape");
+    if (given_signature_path(c->name)) c->image_deg = NAN;
     if (fabs(c->elevation_deg) > 85 && !isnan(c->image_deg))
         return refuse("--elevation", "there is no cross range beyond 85 deg: add --image none");
     return 0;
@@ -175,7 +177,7 @@ static void print_summary(const RcsSweep *sweep, double seconds)
             }
         }
         log_print("%s at %g GHz: mean HH %.1f, VV %.1f dBsm; most %.1f dBsm at azimuth %g deg\n",
-                  sweep->model.model.name,
+                  rcs_target_name(sweep),
                   c->frequency_hz[f] * 1e-9, mean_m2[0] > 0 ? 10 * log10(mean_m2[0]) : -INFINITY,
                   mean_m2[1] > 0 ? 10 * log10(mean_m2[1]) : -INFINITY, most_dbsm, at_deg);
     }

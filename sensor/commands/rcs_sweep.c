@@ -7,6 +7,8 @@ enum { checked_looks = 8 }; /* those computed with another grid of tubes as well
 
 double rcs_look_deg(const RcsConfig *config, int look) { return config->from_deg + look * config->step_deg; }
 
+const char *rcs_target_name(const RcsSweep *sweep) { return sweep->given ? sweep->config.name : sweep->model.model.name; }
+
 static double highest_hz(const RcsConfig *config)
 {
     double highest = 0;
@@ -23,15 +25,17 @@ Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
         out->tubes.rays_per_wavelength = config->rays_per_wavelength;
     }
     out->tubes.warp_m = config->warp_mm * 1e-3;
-    Status status = radar_materials_load(&out->materials);
-    if (status == STATUS_OK)
+    const char *given = given_signature_path(config->name);
+    Status      status = radar_materials_load(&out->materials);
+    if (status == STATUS_OK && given) status = given_signature_open(&out->given, given);
+    else if (status == STATUS_OK)
         status = radar_model_open(&out->model, config->name, &out->materials, radar_sag_m(highest));
     if (status == STATUS_OK) status = pool_create(&out->pool, thread_processors());
     if (status == STATUS_OK) {
         out->s = calloc((size_t)config->looks * (size_t)config->frequencies, sizeof *out->s);
         if (!out->s) status = STATUS_NO_MEMORY;
     }
-    if (status == STATUS_OK) radar_target_pose(out->model.target, NULL, 0);
+    if (status == STATUS_OK && !given) radar_target_pose(out->model.target, NULL, 0);
     if (status != STATUS_OK) rcs_sweep_close(out);
     return status;
 }
@@ -41,9 +45,18 @@ void rcs_sweep_close(RcsSweep *sweep)
     total_field_free(&sweep->field);
     pool_destroy(sweep->pool);
     radar_model_close(&sweep->model);
+    given_signature_close(sweep->given);
     radar_materials_close(&sweep->materials);
     free(sweep->s);
     *sweep = (RcsSweep){0};
+}
+
+static void look_up(ScatterMatrix *s, RcsSweep *sweep, const ScatterAntenna *antenna)
+{
+    for (int f = 0; f < sweep->config.frequencies; f++) {
+        sweep->unknown += !given_signature_knows(sweep->given, antenna, sweep->config.frequency_hz[f]);
+        given_signature_field(&s[f], sweep->given, antenna, sweep->config.frequency_hz[f]);
+    }
 }
 
 static Status look_at(ScatterMatrix *s, RcsSweep *sweep, int look, uint64_t seed)
@@ -53,6 +66,10 @@ static Status look_at(ScatterMatrix *s, RcsSweep *sweep, int look, uint64_t seed
     tubes.seed = seed;
     radar_look(&antenna, rcs_look_deg(&sweep->config, look) * rad_per_deg, sweep->config.elevation_deg * rad_per_deg,
                sweep->config.range_m);
+    if (sweep->given) {
+        look_up(s, sweep, &antenna);
+        return STATUS_OK;
+    }
     Status status = total_field_trace(&sweep->field, sweep->model.target, &antenna, &antenna, &tubes,
                                       !sweep->config.no_edges, sweep->pool);
     sweep->rays += sweep->field.hits.rays;
@@ -93,8 +110,11 @@ Status rcs_sweep_run(RcsSweep *sweep)
         log_status(line);
         status = look_at(sweep->s + (size_t)look * (size_t)sweep->config.frequencies, sweep, look, 0);
     }
-    if (status == STATUS_OK) status = check_grid(sweep);
+    if (status == STATUS_OK && !sweep->given) status = check_grid(sweep);
     log_status(NULL);
+    if (sweep->unknown > 0)
+        log_warn("rcs: %s ends before %lld of these looks and frequencies, whose rows are empty; see --azimuth, --elevation and "
+                 "--frequency", sweep->config.name, sweep->unknown);
     return status;
 }
 

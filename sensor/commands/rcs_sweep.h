@@ -2,6 +2,7 @@
 #ifndef SENSOR_COMMANDS_RCS_SWEEP_H
 #define SENSOR_COMMANDS_RCS_SWEEP_H
 
+#include "render/radar/given_signature.h"
 #include "render/radar/radar_model.h"
 #include "render/radar/total_field.h"
 
@@ -25,18 +26,20 @@ typedef struct RcsSweep {
     RcsConfig      config;
     RadarMaterials materials;
     RadarModel     model;
+    GivenSignature *given;               /* in place of the model; NULL: none */
     Pool          *pool;
     TubeConfig     tubes;
     TotalField     field;                /* of the last look */
     ScatterMatrix *s;                    /* [looks][frequencies] */
-    long long      rays, hit_count;
+    long long      rays, hit_count, unknown; /* unknown: looks and frequencies that the given signature lacks */
     double         grid_db;              /* error by another grid of tubes, of the power, some looks; NaN: none */
 } RcsSweep;
 
-/* Logs what fails. */
+/* Logs what fails. A name given:FILE is a signature of given_signature.h, without a picture. */
 Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config);
 Status rcs_sweep_run(RcsSweep *sweep);
 void   rcs_sweep_close(RcsSweep *sweep); /* accepts zeroes */
+const char *rcs_target_name(const RcsSweep *sweep);
 double rcs_look_deg(const RcsConfig *config, int look);
 
 void   rcs_write_csv(FILE *to, const RcsSweep *sweep);

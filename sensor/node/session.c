@@ -245,6 +245,7 @@ static Status open_radar(Session *s)
     return seeker_radar_create(&s->radar, &(SeekerRadarConfig){.preset = config->radar.preset, .catalog = catalog,
                                                                .isa = shared->isa, .ground = config->radar.ground,
                                                                .warp_m = 1e-3 * config->radar.warp_mm,
+                                                               .given = config->radar.given,
                                                                .wind_mps = config->weather.wind_mps,
                                                                .seed = (uint64_t)config->seed});
 }

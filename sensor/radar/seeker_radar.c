@@ -45,6 +45,7 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
                                                       .rays_per_wavelength = 0.5, .warp_m = config->warp_m, .most_octets = (size_t)1 << 30,
                                                       .isa = config->isa},
                                    r->catalog, &r->materials);
+    if (status == STATUS_OK && config->given && *config->given) status = given_list_open(&r->given, config->given);
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
     if (status == STATUS_OK)
         status = interval_plan_create(&r->plan, wave, &r->preset.range_window, &r->preset.doppler_window);
@@ -61,6 +62,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     echo_grid_destroy(r->echoes);
     centres_free(&r->centres);
     signatures_destroy(r->signatures);
+    given_list_close(r->given);
     radar_materials_close(&r->materials);
     if (r->catalog) catalog_close(r->catalog);
     free(r);

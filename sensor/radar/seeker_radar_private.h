@@ -4,6 +4,7 @@
 
 #include "render/radar/centres.h"
 #include "render/radar/clutter.h"
+#include "render/radar/given_list.h"
 #include "render/radar/radar_path.h"
 #include "render/radar/signatures.h"
 #include "sensor/radar/echo.h"
@@ -17,6 +18,7 @@ struct SeekerRadar {
     Catalog       *catalog;      /* its own: as fine as the wavelength needs */
     RadarMaterials materials;
     Signatures    *signatures;
+    GivenList     *given;        /* NULL: none */
     Centres        centres;      /* of the target at work */
     ClutterTable   clutter;
     ClutterGrid    cells;
@@ -57,6 +59,12 @@ double making_range_rate(const Making *making, const Sight *sight, const double 
  * transmitted), at a range and direction, through the air. */
 void making_amplitudes(double complex amplitude[interval_channels], const Making *making, const Sight *sight,
                        const ScatterMatrix *s);
+
+/* Which centres of an entity of the snapshot the antenna sees: seen[centres->count]. Centres share a sight line within
+ * cells of a 47th of their extent, of 0.05 m at least, so that the edge of a shadow is as fine as that; a line that
+ * meets the entity itself first is clear. Those of many mirrors stand for the middle of their path. */
+Status radar_sight_centres(bool *seen, const Making *making, int entity, const double p_enu[3], const double r_enu_from_body[9],
+                           const Centres *centres);
 
 /* Adds the echoes of entities, and their truth to the frame. */
 Status making_targets(Making *making);

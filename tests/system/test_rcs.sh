@@ -53,6 +53,19 @@ run rcs sphere:0.3 -o "$tmp/ball" --azimuth 0:20:10 --image none --overwrite
 check "--overwrite" [ $code = 0 ]
 check "the same again" cmp -s "$tmp/first" "$tmp/ball/rcs.csv"
 
+# what it wrote is a signature: the same fields at its rows, between them those of a sphere, nothing beyond
+run rcs "given:$tmp/first" -o "$tmp/given" --azimuth 0:20:10
+check "a given signature: exit code" [ $code = 0 ] || cat "$tmp/stderr"
+check "a given signature: the same rows" [ -n "$(cut -d, -f1-3,8,9,14,15 "$tmp/first")" -a \
+    "$(cut -d, -f1-3,8,9,14,15 "$tmp/first")" = "$(cut -d, -f1-3,8,9,14,15 "$tmp/given/rcs.csv")" ]
+check "a given signature: no picture" [ ! -e "$tmp/given/isar.png" ]
+printf 'target,f_ghz,az_deg,el_deg,rx_az_deg,rx_el_deg\ngiven:%s,10,5,10,,\ngiven:%s,10,90,10,,\ngiven:%s,10,5,10,6,10\ngiven:none,10,5,10,,\n' \
+    "$tmp/first" "$tmp/first" "$tmp/first" | "$pitviper" probe rcs >"$tmp/rcs" 2>/dev/null
+near "a given sphere, between rows" "$(cell "$tmp/rcs" 1 hh_dbsm)" -5.486 0.1 # pi 0.3^2
+for row in 2 3 4; do check "given, row $row has an error" [ -n "$(cell "$tmp/rcs" $row error)" ]; done
+run rcs "given:$tmp/first" -o "$tmp/beyond" --azimuth 0:40:20
+check "beyond its end: said" complained 'ends before 1 of these looks'
+
 run rcs frigate9 -o "$tmp/none"
 check "no such model: exit code" [ $code = 1 ]
 check "no such model: said" complained "no built-in model of this name: 'frigate9'"
