@@ -4,7 +4,9 @@
 #include <stdlib.h>
 
 typedef struct Cells {
-    double path_m, across_m;         /* sides */
+    double path_m, across_per_rad_m; /* side; side across by the angle that is turned */
+    double turn_rad;                 /* least one */
+    const double *part_turn_rad;     /* NULL: none */
     double u[3], right[3], up[3];    /* line of sight, and across it */
 } Cells;
 
@@ -30,13 +32,13 @@ static Status grow(Centres *c)
 
 /* Which cell: its number along each axis. */
 typedef struct Key {
-    int32_t path, right, up;
+    int32_t path, right, up, part; /* part: that turns by itself, from 1; else 0 */
 } Key;
 
 static uint64_t hash_of(Key key)
 {
     const uint64_t plane = (uint64_t)(uint32_t)key.path << 32 ^ (uint64_t)(uint32_t)key.right << 16;
-    return mix(plane ^ mix((uint64_t)(uint32_t)key.up + 1));
+    return mix(plane ^ mix((uint64_t)(uint32_t)key.up + 1 + ((uint64_t)(uint32_t)key.part << 32)));
 }
 
 typedef struct CellTable {
@@ -96,7 +98,9 @@ static void cells_of(Cells *cells, const ScatterAntenna *tx, const ScatterAntenn
     memcpy(cells->up, v, sizeof v);
     /* half a side from the middle, at the end of the band, half the turn away, both ways */
     cells->path_m = 2 * config->phase_rad / fmax(k_half_band, 1e-9);
-    cells->across_m = 2 * config->phase_rad / fmax(k * config->turn_rad, 1e-9);
+    cells->across_per_rad_m = 2 * config->phase_rad / k;
+    cells->turn_rad = fmax(config->turn_rad, 1e-9 / k);
+    cells->part_turn_rad = config->part_turn_rad;
 }
 
 static int32_t cell_number(double x_m, double side_m) { return (int32_t)clamp(floor(x_m / side_m), -2e9, 2e9); }
@@ -111,9 +115,10 @@ typedef struct Share {
 
 static Status add(CellTable *table, const Cells *cells, const Share *share, double k)
 {
-    const Key key = {cell_number(share->path_m, cells->path_m),
-                     cell_number(v3_dot(share->middle, cells->right), cells->across_m),
-                     cell_number(v3_dot(share->middle, cells->up), cells->across_m)};
+    const double more_rad = cells->part_turn_rad ? cells->part_turn_rad[share->part] : 0;
+    const double across_m = cells->across_per_rad_m / (cells->turn_rad + more_rad);
+    const Key key = {cell_number(share->path_m, cells->path_m), cell_number(v3_dot(share->middle, cells->right), across_m),
+                     cell_number(v3_dot(share->middle, cells->up), across_m), more_rad > 0 ? share->part + 1 : 0};
     ScatterCentre *c = find(table, key);
     if (!c) return STATUS_NO_MEMORY;
     c->path_m = (key.path + 0.5) * cells->path_m;

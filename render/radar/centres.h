@@ -26,6 +26,8 @@ typedef struct CentresConfig {
     double bandwidth_hz;      /* of the band about it */
     double turn_rad;          /* how much the line of sight turns over the interval */
     double phase_rad;         /* that a cell may span from its middle, 0.1 */
+    const double *part_turn_rad; /* how much each part of the model turns besides, over the interval: wheels, rotors; NULL: none
+                                  * does. What turns has cells of its own, as fine as that needs */
 } CentresConfig;
 
 typedef struct Centres {

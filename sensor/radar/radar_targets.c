@@ -24,6 +24,13 @@ static void basis_of(double h_enu[3], double v_enu[3], const Target *t)
     m3_mul_v3(v_enu, t->r_enu_from_body, v);
 }
 
+/* Rate at which a node turns by itself, rad/s: it rolls, or spins. */
+static double spin_of(const Target *t, int node, double forward_mps)
+{
+    const ModelNode *of = &t->of->node[node];
+    return of->roll_radius_m > 0 ? forward_mps / of->roll_radius_m : t->entity->drives.engine > 0 ? of->spin_rps_moving : 0;
+}
+
 /* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. node -1: of none. */
 static void velocity_of(double v_enu[3], const Target *t, int node, const double p_body[3])
 {
@@ -32,13 +39,10 @@ static void velocity_of(double v_enu[3], const Target *t, int node, const double
     v3_cross(v_body, e->w_body_rps, p_body);
     m3_tmul_v3(turned, t->r_enu_from_body, t->v_enu_mps); /* body */
     for (int n = node; n >= 0; n = t->of->node[n].parent) {
-        const ModelNode *of = &t->of->node[n];
-        const double     rate = of->roll_radius_m > 0 ? turned[0] / of->roll_radius_m
-                                : e->drives.engine > 0 ? of->spin_rps_moving
-                                                       : 0;
+        const double rate = spin_of(t, n, turned[0]);
         if (rate == 0) continue;
         double axis[3], lever[3], more[3];
-        m3_mul_v3(axis, t->pose[n].r_body_from_node, of->axis);
+        m3_mul_v3(axis, t->pose[n].r_body_from_node, t->of->node[n].axis);
         v3_scale(axis, rate, axis);
         v3_sub(lever, p_body, t->pose[n].p_body);
         v3_cross(more, axis, lever);
@@ -102,6 +106,17 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
     truth->range_rate_mps = making_range_rate(m, sight, t->v_enu_mps);
 }
 
+/* How much each part turns by itself over an interval: [part_count], NULL: no memory. */
+static const double *part_turns(Making *m, const Target *t, double interval_s)
+{
+    double *turn = arena_alloc(m->arena, (size_t)t->of->part_count + 1, sizeof *turn), v_body_mps[3];
+    if (!turn) return NULL;
+    m3_tmul_v3(v_body_mps, t->r_enu_from_body, t->v_enu_mps);
+    for (int p = 0; p < t->of->part_count; p++)
+        for (int n = t->of->part[p].node; n >= 0; n = t->of->node[n].parent) turn[p] += interval_s * fabs(spin_of(t, n, v_body_mps[0]));
+    return turn;
+}
+
 /* Its centres by its model: from a list of hits. */
 static Status model_centres(Making *m, Target *t, const Sight *sight)
 {
@@ -117,9 +132,11 @@ static Status model_centres(Making *m, Target *t, const Sight *sight)
     v3_sub(v, t->v_enu_mps, m->scene->v_enu_mps);
     v3_add_scaled(across_mps, v, -v3_dot(v, sight->d_enu), sight->d_enu);
     const double turn_rad = interval_s * (v3_length(across_mps) / sight->range_m + v3_length(t->entity->w_body_rps));
+    const double *part_turn_rad = part_turns(m, t, interval_s);
+    if (!part_turn_rad) return STATUS_NO_MEMORY;
     return centres_make(&r->centres, field, &t->antenna, &t->antenna,
                         &(CentresConfig){.frequency_hz = p->wave.centre_hz, .bandwidth_hz = p->wave.bandwidth_hz,
-                                         .turn_rad = turn_rad, .phase_rad = 0.1});
+                                         .turn_rad = turn_rad, .phase_rad = 0.1, .part_turn_rad = part_turn_rad});
 }
 
 static Status find_centres(Making *m, Target *t, const Sight *sight, RadarTruth *truth)
