@@ -16,6 +16,51 @@ static double highest_hz(const RcsConfig *config)
     return highest;
 }
 
+/* Names of the joints, for a message. */
+static void list_joints(char *text, size_t size, const Model *model)
+{
+    size_t at = 0;
+    *text = 0;
+    for (int n = 0; n < model->node_count && at < size; n++)
+        if (model->node[n].joint != JOINT_FIXED) at += (size_t)snprintf(text + at, size - at, "%s%s", at ? ", " : "", model->node[n].name);
+}
+
+static Status set_joint(double *value, const Model *model, const RcsJoint *joint)
+{
+    char list[512];
+    for (int n = 0; n < model->node_count; n++) {
+        const ModelNode *node = &model->node[n];
+        if (node->joint == JOINT_FIXED || strcmp(node->name, joint->name) != 0) continue;
+        const double scale = node->joint == JOINT_ROTATION ? rad_per_deg : 1;
+        value[n] = joint->value * scale;
+        if (node->low <= node->high && !(value[n] >= node->low && value[n] <= node->high)) {
+            log_error("rcs: --joint %s: %g is outside its limits, %g .. %g", joint->name, joint->value, node->low / scale,
+                      node->high / scale);
+            return STATUS_BAD_VALUE;
+        }
+        return STATUS_OK;
+    }
+    list_joints(list, sizeof list, model);
+    log_error("rcs: --joint: %s has no joint %s; it has %s", model->name, joint->name, *list ? list : "none");
+    return STATUS_BAD_VALUE;
+}
+
+static Status pose(RcsSweep *sweep)
+{
+    const Model *model = &sweep->model.model;
+    double      *value = calloc((size_t)model->node_count + 1, sizeof *value);
+    NodePose    *at = calloc((size_t)model->node_count + 1, sizeof *at);
+    Status       status = value && at ? STATUS_OK : STATUS_NO_MEMORY;
+    for (int j = 0; j < sweep->config.joints && status == STATUS_OK; j++) status = set_joint(value, model, &sweep->config.joint[j]);
+    if (status == STATUS_OK) {
+        model_pose(at, model, value);
+        radar_target_pose(sweep->model.target, sweep->config.joints > 0 ? at : NULL, 0);
+    }
+    free(value);
+    free(at);
+    return status;
+}
+
 Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
 {
     const double highest = highest_hz(config);
@@ -35,7 +80,7 @@ Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
         out->s = calloc((size_t)config->looks * (size_t)config->frequencies, sizeof *out->s);
         if (!out->s) status = STATUS_NO_MEMORY;
     }
-    if (status == STATUS_OK && !given) radar_target_pose(out->model.target, NULL, 0);
+    if (status == STATUS_OK && !given) status = pose(out);
     if (status != STATUS_OK) rcs_sweep_close(out);
     return status;
 }

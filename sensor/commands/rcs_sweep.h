@@ -6,7 +6,13 @@
 #include "render/radar/radar_model.h"
 #include "render/radar/total_field.h"
 
-enum { rcs_most_frequencies = 64, rcs_most_looks = 36001 };
+enum { rcs_most_frequencies = 64, rcs_most_looks = 36001, rcs_most_joints = 32 };
+
+/* Where a joint stands. */
+typedef struct RcsJoint {
+    char   name[model_name_size];        /* of its node */
+    double value;                        /* as given: deg, m */
+} RcsJoint;
 
 typedef struct RcsConfig {
     const char *name;
@@ -18,6 +24,8 @@ typedef struct RcsConfig {
     double      rays_per_wavelength;     /* 0: the default */
     double      warp_mm;                 /* unevenness of surfaces, rms */
     bool        no_edges;
+    int         joints;                  /* the others are at rest */
+    RcsJoint    joint[rcs_most_joints];
     double      image_deg;               /* azimuth of the picture's middle; NaN: none */
     double      resolution_m;            /* of the picture; 0: a sixtieth of the target, at least three wavelengths */
 } RcsConfig;
