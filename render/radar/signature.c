@@ -5,10 +5,10 @@
 
 _Static_assert(sizeof(SignatureCentre) == 84, "written to files as it is");
 
-SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad)
+SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s)
 {
     return (SignatureCells){.frequency_hz = frequency_hz, .bandwidth_hz = bandwidth_hz, .turn_rad = turn_rad,
-                            .path_phase_rad = 0.2, .across_phase_rad = 0.8};
+                            .path_phase_rad = 0.2, .across_phase_rad = 0.8, .interval_s = interval_s, .spin_phase_rad = 0.5};
 }
 
 void signature_axes(Signature *out, const SignatureCells *cells)
@@ -152,12 +152,31 @@ static void share_of_edge(Share *out, const EdgeSegment *e, double k)
 typedef struct Making {
     const Signature *signature;
     const Model     *model;
-    double           k, across_m;      /* side of a cell */
+    double           k;
+    const double    *across_m;         /* [node_count]: side of a cell */
     bool             monostatic;
     CellTable        table;
 } Making;
 
 static int32_t cell_number(double x_m, double side_m) { return (int32_t)clamp(floor(x_m / side_m), -1e9, 1e9); }
+
+/* Sides of cells by node: half a cell from the middle, half the bin away, both ways; and half its turning. */
+static double *sides_of(const Model *model, const SignatureCells *cells, double k)
+{
+    static const double rolls_mps = 20, most_m = 0.2; /* so that what hides part of a target hides whole cells */
+    const int           count = model ? model->node_count : 0;
+    double             *side = malloc((size_t)(count + 1) * sizeof *side);
+    if (!side) return NULL;
+    side[0] = fmin(2 / fmax(k * cells->turn_rad / cells->across_phase_rad, 1e-9), most_m);
+    for (int n = 0; n < count; n++) {
+        double spin_rps = 0;
+        for (int at = n; at >= 0; at = model->node[at].parent)
+            spin_rps += model->node[at].roll_radius_m > 0 ? rolls_mps / model->node[at].roll_radius_m : fabs(model->node[at].spin_rps_moving);
+        const double radians = cells->turn_rad / cells->across_phase_rad + spin_rps * cells->interval_s / cells->spin_phase_rad;
+        side[n] = fmin(2 / fmax(k * radians, 1e-9), most_m);
+    }
+    return side;
+}
 
 static Status add(Making *m, const Share *share)
 {
@@ -167,17 +186,18 @@ static Status add(Making *m, const Share *share)
         middle[x] = 0.5 * (share->first[x] + share->last[x]);
         half[x] = 0.5 * (share->last[x] - share->first[x]);
     }
-    const double right_m = v3_dot(middle, s->right), up_m = v3_dot(middle, s->up);
-    const Key    key = {.path = cell_number(share->path_m, s->path_step_m), .right = cell_number(right_m, m->across_m),
-                        .up = cell_number(up_m, m->across_m),
-                        .half_right = m->monostatic ? 0 : cell_number(v3_dot(half, s->right), m->across_m),
-                        .half_up = m->monostatic ? 0 : cell_number(v3_dot(half, s->up), m->across_m),
-                        .node = m->model ? m->model->part[share->part].node : 0};
+    const int    node = m->model ? m->model->part[share->part].node : 0;
+    const double right_m = v3_dot(middle, s->right), up_m = v3_dot(middle, s->up), across_m = m->across_m[node];
+    const Key    key = {.path = cell_number(share->path_m, s->path_step_m), .right = cell_number(right_m, across_m),
+                        .up = cell_number(up_m, across_m),
+                        .half_right = m->monostatic ? 0 : cell_number(v3_dot(half, s->right), across_m),
+                        .half_up = m->monostatic ? 0 : cell_number(v3_dot(half, s->up), across_m),
+                        .node = node};
     Cell *c = find(&m->table, &key);
     if (!c) return STATUS_NO_MEMORY;
     const double         phase = -m->k * (share->path_m - (key.path + 0.5) * s->path_step_m);
     const double complex turn = CMPLX(cos(phase), sin(phase));
-    const double         arm_m[2] = {right_m - (key.right + 0.5) * m->across_m, up_m - (key.up + 0.5) * m->across_m};
+    const double         arm_m[2] = {right_m - (key.right + 0.5) * across_m, up_m - (key.up + 0.5) * across_m};
     for (int p = 0; p < 4; p++) {
         const double complex v = share->s[p] * turn;
         c->s[p] += v;
@@ -231,8 +251,9 @@ static bool keep(SignatureCentre *out, const Making *m, const Cell *c)
     double complex       sum[4];
     for (int q = 0; q < 4; q++) sum[q] = turn * c->s[q];
     /* moments about the mean point, as it is kept */
-    const double   arm_m[2] = {v3_dot(p, s->right) - (c->key.right + 0.5) * m->across_m,
-                               v3_dot(p, s->up) - (c->key.up + 0.5) * m->across_m};
+    const double   across_m = m->across_m[c->key.node];
+    const double   arm_m[2] = {v3_dot(p, s->right) - (c->key.right + 0.5) * across_m,
+                               v3_dot(p, s->up) - (c->key.up + 0.5) * across_m};
     double complex moment[2][4];
     for (int x = 0; x < 2; x++)
         for (int q = 0; q < 4; q++) moment[x][q] = turn * c->moment[x][q] - arm_m[x] * sum[q];
@@ -262,8 +283,9 @@ Status signature_make(Signature *out, const TotalField *field, const Model *mode
     signature_axes(out, cells);
     Making m = {.signature = out, .model = model, .k = 2 * pi_rad * cells->frequency_hz / light_mps,
                 .monostatic = memcmp(&h->tx, &h->rx, sizeof h->tx) == 0};
-    /* half a cell from the middle, half the bin away, both ways */
-    m.across_m = fmin(2 * cells->across_phase_rad / fmax(m.k * cells->turn_rad, 1e-9), 10);
+    double *side = sides_of(model, cells, m.k);
+    if (!side) return STATUS_NO_MEMORY;
+    m.across_m = side;
     for (size_t i = 0; i < h->count && status == STATUS_OK; i++) {
         share_of_hit(&share, h, i, m.k);
         status = add(&m, &share);
@@ -277,6 +299,7 @@ Status signature_make(Signature *out, const TotalField *field, const Model *mode
     for (int i = 0; i < m.table.count && status == STATUS_OK; i++) out->count += keep(&out->centre[out->count], &m, &m.table.cell[i]);
     free(m.table.cell);
     free(m.table.slot);
+    free(side);
     if (status != STATUS_OK) signature_free(out);
     return status;
 }

@@ -3,7 +3,7 @@
  *
  * Hits and edges of a field are summed over cells: along the path as long as phases part by path_phase_rad at the
  * ends of the band, across the line of sight as wide as they part by across_phase_rad at the edge of the bin, and
- * apart for each node that moves by itself. A cell keeps, beside the sum of its paths, their first moments across the
+ * apart for each node that moves by itself; finer on nodes that spin or roll, whose points part in range rate. A cell keeps, beside the sum of its paths, their first moments across the
  * line of sight: what it scatters towards an antenna elsewhere in the bin follows to first order, so that the error
  * is about across_phase_rad^2 / 12 of a cell, where sums alone leave across_phase_rad / 6^0.5.
  *
@@ -19,9 +19,11 @@ typedef struct SignatureCells {
     double frequency_hz, bandwidth_hz;   /* centre, and band about it */
     double turn_rad;                     /* full width of the bin */
     double path_phase_rad, across_phase_rad;
+    double interval_s;                   /* that centres are to stand for; 0: what spins and rolls stands still */
+    double spin_phase_rad;               /* of what spins as its model says, or rolls at 20 m/s, over the interval */
 } SignatureCells;
-/* Phases of 0.2 and 0.8 rad. */
-SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad);
+/* Phases of 0.2, 0.8 and 0.5 rad. */
+SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s);
 
 typedef struct SignatureCentre {
     int32_t  path;         /* cell along the path */

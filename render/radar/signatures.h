@@ -41,6 +41,7 @@ typedef struct SignatureStore {
 typedef struct SignaturesConfig {
     double      frequency_hz, bandwidth_hz; /* centre of the band, and the band */
     double      aspect_rad;          /* side of a bin */
+    double      interval_s;          /* SignatureCells */
     double      rays_per_wavelength;
     double      warp_m;              /* unevenness of surfaces (warp.h), rms; 0: plane as the model has them */
     size_t      most_octets;         /* of all; the one in use is kept beyond it */

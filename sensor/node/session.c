@@ -246,6 +246,7 @@ static Status open_radar(Session *s)
                                                                .isa = shared->isa, .ground = config->radar.ground,
                                                                .ground_bounce = config->radar.ground_bounce,
                                                                .warp_m = 1e-3 * config->radar.warp_mm,
+                                                               .given = config->radar.given,
                                                                .wind_mps = config->weather.wind_mps,
                                                                .seed = (uint64_t)config->seed});
 }

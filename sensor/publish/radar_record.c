@@ -26,14 +26,28 @@ static json_t *detection_json(const Detection *d)
     return o;
 }
 
+static json_t *scatterer_json(const RadarScatterer *s, const Model *model)
+{
+    json_t *o = json_object(), *at = json_array();
+    for (int k = 0; k < 3; k++) json_array_append_new(at, json_real(s->p_body[k]));
+    set_number(o, "rcs_hh_dbsm", db(s->hh_m2));
+    set_number(o, "rcs_vv_dbsm", db(s->vv_m2));
+    json_object_set_new(o, "body_m", at);
+    json_object_set_new(o, "bounces", json_integer(s->bounce));
+    json_object_set_new(o, "visible", json_boolean(s->seen));
+    if (s->part >= 0 && s->part < model->part_count) json_object_set_new(o, "part", json_string(model->part[s->part].name));
+    return o;
+}
+
 static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const Catalog *catalog)
 {
     static const char *const polarisation[3] = {"hh", "vv", "hv"};
-    json_t                  *o = json_object(), *rcs = json_object();
+    json_t                  *o = json_object(), *rcs = json_object(), *strongest = json_array();
     const SnapshotEntity    *e = &snapshot->entity[t->entity];
     char                     text[dis_id_text_size];
     dis_entity_id_text(text, e->id);
     json_object_set_new(o, "entity", json_string(text));
+    json_object_set_new(o, "signature", json_string(t->given ? "given" : "model"));
     set_number(o, "range_m", t->range_m);
     set_number(o, "range_rate_mps", t->range_rate_mps);
     direction_json(o, t->cos_right, t->cos_down);
@@ -54,17 +68,9 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
         }
         json_object_set_new(o, "ground_bounce", bounce);
     }
-    if (t->strongest_m2 > 0) {
-        json_t      *s = json_object(), *at = json_array();
-        const Model *model = catalog_model(catalog, e->model);
-        for (int k = 0; k < 3; k++) json_array_append_new(at, json_real(t->strongest_body[k]));
-        set_number(s, "rcs_vv_dbsm", db(t->strongest_m2));
-        json_object_set_new(s, "body_m", at);
-        json_object_set_new(s, "bounces", json_integer(t->strongest_bounce));
-        if (t->strongest_part < model->part_count)
-            json_object_set_new(s, "part", json_string(model->part[t->strongest_part].name));
-        json_object_set_new(o, "strongest", s);
-    }
+    const Model *model = catalog_model(catalog, e->model);
+    for (int i = 0; i < t->strongest_count; i++) json_array_append_new(strongest, scatterer_json(&t->strongest[i], model));
+    json_object_set_new(o, "strongest", strongest);
     return o;
 }
 

@@ -15,20 +15,28 @@ typedef struct RadarBounceTruth {
     double once_m2[3], twice_m2[3];    /* by the ground one way (both ways round together), by the ground both ways */
     double rcs_m2[3];                  /* of all paths together, the direct one included */
 } RadarBounceTruth;
+/* One of an entity's scattering centres. */
+typedef struct RadarScatterer {
+    double hh_m2, vv_m2;               /* its cross section */
+    double p_body[3];                  /* m: middle of its path's first and last mirror */
+    int    bounce, part;               /* mirrors on its path, 0: an edge; of the model, -1: of a given signature */
+    bool   seen;                       /* nothing else is in its way */
+} RadarScatterer;
+
+enum { radar_strongest = 8 };
 
 /* Truth of one entity within beam and range window. */
 typedef struct RadarTruth {
     int    entity;                     /* index in the snapshot */
     double range_m, range_rate_mps;    /* of the origin of its model */
     double cos_right, cos_down;
-    double visible;                    /* share of its box that relief, plants and other entities leave */
+    bool   given;                      /* by a signature of radar.given, else by its model */
+    double visible;                    /* share of its centres' power that relief, plants and other entities leave in sight */
     double rcs_m2[3];                  /* hh, vv, hv, at the centre frequency, as if wholly visible and without ground */
-    double snr;                        /* by the radar equation, in its cell of the map, if it were a point; 0: none of it is seen */
+    double snr;                        /* by the radar equation, of the centres in sight, in one cell of the map; 0: there is none */
     int    centres;                    /* scattering centres that it was summed from */
-    double strongest_m2;               /* of the strongest of them, vertical polarisation both ways */
-    double strongest_body[3];          /* where, m, body axes */
-    int    strongest_bounce;           /* mirrors on its path */
-    int    strongest_part;             /* of the model */
+    int    strongest_count;
+    RadarScatterer strongest[radar_strongest]; /* of them, by the mean of hh and vv */
     RadarBounceTruth bounce;
 } RadarTruth;
 

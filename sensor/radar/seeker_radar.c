@@ -34,7 +34,8 @@ static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
 SignaturesConfig seeker_radar_signatures(const RadarPreset *preset, double warp_m, const char *isa)
 {
     return (SignaturesConfig){.frequency_hz = preset->wave.centre_hz, .bandwidth_hz = preset->wave.bandwidth_hz,
-                              .aspect_rad = 0.3 * rad_per_deg, .rays_per_wavelength = 0.5, .warp_m = warp_m,
+                              .aspect_rad = 0.3 * rad_per_deg, .interval_s = preset->wave.pulses / preset->wave.repeat_hz,
+                              .rays_per_wavelength = 0.5, .warp_m = warp_m,
                               .most_octets = (size_t)1 << 30, .isa = isa};
 }
 
@@ -55,6 +56,7 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     if (r->library) signatures.store = signature_library_store(r->library);
     signatures.background = config->background;
     if (status == STATUS_OK) status = signatures_create(&r->signatures, &signatures, r->catalog, &r->materials);
+    if (status == STATUS_OK && config->given && *config->given) status = given_list_open(&r->given, config->given);
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
     if (status == STATUS_OK)
         status = interval_plan_create(&r->plan, wave, &r->preset.range_window, &r->preset.doppler_window);
@@ -72,6 +74,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     centres_free(&r->centres);
     signatures_destroy(r->signatures);
     signature_library_close(r->library);
+    given_list_close(r->given);
     radar_materials_close(&r->materials);
     if (r->catalog) catalog_close(r->catalog);
     free(r);

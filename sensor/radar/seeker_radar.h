@@ -13,8 +13,8 @@
  *
  * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main
  * lobe's null; what one entity mirrors to another; range rates that change within the interval;
- * the internal motion of ground within the interval (it moves between intervals). An entity partly hidden gives its
- * visible share of power. */
+ * the internal motion of ground within the interval (it moves between intervals); diffraction about what hides part of an
+ * entity: each scattering centre is in sight or not. */
 #ifndef SENSOR_RADAR_SEEKER_RADAR_H
 #define SENSOR_RADAR_SEEKER_RADAR_H
 
@@ -30,6 +30,7 @@ typedef struct SeekerRadarConfig {
     bool        ground;          /* scatterers of the ground */
     bool        ground_bounce;   /* the ground mirrors entities */
     double      warp_m;          /* unevenness of surfaces, rms (render/radar/warp.h) */
+    const char *given;           /* a list of given signatures (render/radar/given_list.h); empty: none */
     double      wind_mps;
     uint64_t    seed;
     const char  *library;        /* folder of signatures, read and added to; NULL or empty: none */

@@ -4,6 +4,7 @@
 
 #include "render/radar/centres.h"
 #include "render/radar/clutter.h"
+#include "render/radar/given_list.h"
 #include "render/radar/ground_bounce.h"
 #include "render/radar/radar_path.h"
 #include "render/radar/signatures.h"
@@ -21,6 +22,7 @@ struct SeekerRadar {
     SignatureLibrary *library;   /* NULL: none */
     Signatures    *signatures;
     uint64_t       left_out;     /* updates, for want of signatures */
+    GivenList     *given;        /* NULL: none */
     Centres        centres;      /* of the target at work */
     ClutterTable   clutter;
     GroundTable    mirror;       /* how the ground reflects */
@@ -75,12 +77,17 @@ typedef struct Target {
     const NodePose *pose;                   /* [node_count], body axes, as in its list of hits */
     double        *joint;
 } Target;
-/* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. */
+/* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. node -1: of none. */
 void making_target_velocity(double v_enu_mps[3], const Target *target, int node, const double p_body[3]);
 
 /* Adds the echoes of an entity by way of the ground, whose field is direct without it (body bases), and their truth. With
  * signatures missing: asks for its own alone. */
 Status making_bounce(Making *making, const Target *target, const ScatterMatrix *direct, RadarTruth *truth);
+/* Which centres of an entity of the snapshot the antenna sees: seen[centres->count]. Centres share a sight line within
+ * cells of a 47th of their extent, of 0.05 m at least, so that the edge of a shadow is as fine as that; a line that
+ * meets the entity itself first is clear. Those of many mirrors stand for the middle of their path. */
+Status radar_sight_centres(bool *seen, const Making *making, int entity, const double p_enu[3], const double r_enu_from_body[9],
+                           const Centres *centres);
 
 /* Adds the echoes of entities, and their truth to the frame. */
 Status making_targets(Making *making);

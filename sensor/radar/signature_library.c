@@ -76,9 +76,9 @@ static bool add_text(Sha256 *d, const char *text) { return sha256_add(d, text, s
 
 static Status hash_settings(char out[sha256_text_size], const SignaturesConfig *c, const RadarMaterials *materials)
 {
-    const SignatureCells cells = signature_default_cells(c->frequency_hz, c->bandwidth_hz, c->aspect_rad);
+    const SignatureCells cells = signature_default_cells(c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->interval_s);
     const double numbers[] = {computation, c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->rays_per_wavelength, c->warp_m,
-                              cells.turn_rad, cells.path_phase_rad, cells.across_phase_rad};
+                              cells.turn_rad, cells.path_phase_rad, cells.across_phase_rad, cells.interval_s, cells.spin_phase_rad};
     Sha256 *d = sha256_begin();
     bool    ok = d && sha256_add(d, numbers, sizeof numbers);
     for (int i = 0; i < materials->count && ok; i++) {
@@ -198,7 +198,8 @@ static bool fetch(void *user, Signature *out, const SignatureKey *key)
     if (name_of(name, l, key) != STATUS_OK || !path_of(path, l, name)) return false;
     uint8_t *octets = read_whole(&count, path);
     if (!octets) return false;
-    const SignatureCells cells = signature_default_cells(l->config.frequency_hz, l->config.bandwidth_hz, l->config.aspect_rad);
+    const SignatureCells cells = signature_default_cells(l->config.frequency_hz, l->config.bandwidth_hz, l->config.aspect_rad,
+                                                         l->config.interval_s);
     Signature    read = {.tx = key->look.tx, .rx = key->look.rx};
     const Status status = signature_from_octets(&read, octets, count, name, key->model->part_count);
     free(octets);

@@ -29,6 +29,7 @@ const Reference reference_products = {
         "    V/settings.yaml, V/log.txt                      of --sweep: its settings for --config; messages\n"
         "    (on the network)                 help data-pdu  what the seeker sees, as DIS; --set publish.dis=sensor\n"
         "    (on the network)                 help stream-pdu  where its video streams are, with publish.stream\n"
+        "    (on the network)                 help radar-pdu what a radar detected, with publish.dis and radar.preset\n"
         "    (standard output)                help pdus      Entity State PDUs of a log; pitviper inspect --pdus tsv\n"
         "    CASE/record/                     help regress-record  of pitviper regress: the baseline\n"
         "\n"
@@ -190,19 +191,24 @@ static const ReferenceField fields[] = {
     {"radar.targets[].range_rate_mps", "number", "m/s", "above 0: receding", "", "of that origin"},
     {"radar.targets[].az_deg", "number", "deg", "camera, right positive", "", "direction of that origin"},
     {"radar.targets[].el_deg", "number", "deg", "camera, up positive", "", "likewise"},
-    {"radar.targets[].visible_fraction", "number", "", "0 .. 1", "", "share of its box in sight; its power is reduced by it"},
+    {"radar.targets[].signature", "string", "", "model, given", "", "by its model, or by a signature of radar.given"},
+    {"radar.targets[].visible_fraction", "number", "", "0 .. 1", "", "share of its scattering centres' power in sight: those centres "
+     "alone return"},
     {"radar.targets[].rcs_dbsm", "object", "", "", "", "cross section at the centre frequency, as if wholly in sight"},
     {"radar.targets[].rcs_dbsm.hh", "number", "dB over 1 m2", "received, transmitted", "", "h along the camera's columns"},
     {"radar.targets[].rcs_dbsm.vv", "number", "dB over 1 m2", "", "", "v along its rows"},
     {"radar.targets[].rcs_dbsm.hv", "number", "dB over 1 m2", "", "", "received h, transmitted v"},
-    {"radar.targets[].snr_db", "number", "dB", "", "when none of it is in sight", "by the radar equation, as a point, over the "
-     "thermal noise of a cell"},
+    {"radar.targets[].snr_db", "number", "dB", "", "when none of it is in sight", "by the radar equation, of its centres in sight in "
+     "one cell, over the thermal noise of a cell"},
     {"radar.targets[].centres", "integer", "", "", "", "scattering centres that it was summed from"},
-    {"radar.targets[].strongest", "object", "", "", "when it scatters nothing back", "the strongest of them, at VV"},
-    {"radar.targets[].strongest.rcs_vv_dbsm", "number", "dB over 1 m2", "", "", "its cross section"},
-    {"radar.targets[].strongest.body_m", "list of 3 numbers", "m", "body", "", "middle of its path's first and last mirror"},
-    {"radar.targets[].strongest.bounces", "integer", "", "", "", "mirrors on its path"},
-    {"radar.targets[].strongest.part", "string", "", "", "", "part of the model with the last mirror"},
+    {"radar.targets[].strongest", "list of objects", "", "strongest first, at most 8", "", "the strongest of them, by the mean of HH and "
+     "VV"},
+    {"radar.targets[].strongest[].rcs_hh_dbsm", "number", "dB over 1 m2", "", "when 0", "its cross section"},
+    {"radar.targets[].strongest[].rcs_vv_dbsm", "number", "dB over 1 m2", "", "when 0", "its cross section"},
+    {"radar.targets[].strongest[].body_m", "list of 3 numbers", "m", "body", "", "middle of its path's first and last mirror"},
+    {"radar.targets[].strongest[].bounces", "integer", "", "0: an edge", "", "mirrors on its path"},
+    {"radar.targets[].strongest[].visible", "boolean", "", "", "", "nothing else is in its way"},
+    {"radar.targets[].strongest[].part", "string", "", "", "of a given signature", "part of the model with the last mirror"},
     {"latency_ms", "object", "", "", "in a replay at full speed",
      "when each step of the frame was done; of a run and of replay --speed X"},
     {"latency_ms.arrival_to_pose", "number", "ms", "", "before the first datagram",

@@ -150,5 +150,7 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
 
 Status tables_given(TablesUsed *out, const Config *config)
 {
-    return *config->heat.given ? add_in(out, "heat/", config->heat.given) : STATUS_OK;
+    Status status = *config->heat.given ? add_in(out, "heat/", config->heat.given) : STATUS_OK;
+    if (status == STATUS_OK && *config->radar.given) status = add_in(out, "radar/", config->radar.given);
+    return status;
 }

@@ -42,7 +42,7 @@ static const double turn_rad = 0.3 * rad_per_deg;
 
 static SignatureCells cells_of(double phase_rad)
 {
-    SignatureCells cells = signature_default_cells(centre_hz, band_hz, turn_rad);
+    SignatureCells cells = signature_default_cells(centre_hz, band_hz, turn_rad, 0);
     cells.path_phase_rad = cells.across_phase_rad = phase_rad;
     return cells;
 }
@@ -126,7 +126,7 @@ static void middle_is_exact(void **state)
 {
     (void)state;
     const TubeHits       h = some_hits();
-    const SignatureCells cells = signature_default_cells(centre_hz, 1e6, 1e-5);
+    const SignatureCells cells = signature_default_cells(centre_hz, 1e6, 1e-5, 0);
     Signature            signature = {0};
     Centres              centres = {0};
     ScatterMatrix        want, got;

@@ -1,5 +1,5 @@
 /* The radar of a seeker over ground: its power against an integral over the ground that the test makes itself, its
- * place in Doppler, and the same bits whatever made them. */
+ * place in Doppler, and the same bits whatever made them. labels: slow */
 #include "tests/check.h"
 
 #include "sensor/radar/seeker_radar.h"
@@ -71,17 +71,26 @@ static RadarScene scene_of(const double v_enu_mps[3], uint32_t number, const Wea
     return scene;
 }
 
-static SeekerRadar *open_radar(uint64_t seed)
+static SeekerRadar *open_windy_radar(uint64_t seed, double wind_mps)
 {
     SeekerRadar *radar;
     CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = "seeker_35", .catalog = stage.catalog_path, .isa = "avx2",
-                                                           .ground = true, .wind_mps = 0, .seed = seed}) == STATUS_OK);
+                                                           .ground = true, .wind_mps = wind_mps, .seed = seed}) == STATUS_OK);
     return radar;
 }
 
+static SeekerRadar *open_radar(uint64_t seed) { return open_windy_radar(seed, 0); }
+
+/* Billingsley's law: still + (1 - still) / (1 + (4 pi lag / (beta lambda))^2). */
+static double kept(const ClutterRow *row, const RadarPreset *p, double lag_s, double wind_mps)
+{
+    const ClutterMotion motion = clutter_motion(row, p->wave.centre_hz, wind_mps);
+    return motion.still + (1 - motion.still) / (1 + pow(4 * pi_rad * lag_s * motion.spread_mps / p->antenna.wavelength_m, 2));
+}
+
 /* Sum over ground of the power that each square metre returns: classes, heights and the dish's pattern asked for
- * anew, places and integral the test's own. */
-static double power_by_integral(const RadarFrame *frame)
+ * anew, places and integral the test's own. Of its fields a share is the same lag_s later, in wind. */
+static double power_by_integral(const RadarFrame *frame, double lag_s, double wind_mps)
 {
     static ClutterTable table;
     const RadarPreset  *p = frame->preset;
@@ -105,7 +114,8 @@ static double power_by_integral(const RadarFrame *frame)
             const int    surface = landscape_surface(&stage.landscape, x, y);
             const double sigma0 = clutter_sigma0(&table.row[surface][CLUTTER_KA], grazing, p->antenna.wavelength_m);
             const RadarLink link = {p->power_w, gain * gain, gain * gain, p->antenna.wavelength_m, range_m, p->loss};
-            sum_w += radar_received_w(&link, sigma0 * step_m * step_m / n[2]) * pow(10, -0.2 * frame->air_db);
+            sum_w += radar_received_w(&link, sigma0 * step_m * step_m / n[2]) * pow(10, -0.2 * frame->air_db) *
+                     kept(&table.row[surface][CLUTTER_KA], p, lag_s, wind_mps);
         }
     return sum_w;
 }
@@ -130,7 +140,7 @@ static void ground_has_the_power_of_its_integral(void **state)
         CHECK(window_figures(&figures, weight, 512) == STATUS_OK);
         const double noise_w = frame->receiver.noise_w * figures.noise_bins / 512;
         for (int i = 0; i < 512; i++) got_w += (frame->profile_w[i] - noise_w) / figures.noise_bins;
-        want_w += power_by_integral(frame);
+        want_w += power_by_integral(frame, 0, 0);
         cells += frame->ground_cells;
         CHECK(frame->ground_hidden < 0.02 * frame->ground_cells); /* flat ground hides next to nothing */
         seeker_radar_destroy(radar);
@@ -163,6 +173,46 @@ static void ground_is_where_it_must_be_in_doppler(void **state)
     seeker_radar_destroy(radar);
 }
 
+/* Between two frames leaves move: the maps' correlation is the law's, weighted by the power of each class of ground. */
+static void wind_decorrelates_the_ground(void **state)
+{
+    (void)state;
+    enum { lags = 3, seeds = 4 };
+    static const double lag_s[lags] = {0.001, 0.004, 1};
+    const double  v[3] = {0, 0, 0}, wind_mps = 5;
+    const Weather weather = weather_default();
+    double        along[lags] = {0}, power = 0, want[lags];
+    for (uint64_t seed = 1; seed <= seeds; seed++) {
+        SeekerRadar *radar = open_windy_radar(seed, wind_mps), *calm = open_radar(seed);
+        RadarScene   scene = scene_of(v, (uint32_t)seed, &weather);
+        const RadarFrame *first, *later;
+        arena_reset(stage.arena);
+        CHECK(seeker_radar_measure(&first, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
+        const size_t cells = (size_t)first->map.rows * (size_t)first->map.columns;
+        for (size_t i = 0; i < cells; i++) power += creal(first->map.cell[i] * conj(first->map.cell[i]));
+        for (int l = 0; l < lags; l++) {
+            scene.t_s = lag_s[l];
+            CHECK(seeker_radar_measure(&later, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
+            for (size_t i = 0; i < cells; i++) along[l] += creal(later->map.cell[i] * conj(first->map.cell[i]));
+            want[l] = power_by_integral(first, lag_s[l], wind_mps) / power_by_integral(first, 0, 0);
+        }
+        /* in a calm nothing moves */
+        scene.t_s = 0;
+        CHECK(seeker_radar_measure(&first, calm, &scene, stage.pool, stage.arena) == STATUS_OK);
+        scene.t_s = 1;
+        CHECK(seeker_radar_measure(&later, calm, &scene, stage.pool, stage.arena) == STATUS_OK);
+        CHECK(memcmp(first->map.cell, later->map.cell, cells * sizeof *first->map.cell) == 0);
+        seeker_radar_destroy(radar);
+        seeker_radar_destroy(calm);
+    }
+    for (int l = 0; l < lags; l++) {
+        print_message("ground in wind of %.0f m/s, %g s later: correlation %.3f, by the law %.3f\n", wind_mps, lag_s[l], along[l] / power, want[l]);
+        /* 4 standard errors of some 1000 independent cells */
+        CHECK_NEAR(along[l] / power, want[l], 0.13);
+    }
+    CHECK(want[0] - want[1] > 0.13 && want[1] - want[2] > 0.13); /* three that differ */
+}
+
 static void the_same_bits(void **state)
 {
     (void)state;
@@ -191,6 +241,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ground_has_the_power_of_its_integral),
         cmocka_unit_test(ground_is_where_it_must_be_in_doppler),
+        cmocka_unit_test(wind_decorrelates_the_ground),
         cmocka_unit_test(the_same_bits),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);

@@ -52,7 +52,7 @@ static Status open_radar(RadarSpeed *r)
     if (status != STATUS_OK) return status;
     r->model = catalog_model(r->catalog, catalog_find(r->catalog, tank_type, &origin, NULL));
     r->config = seeker_radar_signatures(&r->preset, 1e-3, NULL);
-    r->cells = signature_default_cells(r->config.frequency_hz, r->config.bandwidth_hz, r->config.aspect_rad);
+    r->cells = signature_default_cells(r->config.frequency_hz, r->config.bandwidth_hz, r->config.aspect_rad, r->config.interval_s);
     status = radar_target_create(&r->target, r->model, &r->materials, NULL);
     if (status == STATUS_OK) status = pool_create(&r->one, 1);
     if (status == STATUS_OK) status = pool_create(&r->many, bench_threads(r->bench));
