@@ -66,11 +66,12 @@ radar = json.loads(open(sys.argv[1] + "/truth.jsonl").read().splitlines()[-1])["
 target = [t for t in radar["targets"] if t["entity"] == "1:3001:11"][0]
 bounce, got = target["ground_bounce"], radar["detections"][0]
 g_db = 20 * math.log10(bounce["coherence"]) # across: the larger of the two
-once_db, twice_db = bounce["once_dbsm"]["hh"] - 10 - g_db - 20 * math.log10(2), bounce["twice_dbsm"]["hh"] - 10 - 2 * g_db
+alone = target["rcs_dbsm"]["hh"]
+once_db, twice_db = bounce["once_dbsm"]["hh"] - alone - g_db - 20 * math.log10(2), bounce["twice_dbsm"]["hh"] - alone - 2 * g_db
 print("mirrors %.3f; once %+.2f dB, twice %+.2f dB of a sphere's; all paths %.2f dBsm, found %.2f" % (
     bounce["coherence"], once_db, twice_db, bounce["rcs_dbsm"]["hh"], got["rcs_dbsm"]))
 good = 0.02 < bounce["coherence"] < 1 and abs(once_db) < 0.5 and abs(twice_db) < 0.5
-good &= abs(got["rcs_dbsm"] - bounce["rcs_dbsm"]["hh"]) < 0.3 and abs(bounce["rcs_dbsm"]["hh"] - 10) > 0.1
+good &= abs(got["rcs_dbsm"] - bounce["rcs_dbsm"]["hh"]) < 0.3 and abs(bounce["rcs_dbsm"]["hh"] - alone) > 0.1
 sys.exit(not good)
 P
 
