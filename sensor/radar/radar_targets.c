@@ -124,12 +124,48 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
     truth->range_rate_mps = making_range_rate(m, sight, t->v_enu_mps);
 }
 
+enum { block_centres = 512 };
+
+typedef struct EchoJob {
+    const Making  *making;
+    const Target  *target;
+    const Sight   *sight;              /* of the target's origin */
+    ScatterCentre *centre;             /* [count]; turned to the antenna's axes */
+    Echo          *echo;               /* [count] */
+    double         h_enu[3], v_enu[3];
+    double         visible;            /* amplitude */
+    int            count;
+} EchoJob;
+
+static void echo_block(void *user, int worker, int task)
+{
+    const EchoJob *job = user;
+    const Making  *m = job->making;
+    const Target  *t = job->target;
+    const double   pulse_s = 1 / m->preset->wave.repeat_hz;
+    const int      end = (task + 1) * block_centres < job->count ? (task + 1) * block_centres : job->count;
+    (void)worker;
+    for (int i = task * block_centres; i < end; i++) {
+        ScatterCentre *c = &job->centre[i];
+        Echo          *e = &job->echo[i];
+        double         p_enu[3], moves[3];
+        Sight          to;
+        m3_mul_v3(p_enu, t->r_enu_from_body, c->p);
+        v3_add(p_enu, p_enu, t->p_enu);
+        making_sight(&to, m, p_enu, 0);
+        velocity_of(moves, t, t->of->part[c->part].node, c->p);
+        scatter_turn(&c->s, job->h_enu, job->v_enu, m->right);
+        making_amplitudes(e->amplitude, m, &to, &c->s);
+        for (int k = 0; k < interval_channels; k++) e->amplitude[k] *= job->visible;
+        e->path_m = 2 * (job->sight->range_m - m->frame->reference_m) + c->path_m;
+        e->path_per_pulse_m = 2 * (making_range_rate(m, &to, moves) - m->frame->reference_rate_mps) * pulse_s;
+    }
+}
+
 static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *truth)
 {
-    const RadarPreset *p = m->preset;
     const Signature   *signature;
     SeekerRadar       *r = m->radar;
-    const double       pulse_s = 1 / p->wave.repeat_hz;
     radar_antenna(&t->antenna, m->scene->view->p_enu, t->p_enu, t->r_enu_from_body);
     *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down};
     const SignatureLook direct = signature_look(&t->antenna);
@@ -148,20 +184,12 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     if (!(truth->visible > 0)) return STATUS_OK;
     Echo *echo = arena_alloc(m->arena, (size_t)r->centres.count + 1, sizeof *echo);
     if (!echo) return STATUS_NO_MEMORY;
-    for (int i = 0; i < r->centres.count; i++) {
-        ScatterCentre *c = &r->centres.centre[i];
-        double         p_enu[3], moves[3];
-        Sight          to;
-        m3_mul_v3(p_enu, t->r_enu_from_body, c->p);
-        v3_add(p_enu, p_enu, t->p_enu);
-        making_sight(&to, m, p_enu, 0);
-        velocity_of(moves, t, t->of->part[c->part].node, c->p);
-        scatter_turn(&c->s, h_enu, v_enu, m->right);
-        making_amplitudes(echo[i].amplitude, m, &to, &c->s);
-        for (int k = 0; k < interval_channels; k++) echo[i].amplitude[k] *= sqrt(truth->visible);
-        echo[i].path_m = 2 * (sight->range_m - m->frame->reference_m) + c->path_m;
-        echo[i].path_per_pulse_m = 2 * (making_range_rate(m, &to, moves) - m->frame->reference_rate_mps) * pulse_s;
-    }
+    EchoJob job = {m, t, sight, r->centres.centre, echo, {0}, {0}, sqrt(truth->visible), r->centres.count};
+    memcpy(job.h_enu, h_enu, sizeof h_enu);
+    memcpy(job.v_enu, v_enu, sizeof v_enu);
+    const int blocks = (job.count + block_centres - 1) / block_centres;
+    if (m->pool) pool_run(m->pool, blocks, echo_block, &job);
+    else for (int b = 0; b < blocks; b++) echo_block(&job, 0, b);
     echo_add(r->echoes, echo, r->centres.count, m->pool);
     return STATUS_OK;
 }

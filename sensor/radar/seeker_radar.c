@@ -52,6 +52,7 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     if (r->library) signatures.store = signature_library_store(r->library);
     signatures.background = config->background;
     if (status == STATUS_OK) status = signatures_create(&r->signatures, &signatures, r->catalog, &r->materials);
+    if (status == STATUS_OK && r->ground) status = clutter_cache_create(&r->drawn);
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
     if (status == STATUS_OK)
         status = interval_plan_create(&r->plan, wave, &r->preset.range_window, &r->preset.doppler_window);
@@ -67,6 +68,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     interval_plan_destroy(r->plan);
     echo_grid_destroy(r->echoes);
     centres_free(&r->centres);
+    clutter_cache_destroy(r->drawn);
     signatures_destroy(r->signatures);
     signature_library_close(r->library);
     radar_materials_close(&r->materials);

@@ -3,7 +3,7 @@
 #define SENSOR_RADAR_SEEKER_RADAR_PRIVATE_H
 
 #include "render/radar/centres.h"
-#include "render/radar/clutter.h"
+#include "render/radar/clutter_cache.h"
 #include "render/radar/radar_path.h"
 #include "render/radar/signatures.h"
 #include "sensor/radar/echo.h"
@@ -23,6 +23,7 @@ struct SeekerRadar {
     Centres        centres;      /* of the target at work */
     ClutterTable   clutter;
     ClutterGrid    cells;
+    ClutterCache  *drawn;        /* NULL without ground */
     ClutterBand    band;
     GasLines       gases;
     RadarAir       air;

@@ -121,6 +121,8 @@ static const Setting keys[] = {
     {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of the ground; with a preset"},
     {"radar.warp_mm", SETTING_DOUBLE, AT(radar.warp_mm), 0, 20, NULL, "mm",
      "unevenness of entities' surfaces for that radar, rms over 0.5 m: models are planer than sheet metal; 0: as they are"},
+    {"radar.library", SETTING_PATH, AT(radar.library), 0, 0, NULL, "",
+     "folder of targets' signatures for that radar (`pitviper rcs MODEL --library`), read and added to; it changes times, not bits"},
     {"exercise.port", SETTING_INT, AT(exercise.port), -1, 65535, NULL, "",
      "UDP port of the exercise; 0: any; -1: 3000, or any if nothing was sent to it"},
     {"exercise.exercise", SETTING_INT, AT(exercise.exercise), -2, 255, NULL, "",
