@@ -2,6 +2,7 @@
  * section. */
 #include "sensor/commands/rcs.h"
 
+#include "sensor/commands/rcs_library.h"
 #include "sensor/commands/rcs_sweep.h"
 #include "sensor/commands/output_files.h"
 
@@ -224,12 +225,16 @@ int rcs_command(int argc, char **argv)
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             fputs(help, stdout);
+            fputs("\n", stdout);
+            fputs(rcs_library_help, stdout);
             return 0;
         }
     if (argc < 2) {
         fputs(help, stderr);
         return 2;
     }
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], "--library") == 0) return rcs_library_command(argc, argv);
     const int wrong = parse(&o, argc, argv);
     if (wrong) return wrong;
     RcsSweep     sweep = {0};

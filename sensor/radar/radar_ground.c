@@ -125,7 +125,7 @@ static void scatter_block(void *user, int worker, int task)
     if (g->count == 0) return;
     drop_hidden(g, m, &job->hidden[task]);
     landscape_surfaces(g->surface, m->scene->world->landscape, g->count, g->p_enu[0], g->p_enu[1]);
-    clutter_draw(scatterer, &r->cells, &r->clutter, r->band, g->count, g->cell, g->surface);
+    clutter_cache_draw(scatterer, r->drawn, &r->cells, &r->clutter, r->band, g->count, g->cell, g->surface);
     const double       *p = m->scene->view->p_enu;
     const ClutterGround ground = {g->count, g->cell, g->surface, {g->p_enu[0], g->p_enu[1], g->p_enu[2]},
                                   {g->n_enu[0], g->n_enu[1], g->n_enu[2]}};

@@ -112,10 +112,45 @@ static Status find_centres(bool *found, Making *m, Target *t, RadarTruth *truth)
     return signature ? centres_make(&r->centres, signature, &t->antenna, &t->antenna) : STATUS_OK;
 }
 
+enum { block_centres = 512 };
+
+typedef struct EchoJob {
+    const Making  *making;
+    const Target  *target;
+    const Sight   *sight;              /* of the target's origin */
+    ScatterCentre *centre;             /* [count]; turned to the antenna's axes */
+    Echo          *echo;               /* [count] */
+    double         h_enu[3], v_enu[3];
+    int            count;
+} EchoJob;
+
+static void echo_block(void *user, int worker, int task)
+{
+    const EchoJob *job = user;
+    const Making  *m = job->making;
+    const Target  *t = job->target;
+    const double   pulse_s = 1 / m->preset->wave.repeat_hz;
+    const int      end = (task + 1) * block_centres < job->count ? (task + 1) * block_centres : job->count;
+    (void)worker;
+    for (int i = task * block_centres; i < end; i++) {
+        ScatterCentre *c = &job->centre[i];
+        Echo          *e = &job->echo[i];
+        double         p_enu[3], moves[3];
+        Sight          to;
+        m3_mul_v3(p_enu, t->r_enu_from_body, c->p);
+        v3_add(p_enu, p_enu, t->p_enu);
+        making_sight(&to, m, p_enu, 0);
+        making_target_velocity(moves, t, c->part < 0 ? -1 : t->of->part[c->part].node, c->p);
+        scatter_turn(&c->s, job->h_enu, job->v_enu, m->right);
+        making_amplitudes(e->amplitude, m, &to, &c->s);
+        e->path_m = 2 * (job->sight->range_m - m->frame->reference_m) + c->path_m;
+        e->path_per_pulse_m = 2 * (making_range_rate(m, &to, moves) - m->frame->reference_rate_mps) * pulse_s;
+    }
+}
+
 static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *truth)
 {
     SeekerRadar  *r = m->radar;
-    const double  pulse_s = 1 / m->preset->wave.repeat_hz;
     ScatterMatrix field;
     bool          found;
     radar_antenna(&t->antenna, m->scene->view->p_enu, t->p_enu, t->r_enu_from_body);
@@ -135,20 +170,14 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     basis_of(h_enu, v_enu, t);
     add_truth(truth, m, t, sight, &r->centres, seen, h_enu, v_enu);
     centres_field(&field, &r->centres, m->preset->wave.centre_hz);
-    for (int i = 0; i < r->centres.count; i++) {
-        ScatterCentre *c = &r->centres.centre[i];
-        double         p_enu[3], moves[3];
-        Sight          to;
-        if (!seen[i]) continue;
-        m3_mul_v3(p_enu, t->r_enu_from_body, c->p);
-        v3_add(p_enu, p_enu, t->p_enu);
-        making_sight(&to, m, p_enu, 0);
-        making_target_velocity(moves, t, c->part < 0 ? -1 : t->of->part[c->part].node, c->p);
-        scatter_turn(&c->s, h_enu, v_enu, m->right);
-        making_amplitudes(echo[count].amplitude, m, &to, &c->s);
-        echo[count].path_m = 2 * (sight->range_m - m->frame->reference_m) + c->path_m;
-        echo[count++].path_per_pulse_m = 2 * (making_range_rate(m, &to, moves) - m->frame->reference_rate_mps) * pulse_s;
-    }
+    for (int i = 0; i < r->centres.count; i++)
+        if (seen[i]) r->centres.centre[count++] = r->centres.centre[i];
+    EchoJob job = {m, t, sight, r->centres.centre, echo, {0}, {0}, count};
+    memcpy(job.h_enu, h_enu, sizeof h_enu);
+    memcpy(job.v_enu, v_enu, sizeof v_enu);
+    const int blocks = (count + block_centres - 1) / block_centres;
+    if (m->pool) pool_run(m->pool, blocks, echo_block, &job);
+    else for (int b = 0; b < blocks; b++) echo_block(&job, 0, b);
     echo_add(r->echoes, echo, count, m->pool);
     return truth->given || !(truth->visible > 0) ? STATUS_OK : making_bounce(m, t, &field, truth);
 }

@@ -57,6 +57,7 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     signatures.background = config->background;
     if (status == STATUS_OK) status = signatures_create(&r->signatures, &signatures, r->catalog, &r->materials);
     if (status == STATUS_OK && config->given && *config->given) status = given_list_open(&r->given, config->given);
+    if (status == STATUS_OK && r->ground) status = clutter_cache_create(&r->drawn);
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
     if (status == STATUS_OK)
         status = interval_plan_create(&r->plan, wave, &r->preset.range_window, &r->preset.doppler_window);
@@ -72,6 +73,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     interval_plan_destroy(r->plan);
     echo_grid_destroy(r->echoes);
     centres_free(&r->centres);
+    clutter_cache_destroy(r->drawn);
     signatures_destroy(r->signatures);
     signature_library_close(r->library);
     given_list_close(r->given);

@@ -3,7 +3,7 @@
 #define SENSOR_RADAR_SEEKER_RADAR_PRIVATE_H
 
 #include "render/radar/centres.h"
-#include "render/radar/clutter.h"
+#include "render/radar/clutter_cache.h"
 #include "render/radar/given_list.h"
 #include "render/radar/ground_bounce.h"
 #include "render/radar/radar_path.h"
@@ -28,6 +28,7 @@ struct SeekerRadar {
     GroundTable    mirror;       /* how the ground reflects */
     bool           ground_bounce;
     ClutterGrid    cells;
+    ClutterCache  *drawn;        /* NULL without ground */
     ClutterBand    band;
     GasLines       gases;
     RadarAir       air;

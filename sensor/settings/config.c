@@ -125,6 +125,8 @@ static const Setting keys[] = {
      "unevenness of entities' surfaces for that radar, rms over 0.5 m: models are planer than sheet metal; 0: as they are"},
     {"radar.given", SETTING_PATH, AT(radar.given), 0, 0, NULL, "",
      "CSV file of signatures for that radar, measured or from another program, that stand in for models; empty: none"},
+    {"radar.library", SETTING_PATH, AT(radar.library), 0, 0, NULL, "",
+     "folder of targets' signatures for that radar (`pitviper rcs MODEL --library`), read and added to; it changes times, not bits"},
     {"exercise.port", SETTING_INT, AT(exercise.port), -1, 65535, NULL, "",
      "UDP port of the exercise; 0: any; -1: 3000, or any if nothing was sent to it"},
     {"exercise.exercise", SETTING_INT, AT(exercise.exercise), -2, 255, NULL, "",

@@ -55,6 +55,7 @@ typedef struct Config {
         bool   ground_bounce;      /* likewise: the ground mirrors entities */
         double warp_mm;            /* likewise: unevenness of surfaces */
         char   given[256];         /* likewise: list of signatures that are given; empty: none */
+        char   library[1024];      /* likewise: a folder of targets' signatures; empty: none */
     } radar;
     struct {
         int    port, exercise;     /* exercise -1: the one with the most PDUs, -2: all */
