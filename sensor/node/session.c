@@ -2,6 +2,7 @@
 #include "sensor/node/session_private.h"
 
 #include "sensor/framefile/frame_save.h"
+#include "sensor/world/frame_radar.h"
 #include "sensor/node/scene_rate.h"
 #include "sensor/publish/pairs.h"
 #include "sensor/world/frame_world.h"
@@ -237,17 +238,8 @@ static Status open_vehicles(Session *s)
 
 static Status open_radar(Session *s)
 {
-    const SessionShared *shared = s->shared;
-    const Config        *config = shared->config;
-    char                 catalog[4096];
-    if (strcmp(config->radar.preset, "none") == 0) return STATUS_OK;
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    return seeker_radar_create(&s->radar, &(SeekerRadarConfig){.preset = config->radar.preset, .catalog = catalog,
-                                                               .isa = shared->isa, .ground = config->radar.ground,
-                                                               .warp_m = 1e-3 * config->radar.warp_mm,
-                                                               .given = config->radar.given,
-                                                               .wind_mps = config->weather.wind_mps,
-                                                               .seed = (uint64_t)config->seed});
+    const Config *config = s->shared->config;
+    return strcmp(config->radar.preset, "none") == 0 ? STATUS_OK : frame_radar_open(&s->radar, config, s->shared->isa);
 }
 
 static Status open_session(Session *s)

@@ -62,12 +62,16 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
     return o;
 }
 
-/* Of the map, before anything is rounded for a file. */
+Status radar_map_sha256(char out[sha256_text_size], const RadarFrame *r)
+{
+    const Plane plane = {"range_doppler", PLANE_F64, 2 * r->map.columns, interval_channels * r->map.rows, r->map.cell};
+    return plane_hash(out, &plane, 1);
+}
+
 static void set_hash(json_t *o, const RadarFrame *r)
 {
-    char        hash[sha256_text_size];
-    const Plane plane = {"range_doppler", PLANE_F64, 2 * r->map.columns, interval_channels * r->map.rows, r->map.cell};
-    if (plane_hash(hash, &plane, 1) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
+    char hash[sha256_text_size];
+    if (radar_map_sha256(hash, r) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
 }
 
 json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const Catalog *catalog)

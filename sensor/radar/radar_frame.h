@@ -36,6 +36,8 @@ typedef struct RadarTruth {
 typedef struct RadarFrame {
     const RadarPreset *preset;
     double          reference_m, reference_rate_mps; /* the middle of the range window, and how it moves */
+    double          v_enu_mps[3], aim_m, aim_v_enu_mps[3]; /* as in its RadarScene: of the antenna; to the aim, NAN: none; of it */
+    uint32_t        number;            /* likewise: for its noise */
     double          air_db;            /* one way, over the reference range */
     RangeDoppler    map;
     double complex *profile;           /* [2][samples]: range profiles of the middle pulse, sqrt(W): the transmitted polarisation, the

@@ -205,6 +205,7 @@ static Status take_target(bool *taken, Making *m, Target *t, Sight *sight)
     t->joint = arena_alloc(m->arena, (size_t)t->of->node_count + 1, sizeof *t->joint);
     if (!pose || !t->joint) return STATUS_NO_MEMORY;
     snapshot_pose(pose, t->joint, m->scene->snapshot, t->index, t->of);
+    if (m->scene->joint) memcpy(t->joint, m->scene->joint + e->first_node, (size_t)t->of->node_count * sizeof *t->joint);
     *taken = true;
     return STATUS_OK;
 }
