@@ -179,6 +179,8 @@ static void share_of_edge(Share *out, const EdgeSegment *e, const TubeHits *h, d
     out->part = e->part;
 }
 
+static double square(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
+
 Status centres_make(Centres *out, const TotalField *field, const ScatterAntenna *tx, const ScatterAntenna *rx,
                     const CentresConfig *config)
 {
@@ -189,11 +191,14 @@ Status centres_make(Centres *out, const TotalField *field, const ScatterAntenna 
     Share           share;
     Status          status = STATUS_OK;
     out->count = out->slots = 0;
+    out->tubes_same_m2 = out->tubes_cross_m2 = 0;
     if (!tx) tx = &h->tx;
     if (!rx) rx = &h->rx;
     cells_of(&cells, tx, rx, config);
     for (size_t i = 0; i < h->count && status == STATUS_OK; i++) {
         share_of_hit(&share, h, i, k, tx, rx);
+        out->tubes_same_m2 += 0.5 * (square(share.s[0]) + square(share.s[3]));
+        out->tubes_cross_m2 += 0.5 * (square(share.s[1]) + square(share.s[2]));
         status = add(&table, &cells, &share, k);
     }
     for (int i = 0; i < field->edges.count && status == STATUS_OK; i++) {

@@ -35,6 +35,7 @@ typedef struct Centres {
     ScatterCentre *centre;
     int32_t       *slot;      /* of a hash table, a power of two long */
     int            slots;
+    double         tubes_same_m2, tubes_cross_m2; /* squares of the hits' own fields, added up: mean of HH and VV, of HV and VH */
 } Centres;
 
 /* out: zeroed, or of an earlier call, whose memory is used again. tx, rx: the antennas now, NULL: those of the

@@ -42,7 +42,7 @@ static json_t *scatterer_json(const RadarScatterer *s, const Model *model)
 static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const Catalog *catalog)
 {
     static const char *const polarisation[3] = {"hh", "vv", "hv"};
-    json_t                  *o = json_object(), *rcs = json_object(), *strongest = json_array();
+    json_t                  *o = json_object(), *rcs = json_object(), *error = json_object(), *strongest = json_array();
     const SnapshotEntity    *e = &snapshot->entity[t->entity];
     char                     text[dis_id_text_size];
     dis_entity_id_text(text, e->id);
@@ -54,6 +54,10 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
     set_number(o, "visible_fraction", t->visible);
     for (int p = 0; p < 3; p++) set_number(rcs, polarisation[p], db(t->rcs_m2[p]));
     json_object_set_new(o, "rcs_dbsm", rcs);
+    for (int p = 0; p < 3; p++) set_number(error, polarisation[p], t->rcs_error_db[p]);
+    if (!t->given) json_object_set_new(o, "rcs_error_db", error);
+    else json_decref(error);
+    set_number(o, "map_error_db", db(t->map_error));
     set_number(o, "snr_db", db(t->snr));
     json_object_set_new(o, "centres", json_integer(t->centres));
     const Model *model = catalog_model(catalog, e->model);

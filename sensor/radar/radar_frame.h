@@ -27,6 +27,8 @@ typedef struct RadarTruth {
     bool   given;                      /* by a signature of radar.given, else by its model */
     double visible;                    /* share of its centres' power that relief, plants and other entities leave in sight */
     double rcs_m2[3];                  /* hh, vv, hv, at the centre frequency, as if wholly visible */
+    double rcs_error_db[3];            /* standard deviation, by the grid of tubes (render/radar/signature_error.h); NAN: given */
+    double map_error;                  /* error of the map's cells over its centres' power: tubes, and what centres leave out */
     double snr;                        /* by the radar equation, of the centres in sight, in one cell of the map; 0: there is none */
     int    centres;                    /* scattering centres that it was summed from */
     int    strongest_count;

@@ -2,6 +2,9 @@
 #include "sensor/radar/seeker_radar_private.h"
 
 #include "render/radar/radar_equation.h"
+#include "render/radar/signature_error.h"
+
+static const double centre_phase_rad = 0.1; /* that its cell may span from its middle */
 
 /* An entity at work. */
 typedef struct Target {
@@ -72,6 +75,18 @@ static void add_turned(ScatterMatrix *sum, const ScatterMatrix *s, double comple
     sum->hh += s->hh * turn, sum->hv += s->hv * turn, sum->vh += s->vh * turn, sum->vv += s->vv * turn;
 }
 
+/* power: of the centres, HH and VV together, as cross section. */
+static void add_error(RadarTruth *truth, const Centres *centres, const double complex field[3], double power_m2)
+{
+    SignatureError error;
+    signature_error(&error, centres);
+    for (int p = 0; p < 3; p++)
+        truth->rcs_error_db[p] = truth->given ? NAN : signature_error_db(field[p], p == 2 ? error.cross_m2 : error.same_m2);
+    /* phases within a centre's cell are even up to centre_phase_rad: their mean square is a third of its square, and over the
+     * band half of that */
+    truth->map_error = truth->given ? NAN : 8 * pi_rad * error.same_m2 / power_m2 + centre_phase_rad * centre_phase_rad / 6;
+}
+
 static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const Sight *sight, const Centres *centres,
                       const bool *seen, const double h_enu[3], const double v_enu[3])
 {
@@ -96,6 +111,7 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
     const double complex of[3] = {whole.hh, whole.vv, whole.hv};
     for (int p = 0; p < 3; p++) truth->rcs_m2[p] = 4 * pi_rad * square(of[p]);
     truth->centres = centres->count;
+    add_error(truth, centres, of, power);
     truth->visible = power > 0 ? seen_power / power : 0;
 
     const RadarPreset *preset = m->preset;
@@ -136,7 +152,7 @@ static Status model_centres(Making *m, Target *t, const Sight *sight)
     if (!part_turn_rad) return STATUS_NO_MEMORY;
     return centres_make(&r->centres, field, &t->antenna, &t->antenna,
                         &(CentresConfig){.frequency_hz = p->wave.centre_hz, .bandwidth_hz = p->wave.bandwidth_hz,
-                                         .turn_rad = turn_rad, .phase_rad = 0.1, .part_turn_rad = part_turn_rad});
+                                         .turn_rad = turn_rad, .phase_rad = centre_phase_rad, .part_turn_rad = part_turn_rad});
 }
 
 static Status find_centres(Making *m, Target *t, const Sight *sight, RadarTruth *truth)
