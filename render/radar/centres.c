@@ -40,6 +40,8 @@ Status centres_make(Centres *out, const Signature *s, const ScatterAntenna *tx, 
         out->capacity = s->count;
     }
     out->count = s->count;
+    out->tubes_same_m2 = s->tubes_same_m2;
+    out->tubes_cross_m2 = s->tubes_cross_m2;
     for (int i = 0; i < s->count; i++) see(&out->centre[i], s, &s->centre[i], k, tx, rx);
     return STATUS_OK;
 }

@@ -21,6 +21,7 @@ typedef struct ScatterCentre {
 typedef struct Centres {
     int            count, capacity;
     ScatterCentre *centre;    /* in the order of the signature's */
+    double         tubes_same_m2, tubes_cross_m2; /* Signature */
 } Centres;
 
 /* out: zeroed, or of an earlier call, whose memory is used again. tx, rx: the antennas now, in the signature's bin. */

@@ -363,6 +363,7 @@ Status given_signature_centres(Centres *out, const GivenSignature *g, const Scat
 {
     static const double origin[3];
     out->count = 0;
+    out->tubes_same_m2 = out->tubes_cross_m2 = 0;
     const Status status = grow(out, g->scatterers > 0 ? g->scatterers : 1);
     if (status != STATUS_OK) return status;
     if (g->scatterers == 0) {

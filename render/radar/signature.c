@@ -5,10 +5,21 @@
 
 _Static_assert(sizeof(SignatureCentre) == 84, "written to files as it is");
 
+static const double path_phase_rad = 0.2, across_phase_rad = 0.8, spin_phase_rad = 0.5;
+
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s)
 {
     return (SignatureCells){.frequency_hz = frequency_hz, .bandwidth_hz = bandwidth_hz, .turn_rad = turn_rad,
-                            .path_phase_rad = 0.2, .across_phase_rad = 0.8, .interval_s = interval_s, .spin_phase_rad = 0.5};
+                            .path_phase_rad = path_phase_rad, .across_phase_rad = across_phase_rad,
+                            .interval_s = interval_s, .spin_phase_rad = spin_phase_rad};
+}
+
+double signature_cells_error(void)
+{
+    /* along the path phases are even up to path_phase_rad at the ends of the band: a third of its square, over the band half
+     * of that; across, what first moments leave at the bin's edge */
+    const double across = across_phase_rad * across_phase_rad / 12;
+    return path_phase_rad * path_phase_rad / 6 + across * across;
 }
 
 void signature_axes(Signature *out, const SignatureCells *cells)
@@ -272,6 +283,8 @@ static bool keep(SignatureCentre *out, const Making *m, const Cell *c)
     return isfinite(out->scale) && isfinite(out->moment_scale) && isfinite(out->weight);
 }
 
+static double square(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
+
 Status signature_make(Signature *out, const TotalField *field, const Model *model, const SignatureCells *cells)
 {
     const TubeHits *h = &field->hits;
@@ -288,6 +301,8 @@ Status signature_make(Signature *out, const TotalField *field, const Model *mode
     m.across_m = side;
     for (size_t i = 0; i < h->count && status == STATUS_OK; i++) {
         share_of_hit(&share, h, i, m.k);
+        out->tubes_same_m2 += 0.5 * (square(share.s[0]) + square(share.s[3]));
+        out->tubes_cross_m2 += 0.5 * (square(share.s[1]) + square(share.s[2]));
         status = add(&m, &share);
     }
     for (int i = 0; i < field->edges.count && status == STATUS_OK; i++) {
@@ -306,6 +321,7 @@ Status signature_make(Signature *out, const TotalField *field, const Model *mode
 
 bool signature_is_sound(const Signature *s, int parts)
 {
+    if (!(s->tubes_same_m2 >= 0 && s->tubes_same_m2 < 1e18 && s->tubes_cross_m2 >= 0 && s->tubes_cross_m2 < 1e18)) return false;
     for (int i = 0; i < s->count; i++) {
         const SignatureCentre *c = &s->centre[i];
         bool                   good = c->path > -1000000000 && c->path < 1000000000 && c->part < parts && c->zero == 0;

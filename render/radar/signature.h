@@ -25,6 +25,9 @@ typedef struct SignatureCells {
 /* Phases of 0.2, 0.8 and 0.5 rad. */
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s);
 
+/* Power of the error that those cells leave, at most, over the power of their centres. */
+double signature_cells_error(void);
+
 typedef struct SignatureCentre {
     int32_t  path;         /* cell along the path */
     float    path_share;   /* 0 .. 1: its path is (path + path_share) path_step_m, that at which its phase turns over the band */
@@ -45,6 +48,7 @@ typedef struct Signature {
     double           frequency_hz, bandwidth_hz;
     double           path_step_m;
     double           right[3], up[3];    /* across the line of sight */
+    double           tubes_same_m2, tubes_cross_m2; /* squares of the hits' own fields, added up: mean of HH and VV, of HV and VH */
     int              count;
     SignatureCentre *centre;             /* in the order in which hits, then edges meet their cells */
 } Signature;

@@ -2,6 +2,7 @@
 #include "sensor/node/session_private.h"
 
 #include "sensor/framefile/frame_save.h"
+#include "sensor/world/frame_radar.h"
 #include "sensor/node/scene_rate.h"
 #include "sensor/publish/pairs.h"
 #include "sensor/world/frame_world.h"
@@ -250,20 +251,9 @@ static Status open_vehicles(Session *s)
 static Status open_radar(Session *s)
 {
     const SessionShared *shared = s->shared;
-    const Config        *config = shared->config;
-    char                 catalog[4096];
-    if (strcmp(config->radar.preset, "none") == 0) return STATUS_OK;
+    if (strcmp(shared->config->radar.preset, "none") == 0) return STATUS_OK;
     const Status status = radar_absent_read(&s->radar_absent, shared->notes);
-    if (status != STATUS_OK) return status;
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    return seeker_radar_create(&s->radar, &(SeekerRadarConfig){.preset = config->radar.preset, .catalog = catalog,
-                                                               .isa = shared->isa, .ground = config->radar.ground,
-                                                               .ground_bounce = config->radar.ground_bounce,
-                                                               .warp_m = 1e-3 * config->radar.warp_mm,
-                                                               .given = config->radar.given,
-                                                               .wind_mps = config->weather.wind_mps,
-                                                               .seed = (uint64_t)config->seed,
-                                                               .library = config->radar.library, .background = shared->live});
+    return status == STATUS_OK ? frame_radar_open(&s->radar, shared->config, shared->isa, shared->live) : status;
 }
 
 static Status open_session(Session *s)

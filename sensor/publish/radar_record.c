@@ -42,7 +42,7 @@ static json_t *scatterer_json(const RadarScatterer *s, const Model *model)
 static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const Catalog *catalog)
 {
     static const char *const polarisation[3] = {"hh", "vv", "hv"};
-    json_t                  *o = json_object(), *rcs = json_object(), *strongest = json_array();
+    json_t                  *o = json_object(), *rcs = json_object(), *error = json_object(), *strongest = json_array();
     const SnapshotEntity    *e = &snapshot->entity[t->entity];
     char                     text[dis_id_text_size];
     dis_entity_id_text(text, e->id);
@@ -54,6 +54,10 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
     set_number(o, "visible_fraction", t->visible);
     for (int p = 0; p < 3; p++) set_number(rcs, polarisation[p], db(t->rcs_m2[p]));
     json_object_set_new(o, "rcs_dbsm", rcs);
+    for (int p = 0; p < 3; p++) set_number(error, polarisation[p], t->rcs_error_db[p]);
+    if (!t->given) json_object_set_new(o, "rcs_error_db", error);
+    else json_decref(error);
+    set_number(o, "map_error_db", db(t->map_error));
     set_number(o, "snr_db", db(t->snr));
     json_object_set_new(o, "centres", json_integer(t->centres));
     if (t->bounce.coherence > 0) {
@@ -74,12 +78,16 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
     return o;
 }
 
-/* Of the map, before anything is rounded for a file. */
+Status radar_map_sha256(char out[sha256_text_size], const RadarFrame *r)
+{
+    const Plane plane = {"range_doppler", PLANE_F64, 2 * r->map.columns, interval_channels * r->map.rows, r->map.cell};
+    return plane_hash(out, &plane, 1);
+}
+
 static void set_hash(json_t *o, const RadarFrame *r)
 {
-    char        hash[sha256_text_size];
-    const Plane plane = {"range_doppler", PLANE_F64, 2 * r->map.columns, interval_channels * r->map.rows, r->map.cell};
-    if (plane_hash(hash, &plane, 1) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
+    char hash[sha256_text_size];
+    if (radar_map_sha256(hash, r) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
 }
 
 json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const Catalog *catalog)

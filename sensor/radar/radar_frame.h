@@ -33,6 +33,8 @@ typedef struct RadarTruth {
     bool   given;                      /* by a signature of radar.given, else by its model */
     double visible;                    /* share of its centres' power that relief, plants and other entities leave in sight */
     double rcs_m2[3];                  /* hh, vv, hv, at the centre frequency, as if wholly visible and without ground */
+    double rcs_error_db[3];            /* standard deviation, by the grid of tubes (render/radar/signature_error.h); NAN: given */
+    double map_error;                  /* error of the map's cells over its centres' power: tubes, and what centres leave out */
     double snr;                        /* by the radar equation, of the centres in sight, in one cell of the map; 0: there is none */
     int    centres;                    /* scattering centres that it was summed from */
     int    strongest_count;
@@ -43,6 +45,8 @@ typedef struct RadarTruth {
 typedef struct RadarFrame {
     const RadarPreset *preset;
     double          reference_m, reference_rate_mps; /* the middle of the range window, and how it moves */
+    double          v_enu_mps[3], aim_m, aim_v_enu_mps[3]; /* as in its RadarScene: of the antenna; to the aim, NAN: none; of it */
+    uint32_t        number;            /* likewise: for its noise */
     double          air_db;            /* one way, over the reference range */
     RangeDoppler    map;
     double complex *profile;           /* [2][samples]: range profiles of the middle pulse, sqrt(W): the transmitted polarisation, the

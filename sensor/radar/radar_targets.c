@@ -2,6 +2,7 @@
 #include "sensor/radar/seeker_radar_private.h"
 
 #include "render/radar/radar_equation.h"
+#include "render/radar/signature_error.h"
 
 /* ---- polarisation and motion ---------------------------------------------------------------------- */
 
@@ -60,6 +61,16 @@ static void add_turned(ScatterMatrix *sum, const ScatterMatrix *s, double comple
     sum->hh += s->hh * turn, sum->hv += s->hv * turn, sum->vh += s->vh * turn, sum->vv += s->vv * turn;
 }
 
+/* power: of the centres, HH and VV together, as cross section. */
+static void add_error(RadarTruth *truth, const Centres *centres, const double complex field[3], double power_m2)
+{
+    SignatureError error;
+    signature_error(&error, centres);
+    for (int p = 0; p < 3; p++)
+        truth->rcs_error_db[p] = truth->given ? NAN : signature_error_db(field[p], p == 2 ? error.cross_m2 : error.same_m2);
+    truth->map_error = truth->given ? NAN : 8 * pi_rad * error.same_m2 / power_m2 + signature_cells_error();
+}
+
 static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const Sight *sight, const Centres *centres,
                       const bool *seen, const double h_enu[3], const double v_enu[3])
 {
@@ -84,6 +95,7 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
     const double complex of[3] = {whole.hh, whole.vv, whole.hv};
     for (int p = 0; p < 3; p++) truth->rcs_m2[p] = 4 * pi_rad * square(of[p]);
     truth->centres = centres->count;
+    add_error(truth, centres, of, power);
     truth->visible = power > 0 ? seen_power / power : 0;
 
     const RadarPreset *preset = m->preset;
@@ -204,6 +216,7 @@ static Status take_target(bool *taken, Making *m, Target *t, Sight *sight)
     t->joint = arena_alloc(m->arena, (size_t)t->of->node_count + 1, sizeof *t->joint);
     if (!pose || !t->joint) return STATUS_NO_MEMORY;
     snapshot_pose(pose, t->joint, m->scene->snapshot, t->index, t->of);
+    if (m->scene->joint) memcpy(t->joint, m->scene->joint + e->first_node, (size_t)t->of->node_count * sizeof *t->joint);
     *taken = true;
     return STATUS_OK;
 }

@@ -45,6 +45,7 @@ void   seeker_radar_destroy(SeekerRadar *radar); /* accepts NULL */
 typedef struct RadarScene {
     const World    *world;
     const Snapshot *snapshot;
+    const double   *joint;       /* values of the joints of its nodes, where these are posed; NULL: by snapshot_pose */
     const View     *view;        /* where the antenna is, and its axes */
     int             hidden;      /* snapshot index of the host, -1: none; it is not in its own way */
     double          v_enu_mps[3];/* of the antenna */

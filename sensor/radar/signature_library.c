@@ -10,7 +10,7 @@
 /* Raise with every change of render/radar that changes a bit of a signature. */
 enum { computation = 1 };
 
-enum { head_octets = 80, hash_octets = sha256_text_size - 1, most_centres = 1 << 22, models_known = 512 };
+enum { head_octets = 96, hash_octets = sha256_text_size - 1, most_centres = 1 << 22, models_known = 512 };
 static const char magic[] = "PVSIGN1\n";
 
 struct SignatureLibrary {
@@ -36,6 +36,8 @@ size_t signature_to_octets(uint8_t *out, const Signature *s, const char key[sha2
         memcpy(out, magic, 8);
         memcpy(out + 8, key, hash_octets);
         memcpy(out + 8 + hash_octets, counts, sizeof counts);
+        memcpy(out + 16 + hash_octets, &s->tubes_same_m2, 8);
+        memcpy(out + 24 + hash_octets, &s->tubes_cross_m2, 8);
         if (body > 0) memcpy(out + head_octets, s->centre, body);
         if (sha256_bytes(sum, out, head_octets + body) != STATUS_OK) return 0;
         memcpy(out + head_octets + body, sum, hash_octets);
@@ -58,13 +60,17 @@ Status signature_from_octets(Signature *out, const uint8_t *octets, size_t count
     SignatureCentre *centre = malloc(body + 1);
     if (!centre) return STATUS_NO_MEMORY;
     if (body > 0) memcpy(centre, octets + head_octets, body);
-    const Signature read = {.count = (int)counts[0], .centre = centre};
+    Signature read = {.count = (int)counts[0], .centre = centre};
+    memcpy(&read.tubes_same_m2, octets + 16 + hash_octets, 8);
+    memcpy(&read.tubes_cross_m2, octets + 24 + hash_octets, 8);
     if (!signature_is_sound(&read, parts)) {
         free(centre);
         return STATUS_BAD_VALUE;
     }
     out->count = read.count;
     out->centre = centre;
+    out->tubes_same_m2 = read.tubes_same_m2;
+    out->tubes_cross_m2 = read.tubes_cross_m2;
     return STATUS_OK;
 }
 

@@ -198,6 +198,13 @@ static const ReferenceField fields[] = {
     {"radar.targets[].rcs_dbsm.hh", "number", "dB over 1 m2", "received, transmitted", "", "h along the camera's columns"},
     {"radar.targets[].rcs_dbsm.vv", "number", "dB over 1 m2", "", "", "v along its rows"},
     {"radar.targets[].rcs_dbsm.hv", "number", "dB over 1 m2", "", "", "received h, transmitted v"},
+    {"radar.targets[].rcs_error_db", "object", "", "", "of a given signature", "estimated standard deviation of these, by the grid of ray "
+     "tubes alone: not by the model or physical optics"},
+    {"radar.targets[].rcs_error_db.hh", "number", "dB", "", "when it scatters nothing back", "of HH"},
+    {"radar.targets[].rcs_error_db.vv", "number", "dB", "", "when it scatters nothing back", "of VV"},
+    {"radar.targets[].rcs_error_db.hv", "number", "dB", "", "when it scatters nothing back", "of HV"},
+    {"radar.targets[].map_error_db", "number", "dB", "", "of a given signature", "error of its cells of the map, over its power in them: by "
+     "ray tubes and by scattering centres"},
     {"radar.targets[].snr_db", "number", "dB", "", "when none of it is in sight", "by the radar equation, of its centres in sight in "
      "one cell, over the thermal noise of a cell"},
     {"radar.targets[].centres", "integer", "", "", "", "scattering centres that it was summed from"},
