@@ -246,6 +246,7 @@ static Status open_radar(Session *s)
                                                                .isa = shared->isa, .ground = config->radar.ground,
                                                                .warp_m = 1e-3 * config->radar.warp_mm,
                                                                .wind_mps = config->weather.wind_mps,
+                                                               .chaff_dipoles = config->radar.chaff_dipoles,
                                                                .seed = (uint64_t)config->seed});
 }
 

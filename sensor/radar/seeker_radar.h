@@ -28,6 +28,7 @@ typedef struct SeekerRadarConfig {
     bool        ground;          /* scatterers of the ground */
     double      warp_m;          /* unevenness of surfaces, rms (render/radar/warp.h) */
     double      wind_mps;
+    double      chaff_dipoles; /* resonant ones in a cloud of chaff; 0: chaff is not seen */
     uint64_t    seed;
 } SeekerRadarConfig;
 

@@ -4,6 +4,7 @@
 
 #include "render/radar/centres.h"
 #include "render/radar/clutter.h"
+#include "render/radar/foliage.h"
 #include "render/radar/radar_path.h"
 #include "render/radar/signatures.h"
 #include "sensor/radar/echo.h"
@@ -11,8 +12,8 @@
 
 struct SeekerRadar {
     RadarPreset    preset;
-    bool           ground;
-    double         wind_mps;
+    bool           ground, in_band; /* in_band: of the clutter table */
+    double         wind_mps, chaff_dipoles;
     uint64_t       seed;
     Catalog       *catalog;      /* its own: as fine as the wavelength needs */
     RadarMaterials materials;
@@ -21,6 +22,7 @@ struct SeekerRadar {
     ClutterTable   clutter;
     ClutterGrid    cells;
     ClutterBand    band;
+    Foliage       *foliage;      /* of the world's plants; NULL: none stand */
     GasLines       gases;
     RadarAir       air;
     EchoGrid      *echoes;
@@ -37,6 +39,9 @@ typedef struct Making {
     double            half_window_m;               /* of range */
     double            widest;                      /* sine off the axis beyond which entities are left out */
     double            air_np_m;                    /* power, one way, 1/m */
+    const struct ChaffCloud *chaff;                /* [chaff_count] */
+    int               chaff_count;
+    double            base_m;                      /* height of the ground at the reference, ENU */
     Pool             *pool;
     Arena            *arena;
 } Making;
@@ -54,13 +59,28 @@ void making_sight(Sight *out, const Making *making, const double p_enu[3], doubl
 double making_range_rate(const Making *making, const Sight *sight, const double v_enu_mps[3]);
 
 /* Its amplitudes in the four channels: what is scattered (m, received h or v along the antenna's right and up by
- * transmitted), at a range and direction, through the air. */
+ * transmitted), at a range and direction, through the air, the foliage on the way (render/radar/foliage.h) and chaff. */
 void making_amplitudes(double complex amplitude[interval_channels], const Making *making, const Sight *sight,
                        const ScatterMatrix *s);
+
+/* Where relief or an entity is met more than slack_m before the place that a sight leads to. count: up to hits_capacity. */
+void making_hidden(bool *hidden, const Making *making, const Sight *sight, int count, double slack_m);
+/* An echo that moves at v_enu_mps, without its amplitudes. */
+void making_echo(Echo *out, const Making *making, const Sight *sight, const double v_enu_mps[3]);
+/* Rectangle in plan about what the main lobe lights within the window. */
+void making_lit_rectangle(double low_m[2], double high_m[2], const Making *making);
+/* Sine off the axis of the main lobe's null. */
+double making_null(const Making *making);
 
 /* Adds the echoes of entities, and their truth to the frame. */
 Status making_targets(Making *making);
 /* Adds those of the ground. */
 Status making_ground(Making *making);
+/* Before any echo: what weakens all of them on their way, foliage and chaff; its loss to a sight's place in nepers of
+ * power, one way. */
+Status making_volume_open(Making *making);
+double making_volume_np(const Making *making, const Sight *sight);
+/* Adds the echoes of rain, foliage and chaff. */
+Status making_volume(Making *making);
 
 #endif
