@@ -14,7 +14,7 @@ typedef struct RadarTruth {
     int    entity;                     /* index in the snapshot */
     double range_m, range_rate_mps;    /* of the origin of its model */
     double cos_right, cos_down;
-    double visible;                    /* share of its box that relief, plants and other entities leave */
+    double visible;                    /* share of its box that relief and other entities leave; foliage weakens beside it */
     double rcs_m2[3];                  /* hh, vv, hv, at the centre frequency, as if wholly visible */
     double snr;                        /* by the radar equation, in its cell of the map, if it were a point; 0: none of it is seen */
     int    centres;                    /* scattering centres that it was summed from */
@@ -37,7 +37,7 @@ typedef struct RadarFrame {
     int             targets;
     const RadarTruth *target;
     ReceiverReport  receiver;
-    int             ground_cells, ground_hidden; /* scatterers of the ground; of them, hidden */
+    int             ground_cells, ground_hidden; /* scatterers of the ground; of them, hidden by relief or entities */
     double          rain_1_m;          /* backscatter of rain by its volume, m2/m3 */
     int             crowns, clouds;    /* plants, and clouds of chaff, within beam and window */
     double          spent_s;           /* wall clock */

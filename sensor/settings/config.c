@@ -118,7 +118,7 @@ static const Setting keys[] = {
     {"radar.preset", SETTING_TEXT, AT(radar.preset), 0, 0, NULL, "",
      "none, or a row of etc/radars.csv: a radar with phase on the sensor's axis, whose range profiles, maps of range and Doppler "
      "and detections are products"},
-    {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of the ground; with a preset"},
+    {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of ground and plants; with a preset"},
     {"radar.chaff_dipoles", SETTING_DOUBLE, AT(radar.chaff_dipoles), 0, 1e10, NULL, "",
      "dipoles in resonance with that radar in a cloud of chaff (type 8.*.*.1 or .3); 0: chaff is not seen"},
     {"radar.warp_mm", SETTING_DOUBLE, AT(radar.warp_mm), 0, 20, NULL, "mm",
