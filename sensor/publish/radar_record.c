@@ -100,6 +100,9 @@ json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const C
     set_number(o, "noise_dbw", db(r->receiver.noise_w * r->map.noise_share));
     json_object_set_new(o, "saturated", json_integer(r->receiver.saturated));
     json_object_set_new(o, "ground_cells", json_integer(r->ground_cells));
+    json_object_set_new(o, "plants", json_integer(r->crowns));
+    json_object_set_new(o, "chaff", json_integer(r->clouds));
+    json_object_set_new(o, "rain_1_m", json_real(r->rain_1_m));
     json_object_set_new(o, "ground_hidden", json_integer(r->ground_hidden));
     set_hash(o, r);
     for (int i = 0; i < r->detections; i++) json_array_append_new(detections, detection_json(&r->detection[i]));

@@ -88,6 +88,7 @@ static bool reflection_is_seen(const Making *m, const Target *t, const Bounce *b
 /* One way between the antenna and a place: length, its growth, and the antenna's gain in its direction. */
 typedef struct Way {
     double      range_m, rate_mps;
+    double      volume_np;  /* power lost in foliage and chaff; by the ground: as directly */
     AntennaGain gain;
 } Way;
 
@@ -95,18 +96,20 @@ static Way way_direct(const Making *m, const double p_enu[3], const double v_enu
 {
     Sight to;
     making_sight(&to, m, p_enu, 0);
-    return (Way){to.range_m, making_range_rate(m, &to, v_enu_mps), antenna_gain(&m->preset->antenna, to.cos_right, to.cos_down)};
+    return (Way){to.range_m, making_range_rate(m, &to, v_enu_mps), making_volume_np(m, &to), antenna_gain(&m->preset->antenna, to.cos_right, to.cos_down)};
 }
 
 static Way way_by_ground(const Making *m, const Bounce *b, const double p_enu[3], const double v_enu_mps[3])
 {
     double to[3], d[3], v[3];
+    Sight  direct;
+    making_sight(&direct, m, p_enu, 0);
     v3_sub(to, p_enu, b->p_image_enu);
     const double range_m = v3_length(to);
     v3_scale(to, 1 / range_m, to);
     v3_sub(v, v_enu_mps, b->v_image_enu_mps);
     v3_add_scaled(d, to, -2 * v3_dot(to, b->n_enu), b->n_enu); /* as it leaves the antenna */
-    return (Way){range_m, v3_dot(to, v), antenna_gain(&m->preset->antenna, v3_dot(d, m->right), v3_dot(d, m->down))};
+    return (Way){range_m, v3_dot(to, v), making_volume_np(m, &direct), antenna_gain(&m->preset->antenna, v3_dot(d, m->right), v3_dot(d, m->down))};
 }
 
 /* As making_amplitudes, out by one way and back by another. */
@@ -115,7 +118,7 @@ static void add_amplitudes(double complex amplitude[interval_channels], const Ma
 {
     const RadarPreset   *p = m->preset;
     const RadarLink      link = {p->power_w, 1, 1, p->antenna.wavelength_m, sqrt(out->range_m * back->range_m), p->loss};
-    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-m->air_np_m * (out->range_m + back->range_m)));
+    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-m->air_np_m * (out->range_m + back->range_m) - out->volume_np - back->volume_np));
     const double complex same = unit * out->gain.sum * (p->transmits_h ? s->hh : s->vv);
     const double complex other = unit * out->gain.sum * (p->transmits_h ? s->vh : s->hv);
     amplitude[CHANNEL_SUM] += same * back->gain.sum;

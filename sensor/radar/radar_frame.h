@@ -57,7 +57,9 @@ typedef struct RadarFrame {
     int             targets;
     const RadarTruth *target;
     ReceiverReport  receiver;
-    int             ground_cells, ground_hidden; /* scatterers of the ground; of them, hidden */
+    int             ground_cells, ground_hidden; /* scatterers of the ground; of them, hidden by relief or entities */
+    double          rain_1_m;          /* backscatter of rain by its volume, m2/m3 */
+    int             crowns, clouds;    /* plants, and clouds of chaff, within beam and window */
     double          spent_s;           /* wall clock */
 } RadarFrame;
 

@@ -6,7 +6,10 @@
  *
  *     entities   by their scattering centres (render/radar), each with its own range rate from the motion of its part
  *     and the same by way of the ground near them, once and twice (render/radar/ground_bounce.h)
- *     ground     by scatterers fixed to it (render/radar/clutter.h), where relief, plants and entities leave it in sight
+ *     ground     by scatterers fixed to it (render/radar/clutter.h), where relief and entities leave it in sight
+ *     plants     by scatterers in their crowns (render/radar/foliage.h); what is behind or below is weakened, not hidden
+ *     rain       by scatterers anew for each interval (render/radar/rain_scatter.h)
+ *     chaff      likewise (render/radar/chaff.h); it weakens what is behind it
  *
  * go through the radar equation, the antenna's pattern at their own direction, and the air (radar_path.h) into the
  * samples of four channels; then receiver and processing. Phases are those of double ranges.
@@ -27,11 +30,12 @@ typedef struct SeekerRadarConfig {
     const char *preset;          /* a row of etc/radars.csv */
     const char *catalog;         /* path; its models are built anew, as fine as the wavelength needs */
     const char *isa;
-    bool        ground;          /* scatterers of the ground */
+    bool        ground;          /* scatterers of the ground and of plants */
     bool        ground_bounce;   /* the ground mirrors entities */
     double      warp_m;          /* unevenness of surfaces, rms (render/radar/warp.h) */
     const char *given;           /* a list of given signatures (render/radar/given_list.h); empty: none */
     double      wind_mps;
+    double      chaff_dipoles; /* resonant ones in a cloud of chaff; 0: chaff is not seen */
     uint64_t    seed;
     const char  *library;        /* folder of signatures, read and added to; NULL or empty: none */
     bool         background;     /* signatures that are missing are made in a thread of their own; the update is left out */

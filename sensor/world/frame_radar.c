@@ -10,6 +10,7 @@ Status frame_radar_open(SeekerRadar **out, const Config *config, const char *isa
                                                          .ground_bounce = config->radar.ground_bounce,
                                                          .warp_m = 1e-3 * config->radar.warp_mm,
                                                          .given = config->radar.given, .wind_mps = config->weather.wind_mps,
+                                                         .chaff_dipoles = config->radar.chaff_dipoles,
                                                          .seed = (uint64_t)config->seed,
                                                          .library = config->radar.library, .background = live});
 }

@@ -101,6 +101,35 @@ for line in open(sys.argv[1]):
 sys.exit(good < 1)
 P
 
+# rain, and a cloud of chaff 50 m before the aim: no entity of the picture, but of the radar's scene
+cat >"$tmp/chaff.yaml" <<'Y'
+duration_s: 8
+seed: 1
+place: {lat_deg: 36, lon_deg: -123, height_m: 120}
+dis: {site: 1, application: 3001, exercise: 1, version: 7}
+vehicles:
+  - {name: Aim, id: 11, type: 8.3.225.5.0.0.0, force: 2, route_m: [[0, 0]]}
+  - {name: Cloud, id: 12, type: 8.2.225.1.1.0.0, force: 2, route_m: [[-50, 0]], height_m: 20}
+  - {name: Watch, id: 31, type: 1.2.225.20.1.0.0, force: 1, route_m: [[-985, 0]], height_m: 100}
+Y
+exercise "$tmp/chaff.yaml" "$tmp/chaff.pcap"
+wet=(--host 1:3001:31 --set sensor.gimbal_limit_deg=180 --set exercise.aim=1:3001:11 --bands radar --size 48x32 --only 5 --set radar.preset=seeker_35)
+replay "$tmp/chaff.pcap" "$tmp/wet" "${wet[@]}" --set weather.rain_mmh=10
+check "rain and chaff" [ $code = 0 ]; [ $code = 0 ] || tail -n 3 "$tmp/stderr"
+replay "$tmp/chaff.pcap" "$tmp/dry" "${wet[@]}" --set radar.chaff_dipoles=0
+python3 - "$tmp/wet/truth.jsonl" "$tmp/dry/truth.jsonl" <<'P' || fail "their weather"
+import json, sys
+wet, dry = (json.loads(open(name).read().splitlines()[-1]) for name in sys.argv[1:])
+rain = wet["radar"]["air_db"] - dry["radar"]["air_db"]
+print("rain %.3f dB one way over %.0f m, %.2e m2/m3; chaff: %d, %d" % (rain, wet["radar"]["reference_m"], wet["radar"]["rain_1_m"],
+      wet["radar"]["chaff"], dry["radar"]["chaff"]))
+# P.838-3 at 35 GHz, 10 mm/h: 2.5 dB/km
+good = 2.0 < rain / wet["radar"]["reference_m"] * 1000 < 2.9 and dry["radar"]["rain_1_m"] == 0 and wet["radar"]["rain_1_m"] > 1e-4
+good &= wet["radar"]["chaff"] == 1 and dry["radar"]["chaff"] == 0
+good &= all(t["entity"] != "1:3001:12" for frame in (wet, dry) for t in frame["radar"]["targets"] + frame.get("targets", []))
+sys.exit(not good)
+P
+
 run replay "$tmp/demo.pcap" --out "$tmp/none" "${small[@]}" --set radar.preset=hubble
 check "an unknown radar is refused, and the known ones said" [ $code = 1 ] && complained 'hubble.*seeker_94, seeker_35, search_ku'
 printf 'radar: {preset: hubble}\n' >"$tmp/bad.yaml"
