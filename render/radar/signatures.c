@@ -168,7 +168,8 @@ static Status make(Kept *out, SignatureCounters *counters, const Signatures *s, 
     const double        begun_s = wall_clock_s();
     const Model        *of = catalog_model(s->catalog, out->model);
     const SignatureLook *look = &out->middle;
-    const SignatureCells cells = signature_default_cells(s->config.frequency_hz, s->config.bandwidth_hz, s->config.aspect_rad);
+    const SignatureCells cells =
+        signature_default_cells(s->config.frequency_hz, s->config.bandwidth_hz, s->config.aspect_rad);
     TubeConfig          config = tubes_default_config(s->config.frequency_hz);
     Status              status = STATUS_OK;
     config.rays_per_wavelength = s->config.rays_per_wavelength;
@@ -222,7 +223,7 @@ static void *run_background(void *user)
         }
         b->busy = b->wait[--b->waiting];
         b->wait[b->waiting] = (Kept){0};
-        Kept              one = b->busy; /* find_waiting reads what b->busy points to, and nothing here changes that */
+        Kept              one = b->busy; /* ask() compares with b->busy meanwhile: its joints are only read */
         SignatureCounters counters = {0};
         pthread_mutex_unlock(&b->lock);
         const Status status = maker.target ? make(&one, &counters, s, &maker, NULL) : STATUS_NO_MEMORY;

@@ -198,7 +198,8 @@ static bool fetch(void *user, Signature *out, const SignatureKey *key)
     if (name_of(name, l, key) != STATUS_OK || !path_of(path, l, name)) return false;
     uint8_t *octets = read_whole(&count, path);
     if (!octets) return false;
-    const SignatureCells cells = signature_default_cells(l->config.frequency_hz, l->config.bandwidth_hz, l->config.aspect_rad);
+    const SignatureCells cells =
+        signature_default_cells(l->config.frequency_hz, l->config.bandwidth_hz, l->config.aspect_rad);
     Signature    read = {.tx = key->look.tx, .rx = key->look.rx};
     const Status status = signature_from_octets(&read, octets, count, name, key->model->part_count);
     free(octets);
