@@ -8,7 +8,7 @@ _Static_assert(sizeof(SignatureCentre) == 84, "written to files as it is");
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad)
 {
     return (SignatureCells){.frequency_hz = frequency_hz, .bandwidth_hz = bandwidth_hz, .turn_rad = turn_rad,
-                            .path_phase_rad = 0.2, .across_phase_rad = 0.8};
+                            .path_phase_rad = 0.2, .across_phase_rad = 0.2};
 }
 
 void signature_axes(Signature *out, const SignatureCells *cells)
