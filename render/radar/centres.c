@@ -12,7 +12,8 @@ static void see(ScatterCentre *out, const Signature *s, const SignatureCentre *c
         first[x] = out->p[x] - (double)c->half[x];
         last[x] = out->p[x] + (double)c->half[x];
     }
-    out->path_m = (c->path + (double)c->path_share) * s->path_step_m + (scatter_path(way[0][0], tx, first) - scatter_path(way[0][1], &s->tx, first)) +
+    out->path_m = (c->path + (double)c->path_share) * s->path_step_m +
+                  (scatter_path(way[0][0], tx, first) - scatter_path(way[0][1], &s->tx, first)) +
                   (scatter_path(way[1][0], rx, last) - scatter_path(way[1][1], &s->rx, last));
     /* how the change of path grows from the mean point */
     for (int x = 0; x < 3; x++) slope[x] = way[0][1][x] - way[0][0][x] + way[1][1][x] - way[1][0][x];

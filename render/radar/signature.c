@@ -5,7 +5,7 @@
 
 _Static_assert(sizeof(SignatureCentre) == 84, "written to files as it is");
 
-static const double path_phase_rad = 0.2, across_phase_rad = 0.8, spin_phase_rad = 0.5;
+static const double path_phase_rad = 0.2, across_phase_rad = 0.2, spin_phase_rad = 0.5;
 
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s)
 {
@@ -18,7 +18,7 @@ double signature_cells_error(void)
 {
     /* along the path phases are even up to path_phase_rad at the ends of the band: a third of its square, over the band half
      * of that; across, what first moments leave at the bin's edge */
-    const double across = across_phase_rad * across_phase_rad / 12;
+    const double across = 0.4 * across_phase_rad * across_phase_rad;
     return path_phase_rad * path_phase_rad / 6 + across * across;
 }
 

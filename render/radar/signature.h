@@ -3,9 +3,11 @@
  *
  * Hits and edges of a field are summed over cells: along the path as long as phases part by path_phase_rad at the
  * ends of the band, across the line of sight as wide as they part by across_phase_rad at the edge of the bin, and
- * apart for each node that moves by itself; finer on nodes that spin or roll, whose points part in range rate. A cell keeps, beside the sum of its paths, their first moments across the
+ * apart for each node that moves by itself, and finer on nodes that spin or roll, whose points part in range rate. A
+ * cell keeps, beside the sum of its paths, their first moments across the
  * line of sight: what it scatters towards an antenna elsewhere in the bin follows to first order, so that the error
- * is about across_phase_rad^2 / 12 of a cell, where sums alone leave across_phase_rad / 6^0.5.
+ * is 0.4 across_phase_rad^2 of a cell of random phases, where sums alone leave across_phase_rad / 6^0.5. It is of the
+ * amplitudes that cancel in it: on large curved faces, more of what is left.
  *
  * Numbers are as they are written to files: sums as 16 bits of the largest of a cell, moments as 8. What is made on
  * the spot goes through the same rounding, so a field has the same bits wherever it comes from. */
@@ -22,7 +24,7 @@ typedef struct SignatureCells {
     double interval_s;                   /* that centres are to stand for; 0: what spins and rolls stands still */
     double spin_phase_rad;               /* of what spins as its model says, or rolls at 20 m/s, over the interval */
 } SignatureCells;
-/* Phases of 0.2, 0.8 and 0.5 rad. */
+/* Phases of 0.2, 0.2 and 0.5 rad. */
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s);
 
 /* Power of the error that those cells leave, at most, over the power of their centres. */

@@ -223,7 +223,7 @@ static void *run_background(void *user)
         }
         b->busy = b->wait[--b->waiting];
         b->wait[b->waiting] = (Kept){0};
-        Kept              one = b->busy; /* find_waiting reads what b->busy points to, and nothing here changes that */
+        Kept              one = b->busy; /* ask() compares with b->busy meanwhile: its joints are only read */
         SignatureCounters counters = {0};
         pthread_mutex_unlock(&b->lock);
         const Status status = maker.target ? make(&one, &counters, s, &maker, NULL) : STATUS_NO_MEMORY;

@@ -454,7 +454,7 @@ int run_command(int argc, char **argv)
     l->run.user                  = l;
     l->run.publish               = count_frame;
     if (publishes(l)) l->run.send = send_pdu;
-    if (l->recording) l->run.note = note;
+    if (*l->run.options.config.record.path) l->run.note = note;
     l->run.wall_s                = wall_of;
     l->run.clock                 = l;
     memcpy(name, l->run.options.config.record.path, sizeof name);

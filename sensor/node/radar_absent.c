@@ -26,8 +26,10 @@ static bool read_line(Absent *out, const char *line)
     int  end = 0;
     char text[radar_absent_text_size];
     if (strncmp(line, begin, sizeof begin - 1) != 0) return false;
-    if (sscanf(line + sizeof begin - 1, "%d at %lf s%n", &out->number, &out->t_s, &end) != 2 || end == 0) return false;
-    if (!(out->number >= 0 && fabs(out->t_s) < 1e9)) return false;
+    double number;
+    if (sscanf(line + sizeof begin - 1, "%lf at %lf s%n", &number, &out->t_s, &end) != 2 || end == 0) return false;
+    if (!(number >= 0 && number <= INT32_MAX && fabs(out->t_s) < 1e9)) return false;
+    out->number = (int)number;
     radar_absent_text(text, out->number, out->t_s);
     const size_t length = strlen(text);
     return strncmp(line, text, length) == 0 && (line[length] == '\n' || line[length] == 0);

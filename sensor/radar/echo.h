@@ -9,8 +9,8 @@
  * Paths beyond half of c / step, either way, fold over as they do in a real receiver: leave those out that the gate
  * cuts. Over the pulses the path grows evenly: its phase exactly, its delay taken at the middle of the interval, for
  * paths that change by a small part of c / (step samples) in all. Sums are by gridding over delay and Doppler
- * (pulse_grid.h): error below 1e-6 of the sum of amplitudes (tests/sensor/test_echo.c). Sums are in the order of the echoes, for any number of
- * threads. */
+ * (pulse_grid.h): error below 1e-6 of the sum of amplitudes (tests/sensor/test_echo.c). They are in the order of the
+ * echoes, for any number of threads. */
 #ifndef SENSOR_RADAR_ECHO_H
 #define SENSOR_RADAR_ECHO_H
 

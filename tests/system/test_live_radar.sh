@@ -12,15 +12,22 @@ ground: {swell_m: 0.2}
 dis: {clock: 2026-06-21T09:00:00Z, heartbeat_s: 1}
 vehicles:
   - {name: Truck, id: 1, type: 1.1.225.7.1.0.0, route_m: [[0, 0]]}
-  - {name: Truck, id: 2, type: 1.1.225.7.1.0.0, route_m: [[30, 14], [400, 14]], speed_mps: 1}
+  - {name: Truck, id: 2, type: 1.1.225.7.1.0.0, route_m: [[30, 14]], heading_deg: 40}
 YAML
 look=(--bands radar --rate 4 --host observer --no-files --set exercise.aim=1:3001:1 --set observer.range_m=900
-    --set observer.height_m=150 --set exercise.listen_s=0.5 --set radar.preset=search_ku --set radar.ground=false --set radar.library="$tmp/library")
+    --set observer.height_m=150 --set observer.rate_dps=0 --set exercise.listen_s=0.5 --set radar.preset=search_ku --set radar.ground=false --set radar.library="$tmp/library")
 free_port
-node radar --address 127.0.0.1 --port $port "${look[@]}" --record "$tmp/radar.pcapng" --frames 100 --for 90
+node radar --address 127.0.0.1 --port $port "${look[@]}" --record "$tmp/radar.pcapng" --for 240
 check "it listens" heard_by radar 'listening on' 30
 sender "$tmp/trucks.yaml" --send 127.0.0.1:$port
-ended radar 120
+# until both are made, however long this machine takes, and some frames more
+for ((i = 0; i < 1500; i++)); do
+    [ "$(ls "$tmp/library" 2>/dev/null | grep -c '\.sig$')" -ge 2 ] && break
+    sleep 0.1
+done
+sleep 8
+kill -INT "${node[radar]}"
+ended radar 60
 end_sender
 check "ends well" [ $code = 0 ]
 check "it says how many frames are without radar" grep -q 'frames are without radar: signatures of targets were still to be made; radar.library' "$tmp/radar.out"
