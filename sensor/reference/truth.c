@@ -229,8 +229,8 @@ static const ReferenceField fields[] = {
     {"radar.targets[].ground_bounce.twice_dbsm.hv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
     {"radar.targets[].strongest", "list of objects", "", "strongest first, at most 8", "", "the strongest of them, by the mean of HH and "
      "VV"},
-    {"radar.targets[].strongest[].rcs_hh_dbsm", "number", "dB over 1 m2", "", "when 0", "its cross section"},
-    {"radar.targets[].strongest[].rcs_vv_dbsm", "number", "dB over 1 m2", "", "when 0", "its cross section"},
+    {"radar.targets[].strongest[].rcs_hh_dbsm", "number", "dB over 1 m2", "", "when it returns nothing so", "its cross section"},
+    {"radar.targets[].strongest[].rcs_vv_dbsm", "number", "dB over 1 m2", "", "when it returns nothing so", "its cross section"},
     {"radar.targets[].strongest[].body_m", "list of 3 numbers", "m", "body", "", "middle of its path's first and last mirror"},
     {"radar.targets[].strongest[].bounces", "integer", "", "0: an edge", "", "mirrors on its path"},
     {"radar.targets[].strongest[].visible", "boolean", "", "", "", "nothing else is in its way"},
