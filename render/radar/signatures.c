@@ -112,6 +112,7 @@ static Status make(Signature *out, Signatures *s, int model, const Model *of, in
     const double begun_s = wall_clock_s();
     TubeConfig   config = tubes_default_config(s->config.frequency_hz);
     config.rays_per_wavelength = s->config.rays_per_wavelength;
+    config.splits = s->config.splits;
     config.warp_m = s->config.warp_m;
     config.warp_seed = (uint64_t)model;
     *out = (Signature){.model = model, .damage = damage, .middle = *middle};
