@@ -45,6 +45,7 @@ typedef struct EdgePairConfig {
     EdgeConfig edge;      /* visible and sample_m as there */
     double     k_per_m;   /* that amplitudes are made for, > 0 */
     EdgeClear *clear;     /* NULL: every pair has its face */
+    double     least_m;   /* pairs that add less than this to S are left out before rays are traced; 0: none */
 } EdgePairConfig;
 
 /* Appends segments of pairs of these wedges (target frame): their place is halfway between the edges. */

@@ -391,7 +391,7 @@ static void test_austin_second_order(void **state)
 }
 
 /* The same waves by pairs of edges as the mesh has them, to the plane of the plate; the field along the edges stays.
- * Thick plates have four more pairs, across faces of a twentieth of a wavelength, which are too narrow to count. */
+ * Thick plates have four more pairs, across faces of a twentieth of a wavelength. */
 static void test_austin_pairs(void **state)
 {
     (void)state;
