@@ -65,7 +65,8 @@ static Status knob(Bench *bench, TankSet set[], TankSet *fine, const char *const
         look_at_tank(&set[k]);
         status = set[k].status;
         work[k] = (BenchWork){look_at_tank, &set[k], set[k].looks};
-        point[k] = (BenchSetting){.setting = name[k], .error = field_error(&set[k], fine), .is_default = k == by_default,
+        point[k] = (BenchSetting){.setting = name[k], .error = field_error(&set[k], fine),
+                                  .is_default = k == by_default,
                                   .bytes = 75.0 * (double)set[k].hits.count};
     }
     if (status == STATUS_OK) bench_tunable(bench, tunable, work, point, count);

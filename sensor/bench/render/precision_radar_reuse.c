@@ -1,5 +1,5 @@
-/* sensor/bench/render/precision_radar_reuse.c: a tank's field without its edges, from a list of another aspect, and from
- * scattering centres: what each saves, and how wrong it is. */
+/* sensor/bench/render/precision_radar_reuse.c: a tank's field without its edges, from a list of another aspect, and
+ * from scattering centres: what each saves, and how wrong it is. */
 #include "sensor/bench/render/precision_radar.h"
 
 #include "render/radar/centres.h"
@@ -31,8 +31,8 @@ static void sweep(void *user)
 {
     Reuse *r = user;
     if (r->status == STATUS_OK)
-        r->status = total_field_sweep(r->s, frequencies, centre_hz - 0.5 * band_hz, band_hz / (frequencies - 1), &r->field,
-                                      &r->now, &r->now, r->pool);
+        r->status = total_field_sweep(r->s, frequencies, centre_hz - 0.5 * band_hz, band_hz / (frequencies - 1),
+                                      &r->field, &r->now, &r->now, r->pool);
     bench_keep(r);
 }
 
@@ -101,7 +101,7 @@ static void aspects(Bench *bench, Reuse *r)
         memcpy(own, r->s, sizeof own);
         r->look = look;
         trace(r), sweep(r);
-        add_row(bench, at[i].what, sweep, r, off(r->s, own), "a list of its own");
+        add_row(bench, at[i].what, sweep, r, off(r->s, own), "a list of its own, its grid too");
         r->now = look;
     }
 }

@@ -35,8 +35,8 @@ static bool look(ScatterMatrix *out, Stand *s, const ScatterAntenna *a, double f
            total_field_sweep(out, 1, f_hz, 0, &s->field, NULL, NULL, NULL) == STATUS_OK;
 }
 
-/* A corner reflector at 94 GHz from 1 m to 1000 km away: the mirror image of a point is a point, so beyond the near field
- * its cross section tends to that of plane waves as 1 / range. */
+/* A corner reflector at 94 GHz from 1 m to 1000 km away: the mirror image of a point is a point, so beyond the near
+ * field its cross section tends to that of plane waves as 1 / range. */
 static double ranges(void *user, bool quick)
 {
     Stand  s;
@@ -174,7 +174,8 @@ static double inside(void *user, bool quick)
 Status stability_radar(Bench *bench)
 {
     static const StabilityCase cases[] = {
-        {"radar field: a corner at 94 GHz, 1 m .. 1000 km", ranges, 1e-3, "relative", "plane waves, less 8 a^2 / lambda R"},
+        {"radar field: a corner at 94 GHz, 1 m .. 1000 km", ranges, 1e-3, "relative",
+            "plane waves, less 8 a^2 / lambda R"},
         {"radar field: moved up to 20 km and turned, 94 GHz", offsets, 1e-5, "relative", "the field at the origin"},
         {"radar field: needles, no area, along the axes", needles, 0, "values", "finite"},
         {"radar field: a plate, 30 MHz .. 300 GHz, and grazing", wavelengths, 1e-3, "relative", "4 pi A^2 / lambda^2"},
