@@ -259,6 +259,41 @@ static int pieces_of(double length_m, const ScatterAntenna *tx, const ScatterAnt
     return (int)fmin(fmax(ceil(length_m / longest_m), 1), pieces_most);
 }
 
+/* The four ways across a pair: there, back, and each edge's own. */
+static void ways_of(Crossing way[4], const EdgePair *of, const Wedge *wedge)
+{
+    const Wedge *a = &wedge[of->wedge[0]], *b = &wedge[of->wedge[1]];
+    const int    f = of->face[0], g = of->face[1];
+    way[0] = (Crossing){a, b, f, g, of->wedge[0], 1, of->width_m, NULL};
+    way[1] = (Crossing){b, a, g, f, of->wedge[1], 1, of->width_m, NULL};
+    way[2] = (Crossing){a, a, f, f, of->wedge[0], 2, of->width_m, b};
+    way[3] = (Crossing){b, b, g, g, of->wedge[1], 2, of->width_m, a};
+}
+
+/* The most that a pair may add in second order: that of its whole length, by its middle, or of a period where its path
+ * runs off. */
+static double most_m(const Crossing way[4], const double start[3], const double across[3], double length_m,
+                     const ScatterAntenna *tx, const ScatterAntenna *rx, const EdgePairConfig *config)
+{
+    const double *z = way[0].a->frame.z;
+    double        most = 0, slope[2], p[3], q[3], u[2][3];
+    EdgeSegment   s;
+    for (int end = 0; end < 2; end++) {
+        v3_add_scaled(p, start, end * length_m, z);
+        scatter_path(u[0], tx, p);
+        scatter_path(u[1], rx, p);
+        slope[end] = v3_dot(u[0], z) + v3_dot(u[1], z);
+    }
+    const double slowest = slope[0] * slope[1] < 0 ? 0 : fmin(fabs(slope[0]), fabs(slope[1]));
+    v3_add_scaled(p, start, 0.5 * length_m, z);
+    v3_add_scaled(q, p, way[0].width_m, across);
+    for (int w = 0; w < 2; w++) {
+        if (!piece(&s, &way[w], w ? q : p, w ? p : q, length_m, tx, rx, config->k_per_m)) continue;
+        for (int e = 0; e < 4; e++) most = fmax(most, cabs(s.amplitude[e / 2][e % 2]));
+    }
+    return most * fmin(1, 2 / (config->k_per_m * slowest * length_m));
+}
+
 Status edge_pair_segments(EdgeSegments *out, const EdgePair *pair, int count, const Wedge *wedge,
                           const ScatterAntenna *tx, const ScatterAntenna *rx, const EdgePairConfig *config)
 {
@@ -269,22 +304,20 @@ Status edge_pair_segments(EdgeSegments *out, const EdgePair *pair, int count, co
         const EdgePair *of = &pair[i];
         const double    length_m = of->along_m[1] - of->along_m[0];
         if (length_m * length_m < 2 * pi / config->k_per_m * of->width_m) continue;
-        const Wedge *a = &wedge[of->wedge[0]], *b = &wedge[of->wedge[1]];
+        const Wedge *a = &wedge[of->wedge[0]];
         Face         face;
         double       start[3];
         face_of(&face, a, 0, of->face[0]);
         v3_add_scaled(start, a->p[0], of->along_m[0], a->frame.z);
+        Crossing  way[4];
+        ways_of(way, of, wedge);
+        if (most_m(way, start, face.x, length_m, tx, rx, config) < config->least_m) continue;
         const int n = pieces_of(length_m, tx, rx, config, start);
         for (int k = 0; k < n && good; k++) {
             double p[3], q[3];
             v3_add_scaled(p, start, (k + 0.5) * length_m / n, a->frame.z);
             v3_add_scaled(q, p, of->width_m, face.x);
             if (config->clear && !config->clear(config->edge.user, p, q, face.n)) continue;
-            const int      f = of->face[0], g = of->face[1];
-            const Crossing way[4] = {{a, b, f, g, of->wedge[0], 1, of->width_m, NULL},
-                                     {b, a, g, f, of->wedge[1], 1, of->width_m, NULL},
-                                     {a, a, f, f, of->wedge[0], 2, of->width_m, b},
-                                     {b, b, g, g, of->wedge[1], 2, of->width_m, a}};
             const double *const from[4] = {p, q, p, q}, *const to[4] = {q, p, p, q};
             for (int w = 0; w < 4 && good; w++) {
                 EdgeSegment s;

@@ -2,16 +2,17 @@
  * order.
  *
  * Two parallel edges that face one another across one flat face of metal, as those of a plate: a wave diffracted at
- * the first travels along the face and is diffracted at the second, or sent back and diffracted at the first. Only a magnetic field along the edges can do so
- * (the electric field across them): along metal the other one vanishes. Keller's coefficients of both wedges (any
- * exterior angle), each with the other at grazing, where half of the field is the incident wave; the transition function
- * of the uniform theory keeps the coefficient finite where an antenna is in the plane of the face.
+ * the first travels along the face and is diffracted at the second, or sent back and diffracted at the first. Only a
+ * magnetic field along the edges can do so (the electric field across them): along metal the other one vanishes.
+ * Keller's coefficients of both wedges (any exterior angle), each with the other at grazing, where half of the field is
+ * the incident wave; the transition function of the uniform theory keeps the coefficient finite where an antenna is in
+ * the plane of the face.
  *
  * To be added to physical optics and first order (edges.h). Pairs count where they overlap by a Fresnel zone,
  * sqrt(lambda width), at least: below that the edges are not straight ones seen from each other. Amplitudes are those
  * of one frequency (EdgeSegment.order).
  *
- * Against integral equations (plates, tests/render/test_edge_pairs.c): across the edges, 0 to 90 degrees, the median
+ * Against integral equations (plates, tests/render/test_edges.c): across the edges, 0 to 90 degrees, the median
  * error falls from 1.8 to 0.6 dB at 9 wavelengths. Left out: edges that are not parallel, waves along curved faces,
  * higher orders, waves from one face to the next.
  *
@@ -45,6 +46,7 @@ typedef struct EdgePairConfig {
     EdgeConfig edge;      /* visible and sample_m as there */
     double     k_per_m;   /* that amplitudes are made for, > 0 */
     EdgeClear *clear;     /* NULL: every pair has its face */
+    double     least_m;   /* pairs that add less than this to S are left out before rays are traced; 0: none */
 } EdgePairConfig;
 
 /* Appends segments of pairs of these wedges (target frame): their place is halfway between the edges. */

@@ -173,6 +173,7 @@ static Status make(Kept *out, SignatureCounters *counters, const Signatures *s, 
     TubeConfig          config = tubes_default_config(s->config.frequency_hz);
     Status              status = STATUS_OK;
     config.rays_per_wavelength = s->config.rays_per_wavelength;
+    config.splits = s->config.splits;
     config.warp_m = s->config.warp_m;
     config.warp_seed = signature_warp_seed(of);
     RadarTarget **target = &maker->target[out->model];

@@ -43,6 +43,7 @@ typedef struct SignaturesConfig {
     double      aspect_rad;          /* side of a bin */
     double      interval_s;          /* SignatureCells */
     double      rays_per_wavelength;
+    int         splits;              /* of tubes at edges (tubes.h); 0: fastest */
     double      warp_m;              /* unevenness of surfaces (warp.h), rms; 0: plane as the model has them */
     size_t      most_octets;         /* of all; the one in use is kept beyond it */
     bool        background;

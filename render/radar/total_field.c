@@ -114,7 +114,8 @@ Status total_field_trace(TotalField *out, const RadarTarget *target, const Scatt
     const EdgePairConfig edge = {.edge = {.k_per_m = 1.5 * k_per_m,
                                           .sample_m = fmin(0.05, target->entity.radius_m / 64), .clear_m = 1e-4,
                                           .visible = sees, .user = &sight},
-                                 .k_per_m = k_per_m, .clear = is_clear};
+                                 .k_per_m = k_per_m, .clear = is_clear,
+                                 .least_m = 5e-5 * target->entity.radius_m};
     return find_edges(&out->edges, target, &edge, &sight, pool);
 }
 

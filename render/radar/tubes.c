@@ -229,7 +229,8 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
     if (!antenna_is_good(tx) || !antenna_is_good(rx) || !(config->frequency_hz > 0) ||
         !(config->rays_per_wavelength > 0) || !(config->rays_per_radius >= 0) ||
         !(config->warp_m >= 0 && config->warp_length_m > 0) ||
-        isinf(config->frequency_hz) || config->bounces < 1 || config->bounces > 255 || config->splits < 0 || config->splits > tubes_splits_most ||
+        isinf(config->frequency_hz) || config->bounces < 1 || config->bounces > 255 ||
+        config->splits < 0 || config->splits > tubes_splits_most ||
         !(config->cuts_per_radius > 0 && config->split_rad > 0)) {
         log_error("radar: an antenna or a number of the ray tubes is out of range: frequency_hz=%g "
                   "rays_per_wavelength=%g bounces=%d", config->frequency_hz, config->rays_per_wavelength,

@@ -10,6 +10,9 @@
  * turned and shifted by a hash of the look, so no edge is ever along it. The same target, look and config give the
  * same bits, for any number of threads.
  *
+ * Tubes whose neighbours met something else are divided (tubes_split.c): the list then holds smaller ones from that
+ * mirror on. Two grids of a tank at 10 GHz differ by -34 dB of its power, by -25 with splits 0 (test_tubes_split.c).
+ *
  * Left out: diffraction at edges (edges.h), creeping waves, what passes through thin materials; currents on the side
  * that is turned away from the receiver, so forward scatter (bistatic angles beyond some 120 degrees) is not
  * computed.

@@ -58,31 +58,31 @@ static bool is_about(const TubeCell *cell, int level)
     return cell->x < 0 || cell->y < 0 || cell->x >= tile_side << level || cell->y >= tile_side << level;
 }
 
-/* Whether a mark's path, continued to the next cell along a side of the grid, is the other's. */
-static bool continues(const TubeMark *a, const TubeMark *b, int side, double k, double most_rad)
+/* Whether a mark's path, continued by x and y cells, is the other's. */
+static bool continues(const TubeMark *a, const TubeMark *b, int x, int y, double k, double most_rad)
 {
     const double step_m = b->path_m - a->path_m;
-    return k * fabs(step_m + 2 * (double)a->slope_m[side]) <= most_rad &&
-           k * fabs(step_m + 2 * (double)b->slope_m[side]) <= most_rad;
+    return k * fabs(step_m + 2 * (x * (double)a->slope_m[0] + y * (double)a->slope_m[1])) <= most_rad &&
+           k * fabs(step_m + 2 * (x * (double)b->slope_m[0] + y * (double)b->slope_m[1])) <= most_rad;
 }
 
-/* The mirror from which two neighbours, b next to a along a side, have no more in common; 0: none. */
-static int parting(const TubeWork *work, const TubeCell *a, const TubeCell *b, int side)
+/* The mirror from which two neighbours have no more in common; 0: none. */
+static int parting(const TubeWork *work, const TubeCell *a, const TubeCell *b)
 {
     const int marks = a->marks < b->marks ? a->marks : b->marks, from = a->from > b->from ? a->from : b->from;
     for (int m = from; m <= marks; m++) {
         const TubeMark *p = &a->mark[m - 1], *q = &b->mark[m - 1];
         if (p->seen != q->seen) return m;
-        if (p->seen && (!continues(p, q, side, work->k, work->config.split_rad) ||
+        if (p->seen && (!continues(p, q, b->x - a->x, b->y - a->y, work->k, work->config.split_rad) ||
                         work->target->material[p->part] != work->target->material[q->part]))
             return m;
     }
     return a->marks != b->marks ? marks + 1 > from ? marks + 1 : from : 0;
 }
 
-static void compare(const TubeWork *work, TubeCell *a, TubeCell *b, int side, int level)
+static void compare(const TubeWork *work, TubeCell *a, TubeCell *b, int level)
 {
-    const int mirror = parting(work, a, b, side);
+    const int mirror = parting(work, a, b);
     if (mirror == 0 || level >= deepest(work, mirror)) return;
     const int to = work->config.last_only ? 1 : mirror; /* a tube's last mirror is another one where it parts */
     if (to < a->to) a->to = to;
@@ -97,8 +97,12 @@ static void compare_all(const TubeWork *work, TubeWorker *worker, int level)
     for (int k = 0; k < worker->cells[list]; k++) worker->at[(cell[k].y + 1) * side + cell[k].x + 1] = k;
     for (int k = 0; k < worker->cells[list]; k++) {
         const int32_t *here = &worker->at[(cell[k].y + 1) * side + cell[k].x + 1];
-        if (cell[k].x + 2 < side && here[1] >= 0) compare(work, &cell[k], &cell[here[1]], 0, level);
-        if (cell[k].y + 2 < side && here[side] >= 0) compare(work, &cell[k], &cell[here[side]], 1, level);
+        const int32_t *next[4] = {here + 1, here + side - 1, here + side, here + side + 1};
+        for (int n = 0; n < 4; n++) {
+            const int x = cell[k].x + (n == 0 ? 1 : n - 2), y = cell[k].y + (n > 0);
+            if (x < -1 || x + 2 > side || y + 2 > side || *next[n] < 0) continue;
+            compare(work, &cell[k], &cell[*next[n]], level);
+        }
     }
 }
 
@@ -122,15 +126,17 @@ static bool divide(TubeWorker *worker, int level)
     const int list = level & 1, next = !list;
     int       count = 0;
     for (int k = 0; k < worker->cells[list]; k++)
-        count += 4 * (worker->cell[list][k].to < INT_MAX && !is_about(&worker->cell[list][k], level));
+        count += 4 * (worker->cell[list][k].to < INT_MAX);
     worker->cells[next] = 0;
     if (!room(worker, next, count)) return false;
     for (int k = 0; k < worker->cells[list]; k++) {
         const TubeCell *parent = &worker->cell[list][k];
-        if (parent->to == INT_MAX || is_about(parent, level)) continue;
+        if (parent->to == INT_MAX) continue;
         for (int q = 0; q < 4; q++) {
+            const int x = 2 * parent->x + q % 2, y = 2 * parent->y + q / 2, side = tile_side << (level + 1);
+            if (x < -1 || y < -1 || x > side || y > side) continue; /* not beside the tile */
             TubeCell *child = &worker->cell[next][worker->cells[next]++];
-            child->x = 2 * parent->x + q % 2, child->y = 2 * parent->y + q / 2;
+            child->x = x, child->y = y;
             child->from = parent->to, child->to = INT_MAX, child->marks = 0;
         }
     }

@@ -459,7 +459,8 @@ static void find_next(TubeTile *tile, const TubeWork *work, const int *list, int
     parts_first_hits(tile->range_m, tile->hit, &work->target->entity, o, d, tile->far_m, list, count, false);
 }
 
-static void open_tile(TubeTile *tile, const TubeWork *work, long long number, int level, const TubeCell *cell, int count)
+static void open_tile(TubeTile *tile, const TubeWork *work, long long number, int level, const TubeCell *cell,
+                      int count)
 {
     const int    column = (int)(number % work->grid.tiles[0]) * tile_side;
     const int    row = (int)(number / work->grid.tiles[0]) * tile_side;

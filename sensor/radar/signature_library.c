@@ -83,7 +83,7 @@ static bool add_text(Sha256 *d, const char *text) { return sha256_add(d, text, s
 static Status hash_settings(char out[sha256_text_size], const SignaturesConfig *c, const RadarMaterials *materials)
 {
     const SignatureCells cells = signature_default_cells(c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->interval_s);
-    const double numbers[] = {computation, c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->rays_per_wavelength, c->warp_m,
+    const double numbers[] = {computation, c->splits, c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->rays_per_wavelength, c->warp_m,
                               cells.turn_rad, cells.path_phase_rad, cells.across_phase_rad, cells.interval_s, cells.spin_phase_rad};
     Sha256 *d = sha256_begin();
     bool    ok = d && sha256_add(d, numbers, sizeof numbers);

@@ -391,7 +391,7 @@ static void test_austin_second_order(void **state)
 }
 
 /* The same waves by pairs of edges as the mesh has them, to the plane of the plate; the field along the edges stays.
- * Thick plates have four more pairs, across faces of a twentieth of a wavelength, which are too narrow to count. */
+ * Thick plates have four more pairs, across faces of a twentieth of a wavelength. */
 static void test_austin_pairs(void **state)
 {
     (void)state;
@@ -409,6 +409,7 @@ static void test_austin_pairs(void **state)
     CHECK(m[0].with[0] < 2.3 && m[0].with[1] < 1.0);
     const double wide[3] = {128 * inch_m, 224 * inch_m, 0};
     if (!compare(m, "radar/austin/IIA_plate_W128in_xy_theta80_f6_ref.csv", wide, 2)) skip();
+    CHECK(m[0].with[2] < 8 && m[0].with[1] < 8 && m[5].with[2] < 3);
 }
 
 /* 64 mil thick: twelve right-angled wedges, opposite ones 0.03 and 0.06 wavelengths apart. */

@@ -24,6 +24,7 @@ static double normalised_error(const Case *c, double *rms_db, double *said_db, d
     const double hz = 1e9 * c->ghz;
     RadarModel   model;
     TotalField   used = {0}, finer = {0};
+    Signature    signature = {0};
     Centres      centres = {0};
     double       sum = 0, actual = 0, said = 0, cross_sum = 0;
     CHECK(radar_model_open(&model, c->model, &materials, radar_sag_m(hz)) == STATUS_OK);
@@ -36,9 +37,12 @@ static double normalised_error(const Case *c, double *rms_db, double *said_db, d
         radar_look(&antenna, (11 + 25.3 * i) * rad_per_deg, (5 + i) * rad_per_deg, 2000);
         signature_bin(&middle, &antenna, 0.3 * rad_per_deg);
         config.rays_per_wavelength = 0.5;
+        config.splits = 0; /* as signatures are made */
         CHECK(total_field_trace(&used, model.target, &middle, &middle, &config, true, pool) == STATUS_OK);
         CHECK(total_field_sweep(&got, 1, hz, 0, &used, &antenna, &antenna, pool) == STATUS_OK);
-        CHECK(centres_make(&centres, &used, &antenna, &antenna, &(CentresConfig){.frequency_hz = hz, .phase_rad = 0.1}) == STATUS_OK);
+        const SignatureCells cells = signature_default_cells(hz, 1, 0.3 * rad_per_deg, 0);
+        CHECK(signature_make(&signature, &used, NULL, &cells) == STATUS_OK);
+        CHECK(centres_make(&centres, &signature, &antenna, &antenna) == STATUS_OK);
         signature_error(&error, &centres);
         config.rays_per_radius *= 4;
         config.rays_per_wavelength *= 4;
@@ -56,6 +60,7 @@ static double normalised_error(const Case *c, double *rms_db, double *said_db, d
     *rms_db = sqrt(actual);
     *said_db = sqrt(said);
     *cross = sqrt(cross_sum);
+    signature_free(&signature);
     centres_free(&centres);
     total_field_free(&used);
     total_field_free(&finer);

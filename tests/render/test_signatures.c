@@ -204,6 +204,7 @@ static void a_list_serves_its_bin(void **state)
         ScatterMatrix       want[2];
         for (int turned = 0; turned < 2; turned++) {
             TubeConfig tubes = tubes_default_config(frequency_hz);
+            tubes.splits = 0;
             tubes.seed = (uint64_t)turned;
             CHECK(total_field_trace(&own, target, &a, &a, &tubes, true, NULL) == STATUS_OK);
             CHECK(total_field_sweep(&want[turned], 1, frequency_hz, 0, &own, NULL, NULL, NULL) == STATUS_OK);
