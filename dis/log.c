@@ -114,6 +114,13 @@ static Status open_port(DisLog *out, const char *path, uint16_t port)
     log.storage = arena_create();
     status = log.storage ? dis_packet_reader_create(&scan.reader, &log, log.storage, port) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = scan_capture(&scan, capture, path);
+    if (status == STATUS_OK) {
+        const size_t octets = strlen(dis_capture_notes(capture)) + 1;
+        char        *notes = arena_alloc(log.storage, octets, 1);
+        if (notes) memcpy(notes, dis_capture_notes(capture), octets);
+        else status = STATUS_NO_MEMORY;
+        log.notes = notes;
+    }
     dis_packet_reader_destroy(scan.reader);
     dis_capture_close(capture);
     if (status != STATUS_OK) {

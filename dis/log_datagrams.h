@@ -28,6 +28,7 @@ typedef struct DisLog {
     DisLogCounters counters;
     bool           truncated; /* the file ended inside a packet; what came before is here */
     bool           retimed;   /* packet times did not keep pace with the stamps: made from these */
+    const char    *notes;     /* of dis_recorder_note, a line each; empty: none; NULL: not of a file */
     bool           any_port;  /* datagrams of any port were taken */
     void          *storage;
 } DisLog;

@@ -15,6 +15,7 @@ enum {
     block_interface = 1,
     block_old_packet = 2,
     block_simple_packet = 3,
+    block_statistics = 5,
     block_packet = 6,
     order_magic = 0x1A2B3C4D,
     option_end = 0,
@@ -41,6 +42,8 @@ struct DisCapture {
     Interface *interface;        /* pcap: one */
     int        count, capacity;
     double     last_s;
+    char      *notes;            /* terminated; NULL: none yet */
+    size_t     note_octets, note_capacity;
     Status     status;
     char       problem[200];
     uint8_t    body[body_most];
@@ -148,6 +151,38 @@ static bool read_interface(DisCapture *c, size_t octets)
     return add_interface(c, face);
 }
 
+/* What does not fit, or is not whole, is left out: notes are no part of the packets. */
+static void take_note(DisCapture *c, const uint8_t *text, size_t octets)
+{
+    enum { notes_most = 1 << 24 };
+    const size_t needed = c->note_octets + octets + 2;
+    if (needed > notes_most) return;
+    if (needed > c->note_capacity) {
+        char *larger = realloc(c->notes, 2 * needed);
+        if (!larger) return;
+        c->notes = larger;
+        c->note_capacity = 2 * needed;
+    }
+    for (size_t i = 0; i < octets; i++) c->notes[c->note_octets++] = text[i] >= ' ' ? (char)text[i] : ' ';
+    c->notes[c->note_octets++] = '\n';
+    c->notes[c->note_octets] = 0;
+}
+
+static void read_statistics(DisCapture *c, size_t octets)
+{
+    enum { option_comment = 1 };
+    for (size_t at = 12; at + 4 <= octets;) {
+        const uint16_t code = load_u16(c, c->body + at), length = load_u16(c, c->body + at + 2);
+        const uint8_t *value = c->body + at + 4;
+        if (code == option_end) break;
+        at += 4 + ((size_t)length + 3) / 4 * 4;
+        if (at > octets) break;
+        if (code == option_comment) take_note(c, value, length);
+    }
+}
+
+const char *dis_capture_notes(const DisCapture *c) { return c->notes ? c->notes : ""; }
+
 /* ---- pcapng -------------------------------------------------------------------------------------------- */
 
 /* From the first octets of a section header on, its type; its length is in its own byte order. */
@@ -176,6 +211,7 @@ static bool read_block(bool *found, DisCapturePacket *out, DisCapture *c, uint32
     const bool old = type == block_old_packet, simple = type == block_simple_packet;
     *found = false;
     if (type == block_interface) return read_interface(c, looked_at);
+    if (type == block_statistics) read_statistics(c, looked_at);
     if (type != block_packet && !old && !simple) return true;
     const size_t head = simple ? 4 : 20;
     if (octets < head) return stop(c, "a packet block of %llu octets", (unsigned long long)octets + 12);
@@ -300,6 +336,7 @@ void dis_capture_close(DisCapture *c)
     if (!c) return;
     dis_stream_close(c->stream);
     free(c->interface);
+    free(c->notes);
     free(c);
 }
 

@@ -26,6 +26,8 @@ bool        dis_capture_next(DisCapturePacket *out, DisCapture *capture);
 const char *dis_capture_problem(const DisCapture *capture); /* NULL: the file ended as it should */
 /* STATUS_OK, also where the file is cut or damaged; else what was read must not be used. */
 Status      dis_capture_status(const DisCapture *capture);
+/* Comments of its blocks of interface statistics so far, a line each; those beyond 16 MiB in all are left out. */
+const char *dis_capture_notes(const DisCapture *capture);
 /* Of interface i of the present section; -1: there is none. */
 int         dis_capture_link(const DisCapture *capture, int i);
 

@@ -197,6 +197,22 @@ Status dis_recorder_add(DisRecorder *r, int64_t capture_ns, const uint8_t from[1
     return r->failed ? STATUS_IO : STATUS_OK;
 }
 
+Status dis_recorder_note(DisRecorder *r, int64_t capture_ns, const char *text)
+{
+    enum { interface_statistics = 5, opt_comment = 1, end_of_options = 4 };
+    if (!r->pcapng) return STATUS_UNSUPPORTED;
+    if (capture_ns < 0) return STATUS_BAD_VALUE;
+    if (r->failed) return STATUS_IO;
+    const uint64_t ns = (uint64_t)capture_ns;
+    const size_t   said = strnlen(text, longest_text);
+    const uint32_t length = (uint32_t)(24 + option_octets(said) + end_of_options);
+    put(r, (const uint32_t[]){interface_statistics, length, 0 /* the interface */, (uint32_t)(ns >> 32), (uint32_t)ns}, 20);
+    put_option(r, opt_comment, text, (uint16_t)said);
+    put_option(r, 0, NULL, 0);
+    put(r, &length, 4);
+    return r->failed ? STATUS_IO : STATUS_OK;
+}
+
 /* ---- open and close --------------------------------------------------------------------------------------------- */
 
 static bool ends_with(const char *text, const char *end)

@@ -21,6 +21,9 @@ void   dis_recorder_to(DisRecorder *recorder, const uint8_t to[16], uint16_t por
  * Buffered. The first failure of the disk is logged; every later call returns STATUS_IO without a word. */
 Status dis_recorder_add(DisRecorder *recorder, int64_t capture_ns, const uint8_t from[16], uint16_t port,
                         const uint8_t *bytes, size_t octets);
+/* A note among the datagrams, in one line, as the comment of a block of its own (interface statistics): dis_log_open gives
+ * all of them as DisLog.notes. STATUS_UNSUPPORTED: pcap has no place for it. */
+Status dis_recorder_note(DisRecorder *recorder, int64_t capture_ns, const char *text);
 /* To the system, so that what a killed program had recorded is whole. */
 Status dis_recorder_flush(DisRecorder *recorder);
 /* NULL is fine. STATUS_IO when anything was not written. */

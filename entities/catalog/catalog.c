@@ -395,7 +395,13 @@ bool catalog_is_built(const Catalog *catalog, int model)
 
 bool catalog_has_shape(const Catalog *catalog, int model)
 {
-    return model < 0 || model >= catalog->model_count || strcmp(catalog->model[model].source, "none") != 0;
+    return model < 0 || model >= catalog->model_count ||
+           (strcmp(catalog->model[model].source, "none") != 0 && !catalog_is_chaff(catalog, model));
+}
+
+bool catalog_is_chaff(const Catalog *catalog, int model)
+{
+    return model >= 0 && model < catalog->model_count && strcmp(catalog->model[model].source, "chaff") == 0;
 }
 
 int catalog_class(const Catalog *catalog, int model)

@@ -17,7 +17,8 @@ typedef struct Catalog Catalog;
  * `1.1.225.1.*.*.*`, and stars at the end may be left out. Of the rows that agree with a type the one named deepest
  * wins (`1.1.*.1` before `1.1.225`: the category determines more of the shape than the country), then the one with
  * fewer stars, then the earlier. model: a built-in name, or a file (a dot or a slash in it; relative to the catalog's
- * folder), see entities/import/model_import.h; `none`: entities of the type are not rendered.
+ * folder), see entities/import/model_import.h; `none`: entities of the type are not rendered; `chaff`: to radar
+ * alone a cloud of dipoles.
  * Rows of the user's own catalog (etc_own of catalog.csv) take precedence over all of these. Its
  * files are relative to its own folder.
  * A malformed row: STATUS_BAD_VALUE, file and line logged. sag_m: as
@@ -31,6 +32,8 @@ void   catalog_close(Catalog *catalog);
 int    catalog_model_count(const Catalog *catalog);
 /* False: entities of this model are received and tracked, but not rendered. */
 bool   catalog_has_shape(const Catalog *catalog, int model);
+/* A cloud of chaff, which has no shape either: of the radar's scene alone. */
+bool   catalog_is_chaff(const Catalog *catalog, int model);
 /* The first model of the same name: identifies a class of targets independent of size. */
 int    catalog_class(const Catalog *catalog, int model);
 /* Once catalog_find has named it: the model. Before: a coarse form of its shape, in the shape's own size, whose

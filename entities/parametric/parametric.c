@@ -56,6 +56,7 @@ static const struct {
     {"building", parametric_building, NULL},
     {"decoy", parametric_decoy, NULL},
     {"flare", parametric_flare, NULL},
+    {"corner_reflector", parametric_corner_reflector, NULL},
     {"unknown", parametric_unknown, NULL},
     {"marker", parametric_marker, NULL},
     {"airliner", NULL, parametric_airplane},
@@ -113,6 +114,7 @@ static const struct {
     {"railcar", NULL, parametric_structure},
     {"animal", NULL, parametric_structure},
     {"none", NULL, parametric_structure},
+    {"chaff", NULL, parametric_structure},
 };
 
 enum { builder_count = sizeof builders / sizeof *builders };

@@ -36,6 +36,7 @@ Status parametric_person(Model *out, double sag_m);
 Status parametric_building(Model *out, double sag_m);
 Status parametric_decoy(Model *out, double sag_m);
 Status parametric_flare(Model *out, double sag_m);
+Status parametric_corner_reflector(Model *out, double sag_m);
 /* Several to a file, by name. */
 Status parametric_airplane(Model *out, const char *name, double sag_m);
 Status parametric_wheeled(Model *out, const char *name, double sag_m);

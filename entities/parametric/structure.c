@@ -238,6 +238,7 @@ Status parametric_structure(Model *out, const char *name, double sag_m)
         {"railcar", build_railcar},
         {"animal", build_animal},
         {"none", build_none},
+        {"chaff", build_none},
     };
     int k = 0;
     while (strcmp(kinds[k].name, name) != 0) k++;

@@ -360,6 +360,37 @@ static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Orde
     return entity_effects_snapshot(snapshot, table, carried, count, arena);
 }
 
+/* A cloud of chaff, or of a cartridge of chaff and flare (SISO-REF-010, expendables, category 3), which is a flare too. */
+static bool is_chaff(const EntityTable *table, const EntitySlot *slot)
+{
+    return catalog_is_chaff(table->catalog, slot->model) || (slot->type.kind == 8 && slot->type.category == 3);
+}
+
+static Status add_chaff(Snapshot *snapshot, const EntityTable *table, int clouds, Arena *arena)
+{
+    Ordered *order = arena_alloc(arena, (size_t)clouds + 1, sizeof *order);
+    Ordered *scratch = arena_alloc(arena, (size_t)clouds + 1, sizeof *scratch);
+    snapshot->chaff = arena_alloc(arena, (size_t)clouds + 1, sizeof *snapshot->chaff);
+    if (!order || !scratch || !snapshot->chaff) return STATUS_NO_MEMORY;
+    for (int s = 0; s < table->slot_end; s++) {
+        const EntitySlot *slot = table->slot + s;
+        if (entity_slot_lives(slot) && !entity_slot_silent(slot, snapshot->t_s) && is_chaff(table, slot))
+            order[snapshot->chaff_count++] = (Ordered){entity_key(slot->id), s};
+    }
+    order = sort_by_id(order, scratch, snapshot->chaff_count);
+    for (int c = 0; c < snapshot->chaff_count; c++) {
+        const EntitySlot *slot = table->slot + order[c].slot;
+        SnapshotEntity    e = {0};
+        const int         only = 0;
+        reckon_block(&e, table, &order[c], slot->reported.algorithm, &only, 1, snapshot->t_s);
+        SnapshotChaff *to = &snapshot->chaff[c];
+        *to = (SnapshotChaff){.id = slot->id, .age_s = fmax(snapshot->t_s - slot->created_s, 0)};
+        memcpy(to->p_ecef, e.p_ecef, sizeof to->p_ecef);
+        memcpy(to->v_ecef_mps, e.v_ecef_mps, sizeof to->v_ecef_mps);
+    }
+    return STATUS_OK;
+}
+
 Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena)
 {
     enum { ahead = 12 }; /* slots prefetched ahead */
@@ -371,6 +402,7 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
     Ordered *scratch = arena_alloc(arena, capacity, sizeof *scratch);
     if (!order || !scratch) return STATUS_NO_MEMORY;
 
+    int clouds = 0;
     for (int s = 0; s < table->slot_end; s++) {
         const EntitySlot *slot = table->slot + s;
         if (s + ahead < table->slot_end) { /* the members read are within the first two cache lines of a slot */
@@ -378,6 +410,7 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
             __builtin_prefetch((const char *)(slot + ahead) + 64);
         }
         if (!entity_slot_lives(slot) || entity_slot_silent(slot, t_s)) continue;
+        clouds += is_chaff(table, slot);
         if (!catalog_has_shape(table->catalog, slot->model)) continue;
         order[snapshot.count++] = (Ordered){entity_key(slot->id), s};
     }
@@ -421,6 +454,7 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
     else
         for (int chunk = 0; chunk < chunks; chunk++) finish_chunk(&all, 0, chunk);
     Status status = add_puffs(&snapshot, table, order, arena);
+    if (status == STATUS_OK && clouds > 0) status = add_chaff(&snapshot, table, clouds, arena);
     if (status == STATUS_OK) status = entity_marks_snapshot(&snapshot, table, trailing, trails, arena);
     if (status == STATUS_OK) *out = snapshot;
     return status;

@@ -39,6 +39,13 @@ typedef struct SnapshotJoints {
     int        first, count;     /* into Snapshot.joint_report */
 } SnapshotJoints;
 
+/* A cloud of chaff: radar alone sees it (sensor/radar/radar_chaff.c). */
+typedef struct SnapshotChaff {
+    DisEntityId   id;
+    double        p_ecef[3], v_ecef_mps[3]; /* of its middle, as reported and extrapolated */
+    double        age_s;                    /* since its first report */
+} SnapshotChaff;
+
 typedef struct Snapshot {
     double          t_s;
     int             count, node_count;
@@ -49,6 +56,8 @@ typedef struct Snapshot {
     int             puff_count;
     EffectPuff     *puff;   /* what burns, smokes and bursts */
     int64_t         puffs_left_out; /* the oldest, beyond effect_puff_capacity */
+    int             chaff_count;
+    SnapshotChaff  *chaff;          /* sorted by id; none of them is an entity */
     int             left_out;       /* entities beyond the table's config.shown: the farthest */
     const EffectTable *effect_table; /* NULL where there are no puffs */
     GroundMarks     marks;  /* what was left on the ground until t_s */

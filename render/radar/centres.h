@@ -1,18 +1,15 @@
-/* render/radar/centres.h: a target's hits and edges, summed over cells into few scattering centres for one coherent
- * interval.
+/* render/radar/centres.h: the scattering centres of a target as its antennas see them now, from its signature
+ * (signature.h): each with its path, and what it scatters along it.
  *
- * Cells are boxes over the path and the two directions across the line of sight. Within a cell phases are added at
- * the centre of the band and of the interval; between those and the band's or the interval's ends they part by at
- * most phase_rad each, so that a profile or a map made from the centres is that of the field to about phase_rad /
- * sqrt(6) of a cell's amplitude (tests/render/test_centres.c). Centres are in the order in which hits, then edges
- * meet their cells: the same bits for the same field. */
+ * Over a coherent interval in which the line of sight turns by turn_rad, phases within a centre part by
+ * across_phase_rad turn_rad / (width of the bin), and over the band by path_phase_rad (tests/render/test_centres.c). */
 #ifndef RENDER_RADAR_CENTRES_H
 #define RENDER_RADAR_CENTRES_H
 
-#include "render/radar/total_field.h"
+#include "render/radar/signature.h"
 
 typedef struct ScatterCentre {
-    double        path_m;     /* two-way, of its cell: S exp(-j k path) is its share of the field */
+    double        path_m;     /* two-way: S exp(-j k path) is its share of the field */
     double        p[3];       /* target frame, m: mean of its paths' first and last points, by amplitude */
     ScatterMatrix s;          /* m, at the centre frequency */
     double        weight;     /* sum of its amplitudes, m */
@@ -21,24 +18,16 @@ typedef struct ScatterCentre {
     double        strongest;  /* amplitude of that, m */
 } ScatterCentre;
 
-typedef struct CentresConfig {
-    double frequency_hz;      /* centre */
-    double bandwidth_hz;      /* of the band about it */
-    double turn_rad;          /* how much the line of sight turns over the interval */
-    double phase_rad;         /* that a cell may span from its middle, 0.1 */
-} CentresConfig;
-
 typedef struct Centres {
     int            count, capacity;
-    ScatterCentre *centre;
-    int32_t       *slot;      /* of a hash table, a power of two long */
-    int            slots;
+    ScatterCentre *centre;    /* in the order of the signature's */
+    double         tubes_same_m2, tubes_cross_m2; /* Signature */
 } Centres;
 
-/* out: zeroed, or of an earlier call, whose memory is used again. tx, rx: the antennas now, NULL: those of the
- * field. */
-Status centres_make(Centres *out, const TotalField *field, const ScatterAntenna *tx, const ScatterAntenna *rx,
-                    const CentresConfig *config);
+/* out: zeroed, or of an earlier call, whose memory is used again. tx, rx: the antennas now, in the signature's bin. */
+Status centres_make(Centres *out, const Signature *signature, const ScatterAntenna *tx, const ScatterAntenna *rx);
 void   centres_free(Centres *centres);
+/* Their whole field at a frequency of the band. */
+void   centres_field(ScatterMatrix *out, const Centres *centres, double frequency_hz);
 
 #endif

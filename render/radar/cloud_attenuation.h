@@ -5,6 +5,13 @@
 
 #include "pitviper.h"
 
+#include <complex.h>
+
+/* Relative permittivity e' - j e'' of liquid water, exp(+j w t): P.840-9, eqs. 4 to 11 (double Debye, after Liebe).
+ *   f_ghz   1 .. 200
+ *   temp_k  233.15 .. 323.15; NaN outside */
+double complex water_permittivity(double f_ghz, double temp_k);
+
 /* Specific attenuation coefficient K_l, dB/km one way for 1 g/m3 of liquid water.
  *   f_ghz   1 .. 200: droplets below 0.1 mm are small against the wavelength
  *   temp_k  of the droplets, 233.15 (where the last freeze) .. 323.15

@@ -3,7 +3,8 @@
 
 #include <assert.h>
 
-static const uint32_t speckle_stream = 0x434c5500, place_stream = 0x434c5520, texture_stream = 0x434c5540;
+static const uint32_t speckle_stream = 0x434c5500, place_stream = 0x434c5520, texture_stream = 0x434c5540,
+                      leaf_stream = 0x434c5560;
 
 /* ---- cells -------------------------------------------------------------------------------------------- */
 
@@ -143,14 +144,15 @@ double clutter_texture_at(const ClutterGrid *grid, const ClutterRow *row, int le
 
 /* ---- scatterers ------------------------------------------------------------------------------------------- */
 
-static void draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterRow *row, const ClutterCell *cell)
+enum {
+    still = clutter_still_terms, moving = clutter_terms - still, of_term = 9, of_velocity = 4,
+    normals = clutter_terms * of_term + moving * of_velocity
+};
+
+/* From so many standard normals; texture: mean power over all draws. */
+static void draw_from(ClutterScatterer *out, const ClutterRow *row, const double normal[normals], double texture)
 {
-    enum { still = clutter_still_terms, moving = clutter_terms - still, of_term = 9, of_velocity = 4 };
-    double normal[clutter_terms * of_term + moving * of_velocity], p_m[2];
-    clutter_place(p_m, grid, cell);
-    random_normals(normal, sizeof normal / sizeof *normal, grid->seed, speckle_stream + (uint32_t)cell->level,
-                   (uint32_t)cell->y, first_index(cell));
-    const double power = 0.5 * clutter_texture_at(grid, row, cell->level, p_m);
+    const double power = 0.5 * texture;
     const double unlike = sqrt(1 - row->rho * row->rho), hh = sqrt(row->hh), hv = sqrt(row->hv);
     for (int m = 0; m < clutter_terms; m++) {
         const double *n = normal + of_term * m, size = sqrt(power / (m < still ? still : moving));
@@ -165,6 +167,21 @@ static void draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterRo
         const double *n = normal + of_term * clutter_terms + of_velocity * m;
         out->velocity[m] = (float)(n[0] * n[1] + n[2] * n[3]); /* two-sided exponential of spread 1, exactly */
     }
+}
+
+static void draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterRow *row, const ClutterCell *cell)
+{
+    double normal[normals], p_m[2];
+    clutter_place(p_m, grid, cell);
+    random_normals(normal, normals, grid->seed, speckle_stream + (uint32_t)cell->level, (uint32_t)cell->y, first_index(cell));
+    draw_from(out, row, normal, clutter_texture_at(grid, row, cell->level, p_m));
+}
+
+void clutter_draw_leaf(ClutterScatterer *out, const ClutterRow *row, uint64_t seed, uint32_t crown, uint32_t number)
+{
+    double normal[normals];
+    random_normals(normal, normals, seed, leaf_stream, crown, (uint64_t)number * normals);
+    draw_from(out, row, normal, 1);
 }
 
 void clutter_draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterTable *table, ClutterBand band,
@@ -224,4 +241,19 @@ void clutter_see(ScatterMatrix *out, const ClutterGrid *grid, const ClutterTable
                       size * sqrt(1 - moves->still));
         out[i].vh = out[i].hv;
     }
+}
+
+void clutter_see_leaf(ScatterMatrix *out, const ClutterScatterer *scatterer, const ClutterMotion *motion, double sigma_m2,
+                      const double p_enu[3], const ClutterLook *look)
+{
+    const double k2 = 4 * pi_rad * look->frequency_hz / light_mps, size = sqrt(sigma_m2 / (4 * pi_rad));
+    double       u[3];
+    v3_sub(u, look->antenna_enu, p_enu);
+    *out = (ScatterMatrix){0};
+    if (!v3_normalize(u, u)) return;
+    add_terms(out, scatterer, 0, clutter_still_terms, u, k2, 0, size * sqrt(motion->still));
+    if (motion->still < 1)
+        add_terms(out, scatterer, clutter_still_terms, clutter_terms, u, k2, motion->spread_mps * look->t_s,
+                  size * sqrt(1 - motion->still));
+    out->vh = out->hv;
 }

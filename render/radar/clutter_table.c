@@ -207,11 +207,16 @@ double clutter_correlation(const ClutterMotion *motion, double lag_s, double wav
     return motion->still + (1 - motion->still) / (1 + x * x);
 }
 
-double clutter_foliage_db(const ClutterRow *row, double depth_m)
+double clutter_foliage_depth(double depth_m)
 {
     static const double bend_m = 14, power = 0.588;
     if (!(depth_m > 0)) return 0;
-    return row->foliage_db_m * (depth_m <= bend_m ? depth_m : bend_m * pow(depth_m / bend_m, power));
+    return depth_m <= bend_m ? depth_m : bend_m * pow(depth_m / bend_m, power);
+}
+
+double clutter_foliage_db(const ClutterRow *row, double depth_m)
+{
+    return row->foliage_db_m * clutter_foliage_depth(depth_m);
 }
 
 double clutter_foliage_volume(const ClutterRow *row)

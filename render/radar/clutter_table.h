@@ -69,6 +69,7 @@ double clutter_correlation(const ClutterMotion *motion, double lag_s, double wav
 /* Loss of a path of depth_m through the foliage, dB, one way: linear for 14 m, then as depth^0.588 (Weissberger,
  * ECAC-TR-81-101, 1982; 0.23-95 GHz, up to 400 m), joined without a step. 0 where the class has none. */
 double clutter_foliage_db(const ClutterRow *row, double depth_m);
+double clutter_foliage_depth(double depth_m); /* the same of 1 dB/m: the depth that counts */
 /* Backscatter of foliage by its volume at VV, m^2/m^3 = 1/m: 2 kappa gamma, kappa the power lost a metre, one way.
  * A canopy of depth h so returns gamma sin(psi) (1 - exp(-2 kappa h / sin psi)) by single scattering: the row's own
  * sigma0 when deep (Attema and Ulaby, Radio Science 13(2), 1978). 0 without foliage, and for rows that are not of

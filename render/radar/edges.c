@@ -64,9 +64,10 @@ static void emit_segment(const View *view, const Wedge *w, int index, double mid
             v3_normalize(basis[a][q], basis[a][q]);
         }
     }
-    wedge_fringe(s.amplitude, &w->frame, s.u[0], basis[0], s.u[1], basis[1]);
+    double fringe[2][2];
+    wedge_fringe(fringe, &w->frame, s.u[0], basis[0], s.u[1], basis[1]);
     for (int q = 0; q < 2; q++)
-        for (int p = 0; p < 2; p++) s.amplitude[q][p] *= spread;
+        for (int p = 0; p < 2; p++) s.amplitude[q][p] = fringe[q][p] * spread;
     view->emit(view->user, &s);
 }
 
@@ -115,7 +116,7 @@ static void each_segment(View *view, const Wedge *wedge, int count)
 static void add_segment(ScatterMatrix *out, const EdgeSegment *s, double k_per_m)
 {
     const double half = k_per_m * s->slope * s->length_m / 2;
-    const double complex wave = scatter_sinc(half) * cexp(-I * k_per_m * s->path_m);
+    const double complex wave = edge_fade(s, k_per_m) * scatter_sinc(half) * cexp(-I * k_per_m * s->path_m);
     out->hh += s->amplitude[0][0] * wave;
     out->hv += s->amplitude[0][1] * wave;
     out->vh += s->amplitude[1][0] * wave;

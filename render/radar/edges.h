@@ -6,12 +6,13 @@
  *     S_qp(k) = amplitude_qp sinc(k slope length / 2) exp(-j k path),      sinc x = sin x / x
  *
  * with an amplitude that holds at every frequency (wedge_diffraction.h), so that segments made once serve a whole band,
- * up to the k they were made for. To be added to physical optics of the same faces.
+ * up to the k they were made for. To be added to physical optics of the same faces. Segments of higher order
+ * (edge_pairs.h) are of the same form, but for edge_fade.
  *
  * Against an integral over the whole edge, 30 m and beyond: 2e-3 of its largest value (tests/render/test_edges.c).
  *
- * Metal only. First order: an edge is lit by the incident wave alone. What two edges do to one wave (a plate seen
- * within some 30 degrees of its plane with the electric field across the edges), and what corners add, is left out. */
+ * Metal only. First order: an edge is lit by the incident wave alone; what parallel edges of a flat face do to one wave
+ * is in edge_pairs.h. What corners add is left out. */
 #ifndef RENDER_RADAR_EDGES_H
 #define RENDER_RADAR_EDGES_H
 
@@ -32,7 +33,9 @@ typedef struct EdgeConfig {
 typedef struct EdgeSegment {
     int    wedge, part;     /* whose it is; of the model */
     double p[3], length_m;  /* middle */
-    double amplitude[2][2]; /* m; [received][transmitted], 0: h, 1: v */
+    double complex amplitude[2][2]; /* m; [received][transmitted], 0: h, 1: v; first order: real */
+    int    order;           /* 0: first order; n: of n waves along a face, and its amplitude goes with k^(-n / 2) */
+    double order_k;         /* the k, 1/m, that this amplitude is of */
     double path_m, slope;   /* as in scatter.h, the mean along the segment; its change per length of edge */
     double u[2][3];         /* unit directions to transmitter and receiver: d path = -dp . (u[0] + u[1]) */
 } EdgeSegment;
@@ -41,6 +44,13 @@ typedef struct EdgeSegments {
     int          count, capacity;
     EdgeSegment *segment; /* by wedge, then along it */
 } EdgeSegments;
+
+/* What becomes of a segment's amplitude at another k. */
+static inline double edge_fade(const EdgeSegment *s, double k_per_m)
+{
+    if (s->order == 0) return 1;
+    return s->order == 1 ? sqrt(s->order_k / k_per_m) : s->order_k / k_per_m;
+}
 
 /* Appends those of wedges (target frame). Antennas farther than every edge. STATUS_NO_MEMORY: out is as it was. */
 Status edge_segments(EdgeSegments *out, const Wedge *wedge, int count, const ScatterAntenna *transmitter,

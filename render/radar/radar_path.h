@@ -3,7 +3,7 @@
  *
  * The air is that of the weather at its ground (air temperature, pressure, humidity, rain) and of the atmosphere's
  * model above it. Not here: bending and delay by refraction, which shift elevation and range of a target (300 ppm of
- * the range at the ground) and hardly its loss; scintillation; scatter by rain back to the radar; snow, hail and the
+ * the range at the ground) and hardly its loss; scintillation; scatter by rain back to the radar (rain_scatter.h); snow, hail and the
  * melting layer's excess. */
 #ifndef RENDER_RADAR_RADAR_PATH_H
 #define RENDER_RADAR_RADAR_PATH_H

@@ -76,8 +76,12 @@ Status radar_target_create(RadarTarget **out, const Model *model, const RadarMat
     const WedgeConfig edges = wedges_default_config();
     if (status == STATUS_OK) status = wedges_find(&target->wedges, model, &edges);
     if (status != STATUS_OK) goto fail;
+    status = edge_pairs_find(&target->pairs, target->wedges.wedge, target->wedges.count);
+    if (status != STATUS_OK) goto fail;
     target->wedge = calloc((size_t)target->wedges.count + 1, sizeof *target->wedge);
-    if (!target->wedge) {
+    target->placed = calloc((size_t)target->wedges.count + 1, sizeof *target->placed);
+    target->pair = calloc((size_t)target->pairs.count + 1, sizeof *target->pair);
+    if (!target->wedge || !target->placed || !target->pair) {
         status = STATUS_NO_MEMORY;
         goto fail;
     }
@@ -108,6 +112,9 @@ void radar_target_destroy(RadarTarget *target)
     free(target->pose);
     free(target->material);
     free(target->wedge);
+    free(target->placed);
+    free(target->pair);
+    edge_pairs_destroy(&target->pairs);
     wedges_destroy(&target->wedges);
     free(target);
 }
@@ -123,11 +130,18 @@ static void place_wedges(RadarTarget *target, int damage)
 {
     static const double origin[3] = {0, 0, 0};
     wedges_place(target->wedge, &target->wedges, target->pose, origin);
-    target->wedge_count = 0;
+    target->wedge_count = target->pair_count = 0;
     for (int i = 0; i < target->wedges.count; i++) {
         const int part = target->wedges.wedge[i].part;
+        target->placed[i] = -1;
         if (!is_metal(target, part) || target->model->part[part].damage_hidden >> damage & 1) continue;
+        target->placed[i] = target->wedge_count;
         target->wedge[target->wedge_count++] = target->wedge[i];
+    }
+    for (int i = 0; i < target->pairs.count; i++) { /* of one part, so both are there or neither is */
+        EdgePair pair = target->pairs.pair[i];
+        for (int e = 0; e < 2; e++) pair.wedge[e] = target->placed[pair.wedge[e]];
+        if (pair.wedge[0] >= 0 && pair.wedge[1] >= 0) target->pair[target->pair_count++] = pair;
     }
 }
 

@@ -10,7 +10,7 @@
 #include "render/parts/parts.h"
 #include "render/radar/radar_materials.h"
 #include "render/radar/scatter.h"
-#include "render/radar/wedges.h"
+#include "render/radar/edge_pairs.h"
 
 typedef struct RadarTarget {
     const Model          *model;
@@ -23,6 +23,10 @@ typedef struct RadarTarget {
     WedgeList    wedges;             /* of all parts, node axes */
     Wedge       *wedge;              /* [wedge_count], body axes: of metal parts that are there */
     int          wedge_count;
+    EdgePairs    pairs;              /* of wedges that face one another, numbers of `wedges` */
+    EdgePair    *pair;               /* [pair_count], numbers of `wedge` */
+    int          pair_count;
+    int         *placed;             /* [wedges.count]: number in `wedge`; -1: not there */
 } RadarTarget;
 
 /* model and materials must outlive it; its joints are at rest. isa: as tracer_create. */

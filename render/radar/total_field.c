@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-enum { chunk_wedges = 512 };
+enum { chunk_wedges = 512, chunk_pairs = 256 };
 
 typedef struct Sight {
     const PosedEntity    *entity;
@@ -18,22 +18,52 @@ static bool sees(void *user, const double p[3], int antenna)
     return !parts_occluded(sight->entity, p, way, false);
 }
 
+/* Rays just above a face: from edge to edge, and down to it at three places on the way. */
+static bool is_clear(void *user, const double p[3], const double q[3], const double n[3])
+{
+    static const double above_m = 1e-3, inside_m = 2e-3;
+    const Sight *sight = user;
+    double       way[3], from[3], down[3];
+    PartHit      hit;
+    v3_sub(way, q, p);
+    const double width_m = v3_length(way);
+    if (!(width_m > 2 * inside_m)) return false;
+    v3_scale(way, 1 / width_m, way);
+    v3_scale(down, -1, n);
+    for (int i = 0; i < 3; i++) from[i] = p[i] + above_m * n[i] + inside_m * way[i];
+    if (!isinf(parts_first_hit(&hit, sight->entity, from, way, width_m - 2 * inside_m, false))) return false;
+    for (int k = 1; k < 4; k++) {
+        for (int i = 0; i < 3; i++) from[i] = p[i] + above_m * n[i] + 0.25 * k * width_m * way[i];
+        if (isinf(parts_first_hit(&hit, sight->entity, from, down, 2 * above_m, false))) return false;
+    }
+    return true;
+}
+
 typedef struct EdgeWork {
     const RadarTarget *target;
-    const EdgeConfig  *config;
+    const EdgePairConfig *config;
     const Sight       *sight;
+    int                wedge_chunks;  /* then those of pairs */
     EdgeSegments      *chunk;
     Status            *status;
 } EdgeWork;
 
 static void find_chunk(void *user, int worker, int task)
 {
-    const EdgeWork *work = user;
-    const int       first = task * chunk_wedges, left = work->target->wedge_count - first;
+    const EdgeWork    *work = user;
+    const RadarTarget *target = work->target;
     (void)worker;
-    work->status[task] = edge_segments(&work->chunk[task], work->target->wedge + first,
-                                       left < chunk_wedges ? left : chunk_wedges, work->sight->antenna[0],
-                                       work->sight->antenna[1], work->config);
+    if (task < work->wedge_chunks) {
+        const int first = task * chunk_wedges, left = target->wedge_count - first;
+        work->status[task] = edge_segments(&work->chunk[task], target->wedge + first,
+                                           left < chunk_wedges ? left : chunk_wedges, work->sight->antenna[0],
+                                           work->sight->antenna[1], &work->config->edge);
+    } else {
+        const int first = (task - work->wedge_chunks) * chunk_pairs, left = target->pair_count - first;
+        work->status[task] = edge_pair_segments(&work->chunk[task], target->pair + first,
+                                                left < chunk_pairs ? left : chunk_pairs, target->wedge,
+                                                work->sight->antenna[0], work->sight->antenna[1], work->config);
+    }
 }
 
 static Status append(EdgeSegments *out, const EdgeSegments *more, int first_wedge)
@@ -52,19 +82,20 @@ static Status append(EdgeSegments *out, const EdgeSegments *more, int first_wedg
     return STATUS_OK;
 }
 
-/* Chunks of wedges over the threads; their segments in order. */
-static Status find_edges(EdgeSegments *out, const RadarTarget *target, const EdgeConfig *config, const Sight *sight,
+/* Chunks of wedges, then of pairs of them, over the threads; their segments in order. */
+static Status find_edges(EdgeSegments *out, const RadarTarget *target, const EdgePairConfig *config, const Sight *sight,
                          Pool *pool)
 {
-    const int chunks = (target->wedge_count + chunk_wedges - 1) / chunk_wedges;
-    EdgeWork  work = {target, config, sight, calloc((size_t)chunks + 1, sizeof *work.chunk),
+    const int wedge_chunks = (target->wedge_count + chunk_wedges - 1) / chunk_wedges;
+    const int chunks = wedge_chunks + (target->pair_count + chunk_pairs - 1) / chunk_pairs;
+    EdgeWork  work = {target, config, sight, wedge_chunks, calloc((size_t)chunks + 1, sizeof *work.chunk),
                       calloc((size_t)chunks + 1, sizeof *work.status)};
     Status    status = work.chunk && work.status ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK && pool) pool_run(pool, chunks, find_chunk, &work);
     else for (int t = 0; t < chunks && status == STATUS_OK; t++) find_chunk(&work, 0, t);
     for (int t = 0; t < chunks && status == STATUS_OK; t++) {
         status = work.status[t];
-        if (status == STATUS_OK) status = append(out, &work.chunk[t], t * chunk_wedges);
+        if (status == STATUS_OK) status = append(out, &work.chunk[t], t < wedge_chunks ? t * chunk_wedges : 0);
     }
     for (int t = 0; t < chunks && work.chunk; t++) edge_segments_destroy(&work.chunk[t]);
     free(work.chunk);
@@ -79,9 +110,12 @@ Status total_field_trace(TotalField *out, const RadarTarget *target, const Scatt
     const Status status = tubes_trace(&out->hits, target, tx, rx, config, pool);
     if (status != STATUS_OK || !edges || target->wedge_count == 0) return status;
     Sight            sight = {&target->entity, {tx, rx}};
-    const EdgeConfig edge = {.k_per_m = 1.5 * 2 * pi_rad * config->frequency_hz / light_mps,
-                             .sample_m = fmin(0.05, target->entity.radius_m / 64), .clear_m = 1e-4, .visible = sees,
-                             .user = &sight};
+    const double         k_per_m = 2 * pi_rad * config->frequency_hz / light_mps;
+    const EdgePairConfig edge = {.edge = {.k_per_m = 1.5 * k_per_m,
+                                          .sample_m = fmin(0.05, target->entity.radius_m / 64), .clear_m = 1e-4,
+                                          .visible = sees, .user = &sight},
+                                 .k_per_m = k_per_m, .clear = is_clear,
+                                 .least_m = 5e-5 * target->entity.radius_m};
     return find_edges(&out->edges, target, &edge, &sight, pool);
 }
 
@@ -124,7 +158,7 @@ static void add_segment(ScatterMatrix *s, int count, double first_k, double step
         const double k = first_k + f * step_k;
         wave_next(&way, f, k);
         wave_next(&side, f, k);
-        const double         share = side.im / (k * half_m);
+        const double         share = edge_fade(e, k) * side.im / (k * half_m);
         const double complex wave = CMPLX(share * way.re, share * way.im);
         s[f].hh += e->amplitude[0][0] * wave;
         s[f].hv += e->amplitude[0][1] * wave;

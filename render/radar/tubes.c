@@ -12,7 +12,7 @@ enum {
 TubeConfig tubes_default_config(double frequency_hz)
 {
     return (TubeConfig){.frequency_hz = frequency_hz, .rays_per_wavelength = 1.25, .rays_per_radius = 128,
-                        .bounces = 8, .warp_length_m = 0.5};
+                        .splits = 2, .cuts_per_radius = 768, .split_rad = 0.5, .bounces = 8, .warp_length_m = 0.5};
 }
 
 void tubes_free(TubeHits *hits)
@@ -164,7 +164,8 @@ static Status open_work(TubeWork *work, int threads, const RadarTarget *target)
         warp_make(&work->warp[p], work->config.warp_m, work->config.warp_length_m, work->config.warp_seed, p);
     for (int w = 0; w < threads; w++) {
         work->worker[w].tile = calloc(1, tube_tile_octets());
-        if (!work->worker[w].tile) return STATUS_NO_MEMORY;
+        work->worker[w].at = malloc(tube_place_count(work->levels) * sizeof *work->worker[w].at);
+        if (!work->worker[w].tile || !work->worker[w].at) return STATUS_NO_MEMORY;
     }
     for (int p = 0; p < target->model->part_count && target->materials; p++)
         radar_surface(&work->surface[p], &target->materials->material[target->material[p]], work->config.frequency_hz);
@@ -176,6 +177,8 @@ static void close_work(TubeWork *work, int threads)
     for (int w = 0; w < threads && work->worker; w++) {
         free(work->worker[w].hit);
         free(work->worker[w].tile);
+        free(work->worker[w].at);
+        for (int i = 0; i < 2; i++) free(work->worker[w].cell[i]);
     }
     free(work->worker);
     free(work->surface);
@@ -195,6 +198,7 @@ static Status gather(TubeHits *out, TubeWork *work, int threads, int count)
     for (int t = 0; t < count; t++) {
         if (work->piece[t].failed) return STATUS_NO_MEMORY;
         more += work->piece[t].count;
+        out->rays += work->piece[t].rays;
     }
     if (out->count + more > most_hits) {
         log_error("radar: more than %d hits of ray tubes: rays=%lld; take a lower frequency", (int)most_hits,
@@ -225,7 +229,9 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
     if (!antenna_is_good(tx) || !antenna_is_good(rx) || !(config->frequency_hz > 0) ||
         !(config->rays_per_wavelength > 0) || !(config->rays_per_radius >= 0) ||
         !(config->warp_m >= 0 && config->warp_length_m > 0) ||
-        isinf(config->frequency_hz) || config->bounces < 1 || config->bounces > 255) {
+        isinf(config->frequency_hz) || config->bounces < 1 || config->bounces > 255 ||
+        config->splits < 0 || config->splits > tubes_splits_most ||
+        !(config->cuts_per_radius > 0 && config->split_rad > 0)) {
         log_error("radar: an antenna or a number of the ray tubes is out of range: frequency_hz=%g "
                   "rays_per_wavelength=%g bounces=%d", config->frequency_hz, config->rays_per_wavelength,
                   config->bounces);
@@ -244,8 +250,8 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
         return status;
     }
     out->spacing_m = work.grid.spacing_m;
+    work.levels = tube_levels(work.grid.spacing_m, target->entity.radius_m, config);
     work.widest_m = target->entity.radius_m;
-    out->rays = (long long)work.grid.count[0] * work.grid.count[1];
     status = open_work(&work, threads, target);
     const long long tiles = (long long)work.grid.tiles[0] * work.grid.tiles[1];
     for (long long t = 0; t < tiles && status == STATUS_OK; t += round_tiles) {

@@ -1,4 +1,4 @@
-/* render/radar/tubes_trace.c: follows a tile of ray tubes from mirror to mirror, and what each facet radiates. */
+/* render/radar/tubes_trace.c: follows ray tubes from mirror to mirror, and what each facet radiates. */
 #include "render/radar/tubes_private.h"
 
 #include <stdlib.h>
@@ -28,7 +28,7 @@ struct TubeTile {
     double  o[3][tile_rays], d[3][tile_rays], far_m[tile_rays], range_m[tile_rays];
     PartHit hit[tile_rays];
     double  from[3][tile_rays], to[3][tile_rays], limit_m[tile_rays]; /* towards the receiver */
-    uint8_t met[tile_rays], kept[tile_rays];
+    uint8_t met[tile_rays], kept[tile_rays], arrived[tile_rays];
     TubeHit record[tile_rays];
     int     alive[tile_rays];
 };
@@ -120,19 +120,20 @@ static void polarise(double out[2][3], const ScatterAntenna *antenna, const doub
     }
 }
 
-static void start_tube(TubeTile *tile, const TubeWork *work, int column, int row)
+/* x, y: place in the grid, in its cells; side_m: of the tube. */
+static void start_tube(TubeTile *tile, const TubeWork *work, double x, double y, double side_m)
 {
     const TubeGrid *grid = &work->grid;
     const int       i = tile->count++;
     Tube           *tube = &tile->tube[i];
     double          q[3], e[2][3], back_m = grid->back_m;
-    const double    x_m = grid->first_m[0] + column * grid->spacing_m, y_m = grid->first_m[1] + row * grid->spacing_m;
+    const double    x_m = grid->first_m[0] + x * grid->spacing_m, y_m = grid->first_m[1] + y * grid->spacing_m;
     for (int c = 0; c < 3; c++) q[c] = grid->centre[c] + x_m * grid->side[0][c] + y_m * grid->side[1][c];
     if (grid->plane) {
         memcpy(tube->d, grid->axis, sizeof tube->d);
         for (int s = 0; s < 2; s++) {
             memset(tube->turn[s], 0, sizeof tube->turn[s]);
-            v3_scale(tube->side[s], grid->spacing_m, grid->side[s]);
+            v3_scale(tube->side[s], side_m, grid->side[s]);
         }
     } else {
         v3_sub(tube->d, q, grid->antenna);
@@ -140,7 +141,7 @@ static void start_tube(TubeTile *tile, const TubeWork *work, int column, int row
         v3_scale(tube->d, 1 / away_m, tube->d);
         for (int s = 0; s < 2; s++) {
             v3_add_scaled(tube->turn[s], grid->side[s], -v3_dot(grid->side[s], tube->d), tube->d);
-            v3_scale(tube->turn[s], grid->spacing_m / away_m, tube->turn[s]);
+            v3_scale(tube->turn[s], side_m / away_m, tube->turn[s]);
         }
         back_m = fmin(back_m, away_m);
     }
@@ -400,13 +401,14 @@ static int mirror_all(TubeTile *tile, TubeWork *work, const int *list, int count
         const int i = list[k];
         Tube     *tube = &tile->tube[i];
         Facing    facing;
-        tile->kept[i] = 0;
+        tile->kept[i] = tile->arrived[i] = 0;
         if (isinf(tile->range_m[i])) continue;
         const PosedNode *node = &work->target->entity.node[tile->hit[i].node];
         if (facet.node != node || facet.triangle != tile->hit[i].triangle)
             parts_facet(&facet, model, &work->target->entity, &tile->hit[i]);
         const int part = model->triangle_part[tile->hit[i].triangle];
         if (!arrive(tube, &facing, tile, work, &facet, &work->warp[part], i)) continue;
+        tile->arrived[i] = 1;
         const RadarSurface *surface = &work->surface[part];
         double complex      te = -1, tm = 1;
         if (surface->kind != RADAR_METAL || surface->rough_m > 0)
@@ -457,22 +459,39 @@ static void find_next(TubeTile *tile, const TubeWork *work, const int *list, int
     parts_first_hits(tile->range_m, tile->hit, &work->target->entity, o, d, tile->far_m, list, count, false);
 }
 
-static void open_tile(TubeTile *tile, const TubeWork *work, long long number)
+static void open_tile(TubeTile *tile, const TubeWork *work, long long number, int level, const TubeCell *cell,
+                      int count)
 {
-    const int column = (int)(number % work->grid.tiles[0]) * tile_side;
-    const int row = (int)(number / work->grid.tiles[0]) * tile_side;
+    const int    column = (int)(number % work->grid.tiles[0]) * tile_side;
+    const int    row = (int)(number / work->grid.tiles[0]) * tile_side;
+    const double share = 1.0 / (1 << level);
     tile->count = 0;
-    for (int y = row; y < row + tile_side && y < work->grid.count[1]; y++)
-        for (int x = column; x < column + tile_side && x < work->grid.count[0]; x++) start_tube(tile, work, x, y);
+    for (int k = 0; k < count; k++)
+        start_tube(tile, work, column + (cell[k].x + 0.5) * share - 0.5, row + (cell[k].y + 0.5) * share - 0.5,
+                   share * work->grid.spacing_m);
 }
 
-void tube_tile(TubeWork *work, int worker_at, long long number, TubePiece *piece)
+/* What a cell's tube met at a mirror. */
+static void leave_mark(TubeCell *cell, const TubeTile *tile, int i, int bounce)
+{
+    if (!tile->arrived[i] || bounce > trail_most) return;
+    const TubeHit *record = &tile->record[i];
+    TubeMark      *mark = &cell->mark[bounce - 1];
+    cell->marks = bounce;
+    mark->seen = tile->kept[i];
+    if (!mark->seen) return;
+    mark->path_m = record->path_m;
+    memcpy(mark->slope_m, record->slope_m, sizeof mark->slope_m);
+    mark->part = record->part;
+}
+
+bool tube_follow(TubeWork *work, int worker_at, long long number, int level, TubeCell *cell, int cells, int first)
 {
     TubeWorker *worker = &work->worker[worker_at];
     TubeTile   *tile = worker->tile;
     int         list[tile_rays];
-    *piece = (TubePiece){.worker = worker_at, .first = worker->count};
-    open_tile(tile, work, number);
+    bool        good = true;
+    open_tile(tile, work, number, level, cell, cells);
     int count = tile->count;
     for (int i = 0; i < count; i++) list[i] = i;
     find_next(tile, work, list, count);
@@ -480,14 +499,17 @@ void tube_tile(TubeWork *work, int worker_at, long long number, TubePiece *piece
         const int alive = mirror_all(tile, work, list, count);
         hide(tile, work, list, count, bounce);
         find_next(tile, work, tile->alive, alive);
+        for (int k = 0; k < count; k++) leave_mark(&cell[list[k]], tile, list[k], bounce);
         if (work->config.last_only)
             for (int k = 0; k < alive; k++)
                 if (!isinf(tile->range_m[tile->alive[k]])) tile->kept[tile->alive[k]] = 0;
-        for (int k = 0; k < count; k++)
-            if (tile->kept[list[k]] && !keep(worker, &tile->record[list[k]])) piece->failed = true;
+        for (int k = 0; k < count; k++) {
+            tile->record[list[k]].cell = first + list[k];
+            if (tile->kept[list[k]]) good &= keep(worker, &tile->record[list[k]]);
+        }
         memcpy(list, tile->alive, (size_t)alive * sizeof *list);
         count = alive;
         if (work->config.last_only && bounce > work->config.bounces) break;
     }
-    piece->count = worker->count - piece->first;
+    return good;
 }

@@ -4,6 +4,7 @@
 
 #include "entities/effects/effects_history.h"
 #include "render/heat/given_heat.h"
+#include "render/radar/given_list.h"
 #include "render/heat/part_table.h"
 #include "sensor/detector/preset.h"
 #include "sensor/node/host_run.h"
@@ -170,6 +171,16 @@ static bool given_heat_is_valid(const Check *c)
     return true;
 }
 
+static bool given_signatures_are_valid(const Check *c)
+{
+    GivenList *given;
+    if (!*c->config->radar.given) return true;
+    if (given_list_open(&given, c->config->radar.given) != STATUS_OK)
+        return report(c, "radar.given", "empty is always right; etc/reference/radar_seeker.md has an example");
+    given_list_close(given);
+    return true;
+}
+
 /* Catalog, its models and sidecars, and the materials of their parts. */
 static bool models_are_valid(Check *c)
 {
@@ -227,6 +238,7 @@ static bool tables_are_valid(Check *c)
     good &= atmosphere_is_valid(c);
     good &= weather_is_valid(c);
     good &= given_heat_is_valid(c);
+    good &= given_signatures_are_valid(c);
     good &= terrain_is_valid(c);
     if (!known.bundled)
         known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "radars.csv", radar_preset_check) && is_bundled(c, "heat.csv", read_heat) &&

@@ -5,10 +5,13 @@
 #include "sensor/settings/next_option.h"
 #include "sensor/node/overwrite.h"
 #include "sensor/framefile/frame_again.h"
+#include "sensor/framefile/frame_radar_file.h"
 #include "sensor/framefile/frame_scene.h"
+#include "sensor/publish/consumers.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/publish/records.h"
 #include "sensor/truth/frame_error.h"
+#include "sensor/world/frame_radar.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -123,7 +126,7 @@ static void describe(const FrameFile *file)
 
 /* The line of truth.jsonl, from the image as in the frame loop. */
 static Status write_truth(const char *out, const FrameFile *file, const FrameScene *s, const FrameAgain *again,
-                          const TruthNoise *noise, Arena *arena)
+                          const TruthNoise *noise, const RadarFrame *radar, Arena *arena)
 {
     char        path[path_size];
     Target     *target = arena_alloc(arena, (size_t)s->snapshot.count + 1, sizeof *target);
@@ -134,7 +137,7 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
                           .host = host >= 0 ? &s->snapshot.entity[host] : NULL, .request = &file->request,
                           .hfov_rad = s->config.sensor.hfov_deg * rad_per_deg, .gimbal_at_limit = file->at_limit,
                           .scene_rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]}, .sun = &again->sun,
-                          .frame_sha256 = again->made.sha256};
+                          .frame_sha256 = again->made.sha256, .radar = radar};
     memcpy(record.p_eye_ecef, file->eye.p_ecef, sizeof record.p_eye_ecef);
     memcpy(record.v_eye_mps, file->eye.v_ecef_mps, sizeof record.v_eye_mps);
     memcpy(record.r_ecef_from_body, file->r_ecef_from_body, sizeof record.r_ecef_from_body);
@@ -155,10 +158,22 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
     return status;
 }
 
+static Status write_radar(const char *out, const FrameFile *file, const FrameScene *s, const RadarFrame *radar)
+{
+    Consumer *consumer;
+    Frame     frame = {.number = file->frame, .time_s = file->time_s, .unix_s = file->unix_s + file->time_s, .radar = radar};
+    snprintf(frame.host, sizeof frame.host, "%s", file->host);
+    Status status = consume_radar(&consumer, &(PictureFiles){.out = out, .config = &s->config});
+    if (status != STATUS_OK) return status;
+    status = consumer->put(consumer, &frame);
+    const Status closed = consumer->close(consumer);
+    return status == STATUS_OK ? closed : status;
+}
+
 /* The detectors start with this frame: their state from earlier frames (detector.agc_s, lines of AC coupling) is not
  * in the file. */
 static Status write_products(const FrameOptions *o, const FrameFile *file, FrameScene *s, const FrameAgain *again,
-                             Pool *pool, Arena *arena)
+                             const RadarFrame *radar, Pool *pool, Arena *arena)
 {
     Chain      *chain[BAND_COUNT] = {NULL};
     FrameLevel *level = arena_alloc(arena, BAND_COUNT, sizeof *level);
@@ -186,13 +201,40 @@ static Status write_products(const FrameOptions *o, const FrameFile *file, Frame
         frame_expose(&noise, chain, &again->picture, &s->config);
         status = frame_files_write(hash, &files, pool);
     }
-    if (status == STATUS_OK && again->picture.target) status = write_truth(o->out, file, s, again, &noise, arena);
+    if (status == STATUS_OK && again->picture.target) status = write_truth(o->out, file, s, again, &noise, radar, arena);
+    if (status == STATUS_OK && radar) status = write_radar(o->out, file, s, radar);
     if (status == STATUS_OK) log_print("its pictures are in %s/frames\n", o->out);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chain[b]);
     return status;
 }
 
 /* ---- rendered again ----------------------------------------------------------------------------- */
+
+/* Measured again; differ grows by one where the map is another. */
+static Status measure(const RadarFrame **out, int *differ, const FrameFile *file, FrameScene *s, Pool *pool, Arena *arena)
+{
+    bool         same;
+    SeekerRadar *radar;
+    Status       status = frame_radar_open(&radar, &s->config, "avx2", false);
+    if (status != STATUS_OK) return status;
+    status = frame_radar_again(out, radar, file, &s->snapshot, &s->world, &s->config, pool, arena);
+    if (status == STATUS_OK) status = frame_radar_same(&same, file, *out);
+    /* the preset is the radar's own */
+    RadarPreset *preset = status == STATUS_OK ? arena_alloc(arena, 1, sizeof *preset) : NULL;
+    RadarFrame  *kept = preset ? arena_alloc(arena, 1, sizeof *kept) : NULL;
+    if (status == STATUS_OK && !kept) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) {
+        *preset = *(*out)->preset;
+        *kept = **out;
+        kept->preset = preset;
+        *out = kept;
+        if (same) log_print("the same: the radar's map, to the bit; %d detections\n", kept->detections_in_all);
+        else log_error("frame: the radar's map differs; %d detections, were %d", kept->detections_in_all, file->radar.detections);
+        *differ += !same;
+    }
+    seeker_radar_destroy(radar);
+    return status;
+}
 
 static Status show(int *differ, const FrameOptions *o, const FrameFile *file, FrameScene *s, Pool *pool, Arena *arena)
 {
@@ -209,7 +251,9 @@ static Status show(int *differ, const FrameOptions *o, const FrameFile *file, Fr
         log_error("frame: %d of %d planes differ; frame %.64s, was %.64s%s", *differ, file->plane_count,
                    again->made.sha256, file->frame_sha256,
                    strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : "; another version of pitviper made it");
-    return o->out ? write_products(o, file, s, again, pool, arena) : STATUS_OK;
+    const RadarFrame *radar = NULL;
+    if (file->measured) status = measure(&radar, differ, file, s, pool, arena);
+    return status == STATUS_OK && o->out ? write_products(o, file, s, again, radar, pool, arena) : status;
 }
 
 int frame_command(int argc, char **argv)

@@ -4,7 +4,6 @@
 #include "sensor/commands/heat_day.h"
 #include "sensor/commands/output_files.h"
 
-#include <errno.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -128,21 +127,14 @@ static Status make_paths(OutputPath path[file_count], const HeatOptions *o)
     return output_files(path, names, file_count, "heat", o->out, o->name, ".", o->overwrite);
 }
 
-static Status write_text_file(const char *path, const HeatDay *day, const char *about)
-{
-    char  part[output_path_size + 8];
-    snprintf(part, sizeof part, "%s.part", path);
-    FILE *to = fopen(part, "w");
-    bool  good = to != NULL;
-    if (good && about) heat_day_plot(to, day, about);
-    else if (good) heat_day_write_csv(to, day);
-    good = good && !ferror(to);
-    if (to && fclose(to) != 0) good = false;
-    if (good && rename(part, path) == 0) return STATUS_OK;
-    log_error("heat: cannot write %s: %s; choose another folder with --out", path, strerror(errno));
-    unlink(part);
-    return STATUS_IO;
-}
+/* What is drawn of a day, and its caption. */
+typedef struct HeatText {
+    const HeatDay *day;
+    const char    *about;
+} HeatText;
+
+static void put_csv(FILE *to, const void *text) { heat_day_write_csv(to, ((const HeatText *)text)->day); }
+static void put_plot(FILE *to, const void *text) { heat_day_plot(to, ((const HeatText *)text)->day, ((const HeatText *)text)->about); }
 
 static Status write_files(const HeatDay *day, const HeatImages *images, const ModelStage *stage, const HeatOptions *o,
                           OutputPath path[])
@@ -152,8 +144,9 @@ static Status write_files(const HeatDay *day, const HeatImages *images, const Mo
     snprintf(about, sizeof about, "clear day %s at %g %c %g %c, nose to %g deg, %s; level grass", o->day,
              fabs(o->lat_deg), o->lat_deg < 0 ? 'S' : 'N', fabs(o->lon_deg), o->lon_deg < 0 ? 'W' : 'E',
              o->course.heading_rad / rad_per_deg, drive);
-    Status status = write_text_file(path[file_csv], day, NULL);
-    if (status == STATUS_OK) status = write_text_file(path[file_svg], day, about);
+    const HeatText text = {day, about};
+    Status         status = text_write_file("heat", path[file_csv], put_csv, &text);
+    if (status == STATUS_OK) status = text_write_file("heat", path[file_svg], put_plot, &text);
     const char *const sheets[2] = {path[file_mwir], path[file_lwir]};
     return status == STATUS_OK ? heat_images_write(images, stage, sheets) : status;
 }

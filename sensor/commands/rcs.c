@@ -2,6 +2,7 @@
  * section. */
 #include "sensor/commands/rcs.h"
 
+#include "sensor/commands/rcs_library.h"
 #include "sensor/commands/rcs_sweep.h"
 #include "sensor/commands/output_files.h"
 
@@ -10,14 +11,15 @@
 
 static const char help[] =
     "usage: pitviper rcs NAME|FILE|SHAPE [-o FOLDER] [--frequency GHZ[,GHZ...]] [--azimuth FROM:TO:STEP]\n"
-    "                    [--elevation DEG] [--range M] [--rays N] [--warp MM] [--no-edges] [--image DEG|none]\n"
-    "                    [--cell M] [--overwrite]\n"
+    "                    [--elevation DEG] [--range M] [--rays N] [--splits N] [--warp MM] [--no-edges]\n"
+    "                    [--joint NAME=VALUE ...] [--image DEG|none] [--cell M] [--overwrite]\n"
     "\n"
-    "A target's radar cross section over azimuth, at full polarisation, by ray tubes, physical optics and edges. Its\n"
-    "joints are at rest and it stands alone: no ground.\n"
+    "A target's radar cross section over azimuth, at full polarisation, by ray tubes, physical optics and edges. It\n"
+    "stands alone: no ground.\n"
     "\n"
     "NAME: a built-in model (tank, truck, helicopter ...). FILE: as `pitviper model show` takes it. SHAPE, of metal,\n"
-    "in m: sphere:R plate:AxB disc:R cylinder:RxL dihedral:AxB trihedral:A corner:A. Writes to FOLDER:\n"
+    "in m: sphere:R plate:AxB disc:R cylinder:RxL dihedral:AxB trihedral:A corner:A. given:CSV: a signature from\n"
+    "elsewhere, as `radar.given` takes them (etc/reference/radar_seeker.md), without a picture. Writes to FOLDER:\n"
     "  rcs.csv    a row each look and frequency: dBsm and complex field, m, as received and transmitted polarisation\n"
     "  rcs.svg    a polar plot of HH and VV at the first frequency\n"
     "  isar.png   a picture by range and cross range at the first frequency, HH and HV: nose up, seen from above\n"
@@ -28,8 +30,11 @@ static const char help[] =
     "  --elevation DEG      upwards, -90 .. 90 (10)\n"
     "  --range M            from the body's origin; without it the far field\n"
     "  --rays N             ray tubes a wavelength, 0.25 .. 16 (1.25); the error of one number falls slowly with it\n"
+    "  --splits N           how often a tube at an edge is divided in four, 0 .. 5 (2); each costs twice the time or more\n"
     "  --warp MM            surfaces uneven by that height, rms, over 0.5 m, 0 .. 20 (0): built-in models are truer to\n"
     "                       plane and right angle than vehicles are, and far too bright at 35 and 94 GHz without it\n"
+    "  --joint NAME=VALUE   where a joint stands, deg, of one that slides m; at most 32. Others are at rest. `pitviper\n"
+    "                       model info` lists them\n"
     "  --no-edges           without the diffraction at edges\n"
     "  --image DEG|none     azimuth at which the picture is taken (30)\n"
     "  --cell M             its resolution, 0.01 .. 10 (a sixtieth of the target, at least three wavelengths)\n"
@@ -90,12 +95,22 @@ static bool read_azimuth(RcsConfig *config, const char *text)
     return true;
 }
 
+static bool read_joint(RcsConfig *config, const char *text)
+{
+    RcsJoint   *joint = &config->joint[config->joints];
+    const char *equals = text ? strchr(text, '=') : NULL;
+    if (!equals || config->joints == rcs_most_joints || equals == text || equals - text >= (int)sizeof joint->name) return false;
+    snprintf(joint->name, sizeof joint->name, "%.*s", (int)(equals - text), text);
+    config->joints++;
+    return in_range(&joint->value, equals + 1, -3600, 3600);
+}
+
 /* 0: valid; else the exit code. */
 static int parse(RcsOptions *o, int argc, char **argv)
 {
     RcsConfig *c = &o->config;
     *o = (RcsOptions){.config = {.step_deg = 1, .looks = 361, .elevation_deg = 10, .range_m = INFINITY,
-                                 .frequencies = 1, .frequency_hz = {10e9}, .image_deg = 30}};
+                                 .frequencies = 1, .frequency_hz = {10e9}, .image_deg = 30, .splits = -1}};
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
         if (strcmp(option, "--overwrite") == 0) {
@@ -127,8 +142,15 @@ static int parse(RcsOptions *o, int argc, char **argv)
         } else if (strcmp(option, "--rays") == 0) {
             if (!in_range(&c->rays_per_wavelength, value, 0.25, 16))
                 return refuse(option, "needs a number in 0.25 .. 16");
+        } else if (strcmp(option, "--splits") == 0) {
+            double number;
+            if (!in_range(&number, value, 0, tubes_splits_most) || number != floor(number))
+                return refuse(option, "needs a whole number in 0 .. 5");
+            c->splits = (int)number;
         } else if (strcmp(option, "--warp") == 0) {
             if (!in_range(&c->warp_mm, value, 0, 20)) return refuse(option, "needs a height in 0 .. 20 mm");
+        } else if (strcmp(option, "--joint") == 0) {
+            if (!read_joint(c, value)) return refuse(option, "needs NAME=VALUE, in -3600 .. 3600 deg or m, at most 32 times");
         } else if (strcmp(option, "--cell") == 0) {
             if (!in_range(&c->resolution_m, value, 0.01, 10)) return refuse(option, "needs a length in 0.01 .. 10 m");
         } else if (strcmp(option, "--image") == 0) {
@@ -141,6 +163,8 @@ static int parse(RcsOptions *o, int argc, char **argv)
         i++;
     }
     if (!c->name) return refuse("rcs", "needs a target: a built-in name, a file or a shape");
+    if (given_signature_path(c->name)) c->image_deg = NAN;
+    if (given_signature_path(c->name) && c->joints > 0) return refuse("--joint", "a given signature has no joints");
     if (fabs(c->elevation_deg) > 85 && !isnan(c->image_deg))
         return refuse("--elevation", "there is no cross range beyond 85 deg: add --image none");
     return 0;
@@ -175,7 +199,7 @@ static void print_summary(const RcsSweep *sweep, double seconds)
             }
         }
         log_print("%s at %g GHz: mean HH %.1f, VV %.1f dBsm; most %.1f dBsm at azimuth %g deg\n",
-                  sweep->model.model.name,
+                  rcs_target_name(sweep),
                   c->frequency_hz[f] * 1e-9, mean_m2[0] > 0 ? 10 * log10(mean_m2[0]) : -INFINITY,
                   mean_m2[1] > 0 ? 10 * log10(mean_m2[1]) : -INFINITY, most_dbsm, at_deg);
     }
@@ -201,12 +225,16 @@ int rcs_command(int argc, char **argv)
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             fputs(help, stdout);
+            fputs("\n", stdout);
+            fputs(rcs_library_help, stdout);
             return 0;
         }
     if (argc < 2) {
         fputs(help, stderr);
         return 2;
     }
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], "--library") == 0) return rcs_library_command(argc, argv);
     const int wrong = parse(&o, argc, argv);
     if (wrong) return wrong;
     RcsSweep     sweep = {0};

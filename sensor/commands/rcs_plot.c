@@ -83,10 +83,10 @@ void rcs_plot(FILE *to, const RcsSweep *sweep)
     fprintf(to,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvr\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
                 "role=\"img\">%s<title>", width_px, height_px, width_px, height_px, style);
-    html_text(to, "radar cross section of %s", sweep->model.model.name);
+    html_text(to, "radar cross section of %s", rcs_target_name(sweep));
     fprintf(to, "</title>\n<rect class=\"bg\" fill=\"#fff\" width=\"%d\" height=\"%d\"/>\n"
                 "<text class=\"h\" fill=\"#222\" font-weight=\"600\" x=\"14\" y=\"22\">", width_px, height_px);
-    html_text(to, "%.60s: radar cross section, dBsm", sweep->model.model.name);
+    html_text(to, "%.60s: radar cross section, dBsm", rcs_target_name(sweep));
     fprintf(to, "</text><text class=\"d\" fill=\"#666\" x=\"14\" y=\"40\">%g GHz, elevation %g deg, ",
             config->frequency_hz[0] * 1e-9,
             config->elevation_deg);

@@ -7,11 +7,58 @@ enum { checked_looks = 8 }; /* those computed with another grid of tubes as well
 
 double rcs_look_deg(const RcsConfig *config, int look) { return config->from_deg + look * config->step_deg; }
 
+const char *rcs_target_name(const RcsSweep *sweep) { return sweep->given ? sweep->config.name : sweep->model.model.name; }
+
 static double highest_hz(const RcsConfig *config)
 {
     double highest = 0;
     for (int f = 0; f < config->frequencies; f++) highest = fmax(highest, config->frequency_hz[f]);
     return highest;
+}
+
+/* Names of the joints, for a message. */
+static void list_joints(char *text, size_t size, const Model *model)
+{
+    size_t at = 0;
+    *text = 0;
+    for (int n = 0; n < model->node_count && at < size; n++)
+        if (model->node[n].joint != JOINT_FIXED) at += (size_t)snprintf(text + at, size - at, "%s%s", at ? ", " : "", model->node[n].name);
+}
+
+static Status set_joint(double *value, const Model *model, const RcsJoint *joint)
+{
+    char list[512];
+    for (int n = 0; n < model->node_count; n++) {
+        const ModelNode *node = &model->node[n];
+        if (node->joint == JOINT_FIXED || strcmp(node->name, joint->name) != 0) continue;
+        const double scale = node->joint == JOINT_ROTATION ? rad_per_deg : 1;
+        value[n] = joint->value * scale;
+        if (node->low <= node->high && !(value[n] >= node->low && value[n] <= node->high)) {
+            log_error("rcs: --joint %s: %g is outside its limits, %g .. %g", joint->name, joint->value, node->low / scale,
+                      node->high / scale);
+            return STATUS_BAD_VALUE;
+        }
+        return STATUS_OK;
+    }
+    list_joints(list, sizeof list, model);
+    log_error("rcs: --joint: %s has no joint %s; it has %s", model->name, joint->name, *list ? list : "none");
+    return STATUS_BAD_VALUE;
+}
+
+static Status pose(RcsSweep *sweep)
+{
+    const Model *model = &sweep->model.model;
+    double      *value = calloc((size_t)model->node_count + 1, sizeof *value);
+    NodePose    *at = calloc((size_t)model->node_count + 1, sizeof *at);
+    Status       status = value && at ? STATUS_OK : STATUS_NO_MEMORY;
+    for (int j = 0; j < sweep->config.joints && status == STATUS_OK; j++) status = set_joint(value, model, &sweep->config.joint[j]);
+    if (status == STATUS_OK) {
+        model_pose(at, model, value);
+        radar_target_pose(sweep->model.target, sweep->config.joints > 0 ? at : NULL, 0);
+    }
+    free(value);
+    free(at);
+    return status;
 }
 
 Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
@@ -22,16 +69,19 @@ Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
         out->tubes.rays_per_radius *= config->rays_per_wavelength / out->tubes.rays_per_wavelength;
         out->tubes.rays_per_wavelength = config->rays_per_wavelength;
     }
+    if (config->splits >= 0) out->tubes.splits = config->splits;
     out->tubes.warp_m = config->warp_mm * 1e-3;
-    Status status = radar_materials_load(&out->materials);
-    if (status == STATUS_OK)
+    const char *given = given_signature_path(config->name);
+    Status      status = radar_materials_load(&out->materials);
+    if (status == STATUS_OK && given) status = given_signature_open(&out->given, given);
+    else if (status == STATUS_OK)
         status = radar_model_open(&out->model, config->name, &out->materials, radar_sag_m(highest));
     if (status == STATUS_OK) status = pool_create(&out->pool, thread_processors());
     if (status == STATUS_OK) {
         out->s = calloc((size_t)config->looks * (size_t)config->frequencies, sizeof *out->s);
         if (!out->s) status = STATUS_NO_MEMORY;
     }
-    if (status == STATUS_OK) radar_target_pose(out->model.target, NULL, 0);
+    if (status == STATUS_OK && !given) status = pose(out);
     if (status != STATUS_OK) rcs_sweep_close(out);
     return status;
 }
@@ -41,9 +91,18 @@ void rcs_sweep_close(RcsSweep *sweep)
     total_field_free(&sweep->field);
     pool_destroy(sweep->pool);
     radar_model_close(&sweep->model);
+    given_signature_close(sweep->given);
     radar_materials_close(&sweep->materials);
     free(sweep->s);
     *sweep = (RcsSweep){0};
+}
+
+static void look_up(ScatterMatrix *s, RcsSweep *sweep, const ScatterAntenna *antenna)
+{
+    for (int f = 0; f < sweep->config.frequencies; f++) {
+        sweep->unknown += !given_signature_knows(sweep->given, antenna, sweep->config.frequency_hz[f]);
+        given_signature_field(&s[f], sweep->given, antenna, sweep->config.frequency_hz[f]);
+    }
 }
 
 static Status look_at(ScatterMatrix *s, RcsSweep *sweep, int look, uint64_t seed)
@@ -53,6 +112,10 @@ static Status look_at(ScatterMatrix *s, RcsSweep *sweep, int look, uint64_t seed
     tubes.seed = seed;
     radar_look(&antenna, rcs_look_deg(&sweep->config, look) * rad_per_deg, sweep->config.elevation_deg * rad_per_deg,
                sweep->config.range_m);
+    if (sweep->given) {
+        look_up(s, sweep, &antenna);
+        return STATUS_OK;
+    }
     Status status = total_field_trace(&sweep->field, sweep->model.target, &antenna, &antenna, &tubes,
                                       !sweep->config.no_edges, sweep->pool);
     sweep->rays += sweep->field.hits.rays;
@@ -93,8 +156,11 @@ Status rcs_sweep_run(RcsSweep *sweep)
         log_status(line);
         status = look_at(sweep->s + (size_t)look * (size_t)sweep->config.frequencies, sweep, look, 0);
     }
-    if (status == STATUS_OK) status = check_grid(sweep);
+    if (status == STATUS_OK && !sweep->given) status = check_grid(sweep);
     log_status(NULL);
+    if (sweep->unknown > 0)
+        log_warn("rcs: %s ends before %lld of these looks and frequencies, whose rows are empty; see --azimuth, --elevation and "
+                 "--frequency", sweep->config.name, sweep->unknown);
     return status;
 }
 

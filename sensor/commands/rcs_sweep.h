@@ -2,10 +2,17 @@
 #ifndef SENSOR_COMMANDS_RCS_SWEEP_H
 #define SENSOR_COMMANDS_RCS_SWEEP_H
 
+#include "render/radar/given_signature.h"
 #include "render/radar/radar_model.h"
 #include "render/radar/total_field.h"
 
-enum { rcs_most_frequencies = 64, rcs_most_looks = 36001 };
+enum { rcs_most_frequencies = 64, rcs_most_looks = 36001, rcs_most_joints = 32 };
+
+/* Where a joint stands. */
+typedef struct RcsJoint {
+    char   name[model_name_size];        /* of its node */
+    double value;                        /* as given: deg, m */
+} RcsJoint;
 
 typedef struct RcsConfig {
     const char *name;
@@ -15,8 +22,11 @@ typedef struct RcsConfig {
     int         frequencies;
     double      frequency_hz[rcs_most_frequencies];
     double      rays_per_wavelength;     /* 0: the default */
+    int         splits;                  /* of tubes at edges; -1: the default */
     double      warp_mm;                 /* unevenness of surfaces, rms */
     bool        no_edges;
+    int         joints;                  /* the others are at rest */
+    RcsJoint    joint[rcs_most_joints];
     double      image_deg;               /* azimuth of the picture's middle; NaN: none */
     double      resolution_m;            /* of the picture; 0: a sixtieth of the target, at least three wavelengths */
 } RcsConfig;
@@ -25,18 +35,20 @@ typedef struct RcsSweep {
     RcsConfig      config;
     RadarMaterials materials;
     RadarModel     model;
+    GivenSignature *given;               /* in place of the model; NULL: none */
     Pool          *pool;
     TubeConfig     tubes;
     TotalField     field;                /* of the last look */
     ScatterMatrix *s;                    /* [looks][frequencies] */
-    long long      rays, hit_count;
+    long long      rays, hit_count, unknown; /* unknown: looks and frequencies that the given signature lacks */
     double         grid_db;              /* error by another grid of tubes, of the power, some looks; NaN: none */
 } RcsSweep;
 
-/* Logs what fails. */
+/* Logs what fails. A name given:FILE is a signature of given_signature.h, without a picture. */
 Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config);
 Status rcs_sweep_run(RcsSweep *sweep);
 void   rcs_sweep_close(RcsSweep *sweep); /* accepts zeroes */
+const char *rcs_target_name(const RcsSweep *sweep);
 double rcs_look_deg(const RcsConfig *config, int look);
 
 void   rcs_write_csv(FILE *to, const RcsSweep *sweep);

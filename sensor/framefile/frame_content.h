@@ -27,6 +27,18 @@ typedef struct FramePlane {
     double finite, mean, low, high;
 } FramePlane;
 
+/* What a radar was given besides, and what it made. */
+typedef struct FrameRadar {
+    double   v_enu_mps[3];            /* of the antenna */
+    bool     has_aim;
+    double   aim_m, aim_v_enu_mps[3];
+    uint32_t number;                  /* for its noise */
+    int      joint_count;
+    double  *joint;                   /* [snapshot.node_count] */
+    char     map_sha256[sha256_text_size];
+    int      detections;              /* in all */
+} FrameRadar;
+
 typedef struct FrameFile {
     const char    *version, *host, *config_sha256; /* of the program; of the frame */
     const char    *settings;         /* YAML as config_read accepts it; without terrain files */
@@ -44,6 +56,8 @@ typedef struct FrameFile {
     LandscapeParts ground;
     bool           planted;          /* the ground has plants, grown again from: */
     WoodsConfig    woods;            /* its store is the ground's */
+    bool           measured;         /* a radar did: */
+    FrameRadar     radar;
     char           frame_sha256[sha256_text_size];
     int            plane_count;
     FramePlane    *plane;

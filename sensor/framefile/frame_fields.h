@@ -15,6 +15,7 @@ void frame_fields_request(Fields *f, FrameFile *file);
 void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept);
 void frame_fields_marks(Fields *f, FrameFile *file);
 void frame_fields_woods(Fields *f, FrameFile *file);
+void frame_fields_radar(Fields *f, FrameFile *file);
 void frame_fields_planes(Fields *f, FrameFile *file);
 
 #endif

@@ -14,6 +14,7 @@ static bool has_marks(const FrameFile *file)
 }
 
 static bool has_woods(const FrameFile *file) { return file->planted; }
+static bool has_radar(const FrameFile *file) { return file->measured; }
 
 static const struct Chunk {
     const char  *name;
@@ -25,6 +26,7 @@ static const struct Chunk {
     {"snapshot", frame_fields_snapshot, NULL}, {"request", frame_fields_request, NULL},
     {"planes", frame_fields_planes, NULL},     {"ground", NULL, NULL},
     {"woods", frame_fields_woods, has_woods},  {"marks", frame_fields_marks, has_marks},
+    {"radar", frame_fields_radar, has_radar},
 };
 enum { chunk_kinds = sizeof chunks / sizeof *chunks };
 
@@ -65,6 +67,7 @@ static const char *disagreement(const FrameFile *file)
         if (s->entity[e].model >= 0 && !model) return "an entity's model is not listed";
         if (model && model->node_count > s->node_count - s->entity[e].first_node) return "an entity has too few nodes";
     }
+    if (file->measured && file->radar.joint_count != s->node_count) return "the radar has other joints than the snapshot";
     if ((file->request.bands >> BAND_RADAR & 1) && file->request.profile_bins > 0 && !(file->request.profile_bin_m > 0))
         return "the range profile has no bins";
     return NULL;

@@ -4,8 +4,10 @@
 
 #include "sensor/framefile/frame_again.h"
 #include "sensor/framefile/frame_ground.h"
+#include "sensor/framefile/frame_radar_file.h"
 #include "sensor/framefile/frame_tables.h"
 #include "sensor/framefile/ground_cutout.h"
+#include "sensor/world/frame_radar.h"
 #include "sensor/world/frame_world.h"
 
 #include <errno.h>
@@ -54,18 +56,18 @@ static Status list_models(FrameFile *file, const Catalog *catalog, Arena *arena)
     return status;
 }
 
-/* The nodes of all entities: the snapshot of a frame poses only those that are rendered. */
-static Status pose_nodes(FrameFile *file, const Catalog *catalog, Arena *arena)
+/* The nodes of all entities: the snapshot of a frame poses only those that are rendered. joint: their joints' values. */
+static Status pose_nodes(FrameFile *file, double **joint, const Catalog *catalog, Arena *arena)
 {
-    Snapshot *s = &file->snapshot;
-    if (s->node) return STATUS_OK;
+    Snapshot    *s = &file->snapshot;
     const size_t nodes = (size_t)s->node_count + 1;
     NodePose    *pose  = arena_alloc(arena, nodes, sizeof *pose);
-    double      *value = arena_alloc(arena, nodes, sizeof *value);
-    if (!pose || !value) return STATUS_NO_MEMORY;
+    *joint = arena_alloc(arena, nodes, sizeof **joint);
+    if (!pose || !*joint) return STATUS_NO_MEMORY;
+    if (s->node) return STATUS_OK;
     for (int e = 0; e < s->count; e++) {
-        const int m = s->entity[e].model;
-        if (m >= 0) snapshot_pose(pose + s->entity[e].first_node, value, s, e, catalog_model(catalog, m));
+        const int m = s->entity[e].model, n = s->entity[e].first_node;
+        if (m >= 0) snapshot_pose(pose + n, *joint + n, s, e, catalog_model(catalog, m));
     }
     s->node = pose;
     return STATUS_OK;
@@ -75,6 +77,7 @@ static Status gather(FrameFile *file, FrameMade *made, char **settings, const Fr
 {
     const Frame *f = save->frame;
     char         catalog[path_size];
+    double      *joint;
     *file = (FrameFile){.version = f->provenance.version, .host = f->host,
                         .config_sha256 = f->provenance.config_sha256, .frame = f->number, .time_s = f->time_s,
                         .unix_s = save->unix_s, .snapshot = f->seen.snapshot, .request = f->request,
@@ -87,9 +90,10 @@ static Status gather(FrameFile *file, FrameMade *made, char **settings, const Fr
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
     Status status = frame_tables(&file->tables, save->config, catalog);
     if (status == STATUS_OK) status = write_settings(settings, save->config);
-    if (status == STATUS_OK) status = pose_nodes(file, f->world->catalog, arena);
+    if (status == STATUS_OK) status = pose_nodes(file, &joint, f->world->catalog, arena);
     if (status == STATUS_OK) status = list_models(file, f->world->catalog, arena);
     if (status == STATUS_OK) status = frame_made(made, f->seen.plane, f->seen.plane_count);
+    if (status == STATUS_OK && f->radar) status = frame_radar_gather(file, f->radar, joint);
     if (status != STATUS_OK) return status;
     file->settings    = *settings;
     file->plane       = made->plane;
@@ -131,9 +135,10 @@ static Status gather_places(GroundCutout *out, const Frame *f, Arena *arena)
 
 /* ---- verified ------------------------------------------------------------------------------------- */
 
-/* Whether the octets give the same planes. */
-static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Arena *arena)
+/* Whether the octets give the same planes, and the same map by a radar; NULL: there is none. */
+static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, SeekerRadar *radar, Arena *arena)
 {
+    const RadarFrame *measured;
     const Frame *f = save->frame;
     FrameFile    file;
     FrameAgain  *again = arena_alloc(arena, 1, sizeof *again);
@@ -153,6 +158,11 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Ar
         status = frame_again(again, &file, &file.snapshot, &world, save->config, false, save->pool, arena);
     }
     if (status == STATUS_OK) *same = frame_differences(&file, &again->made, false) == 0;
+    if (*same && radar) {
+        *same = false;
+        status = frame_radar_again(&measured, radar, &file, &file.snapshot, &world, save->config, save->pool, arena);
+        if (status == STATUS_OK) status = frame_radar_same(same, &file, measured);
+    }
     world_close(&world);
     woods_destroy(&woods);
     landscape_destroy(&landscape);
@@ -168,8 +178,10 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *fil
         {100, 100}, {3000, 100}, {20000, 100}, {20000, 3000}, {INFINITY, INFINITY}};
     GroundCutout        kept = {0};
     Arena              *arena = arena_create();
+    SeekerRadar        *radar = NULL;
     bool                same = false;
     Status              status = arena ? STATUS_OK : STATUS_NO_MEMORY;
+    if (status == STATUS_OK && file->measured) status = frame_radar_open(&radar, save->config, "avx2", false);
     /* where plants stand follows from all of the ground */
     const bool cut = !file->ground.invented && !(file->ground.store && *file->ground.store) && !file->planted;
     if (status == STATUS_OK && cut) status = gather_places(&kept, save->frame, gathered);
@@ -180,13 +192,14 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *fil
         sink_free(bytes);
         arena_reset(arena);
         status = frame_file_pack(bytes, file, &kept);
-        if (status == STATUS_OK) status = prove(&same, bytes, save, arena);
+        if (status == STATUS_OK) status = prove(&same, bytes, save, radar, arena);
     }
     if (status == STATUS_OK && !same) {
         log_error("frame: frame %d, rendered again from its file, is another picture; nothing is written. Please "
                   "report this", file->frame);
         status = STATUS_BAD_VALUE;
     }
+    seeker_radar_destroy(radar);
     arena_destroy(arena);
     return status;
 }

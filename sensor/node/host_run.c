@@ -147,7 +147,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .marks_forgotten = result->entities.marks_forgotten,
               .shots_forgotten = result->shots_forgotten, .munitions_forgotten = result->munitions_forgotten,
               .frames_crowded = result->frames_crowded, .most_left_out = result->most_left_out,
-              .at_limit = result->at_limit,
+              .at_limit = result->at_limit, .radar_left_out = result->radar_left_out,
               .effects = result->effects, .render = result->counters, .stage_count = session_stages,
               .stage = session_stage_name,
               .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL,
@@ -240,6 +240,10 @@ static Status conclude(const Run *run, const char *out, const char *host, const 
     else if (!config->publish.truth) log_print("%d frames; figures in %s/run.json\n", result->frames, out);
     else log_print("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
     fflush(stdout);
+    if (result->radar_left_out > 0)
+        log_warn("%s: %d of %d frames are without radar: signatures of targets were still to be made%s", name,
+                 result->radar_left_out, result->frames,
+                 run->live ? "; radar.library keeps them for the next run (`pitviper rcs MODEL --library` makes them)" : " when it was recorded");
     if (result->at_limit > 0)
         log_warn("%s: the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)", name,
                  result->at_limit, result->frames);
@@ -288,6 +292,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .paced = o->command == COMMAND_REPLAY && isfinite(o->speed), .sensors = &run->sensors,
                                   .contact = contact, .config_sha256 = run->config_sha256, .publish = run->publish,
                                   .user = run->user, .dis = run->send ? &dis : NULL, .wall_s = run->wall_s,
+                                  .note = run->note, .notes = run->view.notes,
                                   .clock = run->clock, .save_count = o->save_count, .save = o->save,
                                   .several = o->host_count > 1, .isa = o->isa, .woods = woods.on ? &woods.config : NULL};
     const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};

@@ -212,6 +212,13 @@ static void count_frame(void *user, const FrameRecord *frame)
     health_frame(&l->health, frame, wall_clock_s());
 }
 
+/* A recording without room for notes (.pcap) was said when it was opened. */
+static void note(void *user, const char *text)
+{
+    const Live *l = user;
+    live_recording_note(l->recording, dis_udp_now_ns(), text);
+}
+
 static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
 {
     const Live *l = user;
@@ -337,6 +344,10 @@ static Status open_network(Live *l)
     Status status = dis_udp_open(&l->udp, &udp);
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
+    const size_t length = strlen(config->record.path);
+    if (strcmp(config->radar.preset, "none") != 0 && length > 5 && strcmp(config->record.path + length - 5, ".pcap") == 0)
+        log_warn("run: %s has no room for which frames are without radar (pcap): a replay has it in all; name it .pcapng",
+                 config->record.path);
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, udp.port);
 }
 
@@ -443,6 +454,7 @@ int run_command(int argc, char **argv)
     l->run.user                  = l;
     l->run.publish               = count_frame;
     if (publishes(l)) l->run.send = send_pdu;
+    if (*l->run.options.config.record.path) l->run.note = note;
     l->run.wall_s                = wall_of;
     l->run.clock                 = l;
     memcpy(name, l->run.options.config.record.path, sizeof name);

@@ -40,6 +40,15 @@ Status live_recording_open(LiveRecording **out, const char *path, const char *co
     return STATUS_OK;
 }
 
+Status live_recording_note(LiveRecording *r, int64_t unix_ns, const char *text)
+{
+    if (!r) return STATUS_OK;
+    pthread_mutex_lock(&r->lock);
+    const Status status = dis_recorder_note(r->recorder, unix_ns, text);
+    pthread_mutex_unlock(&r->lock);
+    return status;
+}
+
 void live_recording_flush(LiveRecording *r)
 {
     if (!r) return;

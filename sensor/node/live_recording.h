@@ -9,6 +9,8 @@ typedef struct LiveRecording LiveRecording;
 
 /* Records every datagram from now on. STATUS_IO, logged: the file cannot be written. */
 Status live_recording_open(LiveRecording **out, const char *path, const char *comment, DisUdp *udp, int port);
+/* dis_recorder_note, now. */
+Status live_recording_note(LiveRecording *recording, int64_t unix_ns, const char *text);
 /* Flushes to the operating system, so that the recording of a killed program is complete. NULL is valid, here and
  * below. */
 void   live_recording_flush(LiveRecording *recording);

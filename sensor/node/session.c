@@ -2,6 +2,7 @@
 #include "sensor/node/session_private.h"
 
 #include "sensor/framefile/frame_save.h"
+#include "sensor/world/frame_radar.h"
 #include "sensor/node/scene_rate.h"
 #include "sensor/publish/pairs.h"
 #include "sensor/world/frame_world.h"
@@ -78,8 +79,12 @@ static Status look_without(Frame *f, const Session *s, const Air *air, const dou
 }
 
 /* What the radar on the same axis measures. */
-static Status measure(Frame *f, const Session *s, const Eye *eye)
+static Status measure(Frame *f, Session *s, const Eye *eye)
 {
+    if (radar_absent_in(s->radar_absent, f->number, f->time_s)) {
+        s->result.radar_left_out++;
+        return STATUS_OK;
+    }
     const LocalFrame *frame = &s->shared->world->frame;
     const Weather     weather = frame_weather_at(s->shared->config, s->shared->world, f->unix_s);
     RadarScene        scene = {.world = s->shared->world, .snapshot = &f->seen.snapshot, .view = &eye->view, .hidden = eye->hidden,
@@ -92,7 +97,15 @@ static Status measure(Frame *f, const Session *s, const Eye *eye)
         scene.reference_m = v3_length(to_aim);
     }
     if (aim >= 0) m3_tmul_v3(scene.reference_v_enu_mps, frame->r_ecef_from_enu, f->seen.snapshot.entity[aim].v_ecef_mps);
-    return seeker_radar_measure(&f->radar, s->radar, &scene, s->shared->pool, f->arena);
+    const Status status = seeker_radar_measure(&f->radar, s->radar, &scene, s->shared->pool, f->arena);
+    if (status != STATUS_OK || f->radar) return status;
+    s->result.radar_left_out++;
+    if (s->shared->note) {
+        char text[radar_absent_text_size];
+        radar_absent_text(text, f->number, f->time_s);
+        s->shared->note(s->shared->user, text);
+    }
+    return status;
 }
 
 /* Targets, and the error budget of the frame. */
@@ -238,15 +251,9 @@ static Status open_vehicles(Session *s)
 static Status open_radar(Session *s)
 {
     const SessionShared *shared = s->shared;
-    const Config        *config = shared->config;
-    char                 catalog[4096];
-    if (strcmp(config->radar.preset, "none") == 0) return STATUS_OK;
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    return seeker_radar_create(&s->radar, &(SeekerRadarConfig){.preset = config->radar.preset, .table = config->radar.table, .catalog = catalog,
-                                                               .isa = shared->isa, .ground = config->radar.ground,
-                                                               .warp_m = 1e-3 * config->radar.warp_mm,
-                                                               .wind_mps = config->weather.wind_mps,
-                                                               .seed = (uint64_t)config->seed});
+    if (strcmp(shared->config->radar.preset, "none") == 0) return STATUS_OK;
+    const Status status = radar_absent_read(&s->radar_absent, shared->notes);
+    return status == STATUS_OK ? frame_radar_open(&s->radar, shared->config, shared->isa, shared->live) : status;
 }
 
 static Status open_session(Session *s)
@@ -471,6 +478,7 @@ Status session_close(Session *s, SessionResult *result)
     else session_result_free(&s->result);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);
     seeker_radar_destroy(s->radar);
+    radar_absent_free(s->radar_absent);
     world_vehicles_destroy(s->vehicles);
     given_heat_close(s->given);
     kept_heat_close(s->kept);

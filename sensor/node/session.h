@@ -36,6 +36,8 @@ typedef struct SessionShared {
     const int     *save;       /* [save_count] */
     const WoodsConfig *woods;  /* of the world's plants; NULL: none */
     const char    *isa;        /* as tracer_create */
+    void         (*note)(void *user, const char *text); /* into the live recording; NULL: there is none; user: as above */
+    const char    *notes;      /* of the recording that is played, DisLog.notes; NULL: none */
     bool           several;    /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;
 
@@ -51,6 +53,7 @@ typedef struct SessionResult {
     int     frames_crowded, most_left_out; /* frames without all entities; the most that one frame lacks */
     int     host_count;               /* the first session_hosts_kept hosts, in order */
     char    host[session_hosts_kept][dis_id_text_size];
+    int     radar_left_out;           /* frames without radar, for want of signatures */
     int     files_failed, files_left_out; /* live: frames without files, for disk errors, for time; when closed */
     int   (*number);                  /* [listed] */
     char  (*hash)[sha256_text_size];  /* [listed] */

@@ -6,6 +6,7 @@
 #include "sensor/world/frame_light.h"
 #include "sensor/node/mount.h"
 #include "sensor/node/player.h"
+#include "sensor/node/radar_absent.h"
 #include "sensor/node/seeker.h"
 #include "sensor/node/session.h"
 #include "sensor/publish/consumers.h"
@@ -40,6 +41,7 @@ struct Session {
     uint64_t             given_up_reported; /* last report of a full table, and its time; wall clock */
     double               given_up_reported_s, left_out_reported_s;
     SeekerRadar         *radar;         /* NULL: none */
+    RadarAbsent         *radar_absent;  /* frames that had no radar when they were recorded; NULL: none */
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
                                              * targets */
     Consumers            consumers;

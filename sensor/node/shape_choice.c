@@ -41,16 +41,19 @@ static void say(Choices *choices, const Unshaped *u, const char *what, const cha
 
 void choose_shapes(Choices *choices, const Survey *survey, const Catalog *catalog)
 {
-    Unshaped unseen = {0}, unknown = {0};
+    Unshaped unseen = {0}, unknown = {0}, chaff = {0};
     for (int i = 0; i < survey->track_count; i++) {
         const DisEntityType type = survey->track[i].type;
         int matched;
         const int model = catalog_find(catalog, type, NULL, &matched);
-        if (!catalog_has_shape(catalog, model))
+        if (catalog_is_chaff(catalog, model))
+            note(&chaff, type);
+        else if (!catalog_has_shape(catalog, model))
             note(&unseen, type);
         else if (model == 0)
             note(&unknown, type);
     }
     say(choices, &unseen, "nothing is seen", "`none` in etc/catalog.csv");
+    say(choices, &chaff, "nothing is seen, but by radar.preset,", "`chaff` in etc/catalog.csv");
     say(choices, &unknown, "a wedge is shown", "no row of etc/catalog.csv");
 }

@@ -1,4 +1,5 @@
-/* sensor/publish/consume_dis.c: a consumer that sends each frame as Data PDUs, and announces the video streams. */
+/* sensor/publish/consume_dis.c: a consumer that sends each frame and its radar's detections as Data PDUs, and
+ * announces the video streams. */
 #include "sensor/publish/consume_dis.h"
 
 #include "dis/exercise_clock.h"
@@ -46,6 +47,8 @@ static Status put(Consumer *consumer, Frame *frame)
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->of.bands >> b & 1)
             s->of.send(s->of.user, pdu, dis_record_frame(pdu, &sender, record, (Band)b, truth));
+    for (int n = 0; record->radar && n < dis_record_radar_count(record); n++)
+        s->of.send(s->of.user, pdu, dis_record_radar(pdu, &sender, record, n));
     return STATUS_OK;
 }
 

@@ -168,25 +168,88 @@ static void add_host(DisData *pdu, Octets *o, const FrameRecord *r)
     add_variable(pdu, datum_host, o, from);
 }
 
+static void add_pose(DisData *pdu, Octets *o, const FrameRecord *r)
+{
+    size_t from = o->used;
+    for (int k = 0; k < 3; k++) put_f64(o, r->p_eye_ecef[k]);
+    add_variable(pdu, datum_sensor_position, o, from);
+    from = o->used;
+    put_camera(o, r->r_ecef_from_cam);
+    add_variable(pdu, datum_camera, o, from);
+}
+
 size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *r, Band band,
                         bool truth)
 {
     Octets  o = {.used = 0};
-    size_t  from;
     DisData pdu = data_pdu(sender);
     add_fixed(&pdu, datum_frame, (uint32_t)r->frame);
     add_fixed(&pdu, datum_band, (uint32_t)band);
     add_fixed(&pdu, datum_kind, truth ? datum_kind_truth : datum_kind_sensor);
     add_image(&pdu, r);
     add_time(&pdu, &o, r);
-    from = o.used;
-    for (int k = 0; k < 3; k++) put_f64(&o, r->p_eye_ecef[k]);
-    add_variable(&pdu, datum_sensor_position, &o, from);
-    from = o.used;
-    put_camera(&o, r->r_ecef_from_cam);
-    add_variable(&pdu, datum_camera, &o, from);
+    add_pose(&pdu, &o, r);
     add_host(&pdu, &o, r);
     add_targets(&pdu, &o, r, band, truth);
+    return dis_encode_data(out, dis_smallest_mtu, &pdu);
+}
+
+enum { detections_a_pdu = 32, radar_pdus_most = 4 };
+
+static int detections_sent(const RadarFrame *radar)
+{
+    return radar->detections < radar_pdus_most * detections_a_pdu ? radar->detections : radar_pdus_most * detections_a_pdu;
+}
+
+int dis_record_radar_count(const FrameRecord *r)
+{
+    const int count = (detections_sent(r->radar) + detections_a_pdu - 1) / detections_a_pdu;
+    return count > 0 ? count : 1;
+}
+
+static void put_radar(Octets *o, const RadarFrame *radar)
+{
+    put_f64(o, radar->preset->wave.centre_hz);
+    put_f64(o, radar->reference_m);
+    put_f32(o, radar->preset->wave.bandwidth_hz);
+    put_f32(o, radar->reference_rate_mps);
+    put_f32(o, radar->map.columns * radar->map.metre_per_column);
+    put_f32(o, radar->map.rows * radar->map.mps_per_row);
+}
+
+static void put_detection(Octets *o, const Detection *d)
+{
+    put_f32(o, d->range_m);
+    put_f32(o, d->range_rate_mps);
+    put_f32(o, asin(clamp(d->cos_right, -1, 1)));
+    put_f32(o, -asin(clamp(d->cos_down, -1, 1)));
+    put_f32(o, 10 * log10(d->snr));
+    put_f32(o, 10 * log10(d->rcs_m2));
+}
+
+size_t dis_record_radar(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *r, int n)
+{
+    const RadarFrame *radar = r->radar;
+    const int         all = detections_sent(radar), first = n * detections_a_pdu;
+    const int         count = all - first < detections_a_pdu ? all - first : detections_a_pdu;
+    Octets            o = {.used = 0};
+    DisData           pdu = data_pdu(sender);
+    add_fixed(&pdu, datum_frame, (uint32_t)r->frame);
+    add_fixed(&pdu, datum_kind, datum_kind_radar);
+    add_fixed(&pdu, datum_detections, (uint32_t)count);
+    add_fixed(&pdu, datum_detections_omitted, (uint32_t)(radar->detections_in_all - all));
+    add_fixed(&pdu, datum_radar_pdu, (uint32_t)n << 16 | (uint32_t)dis_record_radar_count(r));
+    add_time(&pdu, &o, r);
+    add_pose(&pdu, &o, r);
+    add_host(&pdu, &o, r);
+    size_t from = o.used;
+    put_radar(&o, radar);
+    add_variable(&pdu, datum_radar, &o, from);
+    for (int i = first; i < first + count; i++) {
+        from = o.used;
+        put_detection(&o, &radar->detection[i]);
+        add_variable(&pdu, datum_detection, &o, from);
+    }
     return dis_encode_data(out, dis_smallest_mtu, &pdu);
 }
 

@@ -43,7 +43,25 @@
  *     600011  its targets (MISB ST 0903), u32: 0 none, 1 detections of a recogniser, 2 truth
  *
  *     variable
- *     600301  8 bits per character: address of the stream, ASCII, udp://HOST:PORT */
+ *     600301  8 bits per character: address of the stream, ASCII, udp://HOST:PORT
+ *
+ * What a radar of radar.preset detected in the frame, whatever publish.dis says of the bands: its strongest 128
+ * detections, strongest first, 32 a PDU; one PDU where it has none. Datums 600001, 600101 .. 600104 and these; no
+ * 600002:
+ *
+ *     fixed, 32 bits
+ *     600003  kind, u32: 4 radar
+ *     600012  detections in this PDU, u32
+ *     600013  detections of the frame that are in none of its PDUs, the weakest, u32
+ *     600014  u16 number of this PDU among those of the frame, from 0, u16 how many they are
+ *
+ *     variable
+ *     600401  256 bits  the radar: 0  f64 centre frequency, Hz         8  f64 range of the middle of its window, m
+ *                       16 f32 bandwidth, Hz                           20 f32 range rate of the middle of its map, m/s
+ *                       24 f32 length of the window, m                 28 f32 span of range rates of the map, m/s
+ *     600402  192 bits  a detection: 0 f32 range, m                    4  f32 range rate, m/s, above 0: receding
+ *                       8  f32 azimuth from the boresight, right, rad  12 f32 elevation from it, up, rad
+ *                       16 f32 signal to noise, dB                     20 f32 cross section, dBsm */
 #ifndef SENSOR_PUBLISH_DIS_RECORDS_H
 #define SENSOR_PUBLISH_DIS_RECORDS_H
 
@@ -54,10 +72,12 @@
 enum {
     datum_frame = 600001, datum_band, datum_kind, datum_raster, datum_hfov, datum_vfov, datum_targets, datum_left_out,
     datum_stream_codec, datum_stream_klv, datum_stream_targets,
+    datum_detections, datum_detections_omitted, datum_radar_pdu,
     datum_time = 600101, datum_sensor_position, datum_camera, datum_host,
     datum_target_measured = 600201, datum_truth,
     datum_stream_url = 600301,
-    datum_kind_sensor = 1, datum_kind_truth = 2, datum_kind_stream = 3,
+    datum_radar = 600401, datum_detection,
+    datum_kind_sensor = 1, datum_kind_truth = 2, datum_kind_stream = 3, datum_kind_radar = 4,
 };
 
 typedef struct DisRecordSender {
@@ -73,5 +93,8 @@ size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *se
  * video_codec, klv and vmti. 0: there is no such stream. */
 size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *frame,
                          Band band, const Config *config, int stream);
+/* The n-th PDU, from 0, of the detections of a frame with a radar; how many it has. */
+size_t dis_record_radar(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *frame, int n);
+int    dis_record_radar_count(const FrameRecord *frame);
 
 #endif

@@ -47,14 +47,28 @@ static json_t *timing_json(const RadarFrame *r)
     return o;
 }
 
+static json_t *scatterer_json(const RadarScatterer *s, const Model *model)
+{
+    json_t *o = json_object(), *at = json_array();
+    for (int k = 0; k < 3; k++) json_array_append_new(at, json_real(s->p_body[k]));
+    set_number(o, "rcs_hh_dbsm", db(s->hh_m2));
+    set_number(o, "rcs_vv_dbsm", db(s->vv_m2));
+    json_object_set_new(o, "body_m", at);
+    json_object_set_new(o, "bounces", json_integer(s->bounce));
+    json_object_set_new(o, "visible", json_boolean(s->seen));
+    if (s->part >= 0 && s->part < model->part_count) json_object_set_new(o, "part", json_string(model->part[s->part].name));
+    return o;
+}
+
 static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const Catalog *catalog)
 {
     static const char *const polarisation[3] = {"hh", "vv", "hv"};
-    json_t                  *o = json_object(), *rcs = json_object();
+    json_t                  *o = json_object(), *rcs = json_object(), *error = json_object(), *strongest = json_array();
     const SnapshotEntity    *e = &snapshot->entity[t->entity];
     char                     text[dis_id_text_size];
     dis_entity_id_text(text, e->id);
     json_object_set_new(o, "entity", json_string(text));
+    json_object_set_new(o, "signature", json_string(t->given ? "given" : "model"));
     set_number(o, "range_m", t->range_m);
     set_number(o, "range_rate_mps", t->range_rate_mps);
     set_number(o, "appears_m", t->appears_m);
@@ -62,28 +76,40 @@ static json_t *target_json(const RadarTruth *t, const Snapshot *snapshot, const 
     set_number(o, "visible_fraction", t->visible);
     for (int p = 0; p < 3; p++) set_number(rcs, polarisation[p], db(t->rcs_m2[p]));
     json_object_set_new(o, "rcs_dbsm", rcs);
+    for (int p = 0; p < 3; p++) set_number(error, polarisation[p], t->rcs_error_db[p]);
+    if (!t->given) json_object_set_new(o, "rcs_error_db", error);
+    else json_decref(error);
+    set_number(o, "map_error_db", db(t->map_error));
     set_number(o, "snr_db", db(t->snr));
     json_object_set_new(o, "centres", json_integer(t->centres));
-    if (t->strongest_m2 > 0) {
-        json_t      *s = json_object(), *at = json_array();
-        const Model *model = catalog_model(catalog, e->model);
-        for (int k = 0; k < 3; k++) json_array_append_new(at, json_real(t->strongest_body[k]));
-        set_number(s, "rcs_vv_dbsm", db(t->strongest_m2));
-        json_object_set_new(s, "body_m", at);
-        json_object_set_new(s, "bounces", json_integer(t->strongest_bounce));
-        if (t->strongest_part < model->part_count)
-            json_object_set_new(s, "part", json_string(model->part[t->strongest_part].name));
-        json_object_set_new(o, "strongest", s);
+    if (t->bounce.coherence > 0) {
+        const double *const m2[3] = {t->bounce.rcs_m2, t->bounce.once_m2, t->bounce.twice_m2};
+        static const char *const name[3] = {"rcs_dbsm", "once_dbsm", "twice_dbsm"};
+        json_t *bounce = json_object();
+        set_number(bounce, "coherence", t->bounce.coherence);
+        for (int i = 0; i < 3; i++) {
+            json_t *by = json_object();
+            for (int p = 0; p < 3; p++) set_number(by, polarisation[p], db(m2[i][p]));
+            json_object_set_new(bounce, name[i], by);
+        }
+        json_object_set_new(o, "ground_bounce", bounce);
     }
+    const Model *model = catalog_model(catalog, e->model);
+    for (int i = 0; i < t->strongest_count; i++) json_array_append_new(strongest, scatterer_json(&t->strongest[i], model));
+    json_object_set_new(o, "strongest", strongest);
     return o;
 }
 
-/* Of the map, before anything is rounded for a file. */
+Status radar_map_sha256(char out[sha256_text_size], const RadarFrame *r)
+{
+    const Plane plane = {"range_doppler", PLANE_F64, 2 * r->map.columns, interval_channels * r->map.rows, r->map.cell};
+    return plane_hash(out, &plane, 1);
+}
+
 static void set_hash(json_t *o, const RadarFrame *r)
 {
-    char        hash[sha256_text_size];
-    const Plane plane = {"range_doppler", PLANE_F64, 2 * r->map.columns, interval_channels * r->map.rows, r->map.cell};
-    if (plane_hash(hash, &plane, 1) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
+    char hash[sha256_text_size];
+    if (radar_map_sha256(hash, r) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
 }
 
 json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const Catalog *catalog)
@@ -99,6 +125,9 @@ json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const C
     set_number(o, "noise_dbw", db(r->receiver.noise_w * r->map.noise_share));
     json_object_set_new(o, "saturated", json_integer(r->receiver.saturated));
     json_object_set_new(o, "ground_cells", json_integer(r->ground_cells));
+    json_object_set_new(o, "plants", json_integer(r->crowns));
+    json_object_set_new(o, "chaff", json_integer(r->clouds));
+    json_object_set_new(o, "rain_1_m", json_real(r->rain_1_m));
     json_object_set_new(o, "ground_hidden", json_integer(r->ground_hidden));
     set_hash(o, r);
     for (int i = 0; i < r->detections; i++) json_array_append_new(detections, detection_json(&r->detection[i]));

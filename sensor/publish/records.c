@@ -306,6 +306,7 @@ static json_t *counters_json(const RunRecord *r)
     set_count(counters, "own", r->own);
     if (r->live) json_object_set_new(counters, "live", live_json(r->live));
     json_object_set_new(counters, "frames_at_gimbal_limit", json_integer(r->at_limit));
+    set_if_any(counters, "frames_without_radar", (uint64_t)r->radar_left_out);
     set_count(entities, "created", r->entities_created);
     set_count(entities, "timed_out", r->entities_timed_out);
     set_count(entities, "deactivated", r->entities_deactivated);

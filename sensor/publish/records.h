@@ -79,6 +79,7 @@ typedef struct RunRecord {
     uint64_t    link_dropped;         /* packets of the capture without a datagram */
     uint64_t    own;                  /* datagrams of this node itself, ignored */
     const LiveCounters *live;         /* NULL: a replay */
+    int         radar_left_out;       /* frames without radar, for want of signatures */
     int         at_limit;             /* frames whose aim was beyond the gimbal limit */
     uint64_t    entities_created, entities_timed_out, entities_deactivated, entities_removed;
     uint64_t    entities_evicted, entities_refused; /* by a full table */

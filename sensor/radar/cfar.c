@@ -55,11 +55,12 @@ static int gather(double *cell, const CfarConfig *c, const double *power, int ro
         int r = row + dr;
         if (c->wrap_rows) r = (r % rows + rows) % rows;
         if (r < 0 || r >= rows) continue;
-        for (int dc = -across; dc <= across; dc++) {
-            const int at = column + dc;
-            if (at < 0 || at >= columns || (abs(dr) <= c->guard[0] && abs(dc) <= c->guard[1])) continue;
-            cell[count++] = power[(size_t)r * (size_t)columns + (size_t)at];
-        }
+        const double *from = power + (size_t)r * (size_t)columns;
+        const int     left = column > across ? column - across : 0, right = column + across < columns ? column + across : columns - 1;
+        const bool    guarded = abs(dr) <= c->guard[0];
+        const int     left_end = guarded ? column - c->guard[1] : right + 1; /* one stretch, or two beside the guard */
+        for (int at = left; at < left_end; at++) cell[count++] = from[at];
+        for (int at = column + c->guard[1] + 1; guarded && at <= right; at++) cell[count++] = from[at];
     }
     return count;
 }

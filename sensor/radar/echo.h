@@ -9,13 +9,12 @@
  * Paths fold over at half of c / step in frequency, either way, as they do in a real receiver, and by the range from
  * pulse to pulse (waveform_fold_m): leave those out that the receiver cuts off.
  *
- * Sums are by gridding: each echo is spread over 8 points of a delay grid of twice the samples, which is transformed
- * and divided by the kernel's transform ("exponential of semicircle": Barnett, Magland & af Klinteberg, SIAM J. Sci.
- * Comput. 41(5), 2019). Within a row a rate adds a phase q u^2, u = -1 .. 1 over the samples: a shift of the delay is
- * its linear part; this rest is a series of Bessel functions times Chebyshev polynomials in 2 u^2 - 1 (Jacobi and Anger;
- * Abramowitz & Stegun 9.1.42 .. 47), each a grid of its own, as many as |q| needs. Error below 1e-6 of the sum of
- * amplitudes for echoes that keep their paths; for others 3e-3 of their amplitude at the band's ends, 1e-4 in its middle;
- * for |q| up to 70 (tests/sensor/test_echo.c). Sums are in the order of the echoes, for any number of threads. */
+ * Sums are by gridding. An echo whose delay and smear change little over the interval goes onto a grid over delay
+ * and Doppler (pulse_grid.h), with as many terms of a series for that change as it needs: up to pulses / 16 of them,
+ * and 6. Others, and those that fold over within the interval, go onto grids over delay row by row (row_grid.h).
+ * Which of both follows from the echo and the waveform alone. Error below 1e-6 of the sum of amplitudes for echoes
+ * that keep their paths; for others 3e-3 of their amplitude at the band's ends, 1e-4 in its middle; for |q| up to 70
+ * (row_grid.h; tests/sensor/test_echo.c). On each grid sums are in the order of the echoes, whatever the threads. */
 #ifndef SENSOR_RADAR_ECHO_H
 #define SENSOR_RADAR_ECHO_H
 
@@ -41,7 +40,9 @@ void   echo_forget(EchoGrid *grid);
 /* Of echoes added from here on: growth of the reference's own two-way path from row to row that the receiver does not
  * follow, so that it is in every echo. 0 at first; while nothing is added. */
 void   echo_unfollowed(EchoGrid *grid, double path_per_pulse_m);
-/* STATUS_NO_MEMORY once a grid for fast echoes could not be had: sums since are wrong. */
+/* Terms for an echo whose path so grows, on the grid over delay and Doppler; 0: row by row. */
+int    echo_terms(const EchoGrid *grid, double path_per_pulse_m);
+/* STATUS_NO_MEMORY once a grid could not be had: sums since are wrong. */
 Status echo_status(const EchoGrid *grid);
 
 #endif

@@ -4,12 +4,11 @@
 enum { cells_most = 400000, block = hits_capacity };
 
 static const double sight_slack_m = 0.5; /* ground met so much before a scatterer is its own */
-static const double crown_m = 40;        /* a plant met no farther before a place than this is the place's own canopy */
 
-/* Rectangle in plan about what the beam lights within the window. */
-static void lit_rectangle(double low_m[2], double high_m[2], const Making *m, double lobe_rad, double below_m)
+void making_lit_rectangle(double low_m[2], double high_m[2], const Making *m)
 {
-    const double *p = m->scene->view->p_enu, reach = m->frame->reference_m;
+    const double *p = m->scene->view->p_enu, reach = m->frame->reference_m, lobe_rad = asin(making_null(m));
+    const double  below_m = p[2] - m->base_m;
     const double  level = hypot(m->ahead[0], m->ahead[1]), azimuth = atan2(m->ahead[1], m->ahead[0]);
     const double  wide = fmin(lobe_rad / fmax(level - lobe_rad, 0.05), pi_rad), margin_m = 50 + 0.02 * reach;
     const double  range_m[2] = {m->near_m, m->far_m};
@@ -71,30 +70,33 @@ static void place_block(Ground *g, const GroundJob *job, int first, int end)
     }
 }
 
-/* Takes out what relief, entities or other plants hide. */
-static void drop_hidden(Ground *g, const Making *m, int *hidden)
+void making_hidden(bool *hidden, const Making *m, const Sight *sight, int count, double slack_m)
 {
     static _Thread_local Rays rays;
     static _Thread_local Hits hits;
     VisibilityCounters        counters = {0};
-    bool                      out[block] = {false};
-    rays.count = g->count;
+    rays.count = count;
     rays.columns = 0;
-    for (int i = 0; i < g->count; i++) {
-        rays.far_m[i] = g->sight[i].range_m;
+    for (int i = 0; i < count; i++) {
+        hidden[i] = false;
+        rays.far_m[i] = sight[i].range_m;
         for (int k = 0; k < 3; k++) {
             rays.o_enu[k][i] = m->scene->view->p_enu[k];
-            rays.d_enu[k][i] = g->sight[i].d_enu[k];
+            rays.d_enu[k][i] = sight[i].d_enu[k];
         }
     }
     visibility_first_hit(&hits, m->visibility, &rays, NULL, -1, m->scene->hidden, &counters);
     for (int i = 0; i < hits.count; i++) {
-        const int    ray = hit_ray(&hits, i);
-        const double before_m = g->sight[ray].range_m - hits.range_m[i];
-        if (hits.kind[i] == hit_sky || before_m <= sight_slack_m) continue;
-        if (hits.kind[i] == hit_plant && before_m < crown_m) continue;
-        out[ray] = true;
+        const int ray = hit_ray(&hits, i);
+        if (hits.kind[i] != hit_sky && sight[ray].range_m - hits.range_m[i] > slack_m) hidden[ray] = true;
     }
+}
+
+/* Takes out what relief or entities hide. */
+static void drop_hidden(Ground *g, const Making *m, int *hidden)
+{
+    bool out[block];
+    making_hidden(out, m, g->sight, g->count, sight_slack_m);
     int kept = 0;
     for (int i = 0; i < g->count; i++) {
         if (out[i]) continue;
@@ -108,6 +110,17 @@ static void drop_hidden(Ground *g, const Making *m, int *hidden)
     }
     *hidden = g->count - kept;
     g->count = kept;
+}
+
+/* Where plants stand on their own, the ground of woods is what grows below them: as grass. */
+static void take_canopy_off(Ground *g, const Foliage *foliage)
+{
+    for (int i = 0; i < g->count && foliage; i++) {
+        const uint8_t s = g->surface[i];
+        if ((s == SURFACE_FOREST_BROADLEAF || s == SURFACE_FOREST_CONIFER || s == SURFACE_SCRUB) &&
+            foliage_reaches(foliage, g->p_enu[0][i], g->p_enu[1][i]))
+            g->surface[i] = SURFACE_GRASS;
+    }
 }
 
 static void scatter_block(void *user, int worker, int task)
@@ -125,7 +138,8 @@ static void scatter_block(void *user, int worker, int task)
     if (g->count == 0) return;
     drop_hidden(g, m, &job->hidden[task]);
     landscape_surfaces(g->surface, m->scene->world->landscape, g->count, g->p_enu[0], g->p_enu[1]);
-    clutter_draw(scatterer, &r->cells, &r->clutter, r->band, g->count, g->cell, g->surface);
+    take_canopy_off(g, r->foliage);
+    clutter_cache_draw(scatterer, r->drawn, &r->cells, &r->clutter, r->band, g->count, g->cell, g->surface);
     const double       *p = m->scene->view->p_enu;
     const ClutterGround ground = {g->count, g->cell, g->surface, {g->p_enu[0], g->p_enu[1], g->p_enu[2]},
                                   {g->n_enu[0], g->n_enu[1], g->n_enu[2]}};
@@ -139,22 +153,16 @@ static void scatter_block(void *user, int worker, int task)
         scatter_basis(h, v, to_antenna);
         scatter_turn(&matrix[i], h, v, m->right);
         making_amplitudes(e->amplitude, m, &g->sight[i], &matrix[i]);
-        e->path_m = 2 * (g->sight[i].range_m - m->frame->reference_m);
-        e->path_per_pulse_m =
-            2 * (making_range_rate(m, &g->sight[i], still) - m->frame->reference_rate_mps) / m->preset->wave.repeat_hz;
+        making_echo(e, m, &g->sight[i], still);
     }
 }
 
 Status making_ground(Making *m)
 {
-    static const double null_u[] = {3.8317, 5.1356, 6.3802}; /* first zero of the sum beam by the dish's taper */
     SeekerRadar  *r = m->radar;
-    const double *p = m->scene->view->p_enu, reach = pi_rad * m->preset->antenna.diameter_m / m->preset->antenna.wavelength_m;
-    const double  widest = fmin(null_u[m->preset->antenna.taper] / reach, 1), lobe_rad = asin(widest);
-    double        at[3], low_m[2], high_m[2];
-    v3_add_scaled(at, p, m->frame->reference_m, m->ahead);
-    const double ground_m = elevation_height(&m->scene->world->landscape->elevation, at[0], at[1], NULL);
-    lit_rectangle(low_m, high_m, m, lobe_rad, p[2] - (isfinite(ground_m) ? ground_m : 0));
+    const double *p = m->scene->view->p_enu, widest = making_null(m), lobe_rad = asin(widest);
+    double        low_m[2], high_m[2];
+    making_lit_rectangle(low_m, high_m, m);
 
     /* sides of 1/128 of the beam's width, less where the resolution asks for it near by; coarser where that is too
      * many */

@@ -2,19 +2,7 @@
 #include "sensor/radar/seeker_radar_private.h"
 
 #include "render/radar/radar_equation.h"
-
-enum { sight_points = 27 };
-
-/* An entity at work. */
-typedef struct Target {
-    const SnapshotEntity *entity;
-    int            index, model;            /* in the snapshot; in the radar's catalog */
-    const Model   *of;
-    double         p_enu[3], v_enu_mps[3], r_enu_from_body[9];
-    ScatterAntenna antenna;                 /* seen from it */
-    const NodePose *pose;                   /* [node_count], body axes, as in its list of hits */
-    double        *joint;
-} Target;
+#include "render/radar/signature_error.h"
 
 /* ---- polarisation and motion ---------------------------------------------------------------------- */
 
@@ -26,21 +14,24 @@ static void basis_of(double h_enu[3], double v_enu[3], const Target *t)
     m3_mul_v3(v_enu, t->r_enu_from_body, v);
 }
 
-/* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. */
-static void velocity_of(double v_enu[3], const Target *t, int node, const double p_body[3])
+/* Rate at which a node turns by itself, rad/s: it rolls, or spins. */
+static double spin_of(const Target *t, int node, double forward_mps)
+{
+    const ModelNode *of = &t->of->node[node];
+    return of->roll_radius_m > 0 ? forward_mps / of->roll_radius_m : t->entity->drives.engine > 0 ? of->spin_rps_moving : 0;
+}
+
+void making_target_velocity(double v_enu[3], const Target *t, int node, const double p_body[3])
 {
     const SnapshotEntity *e = t->entity;
     double                v_body[3], turned[3];
     v3_cross(v_body, e->w_body_rps, p_body);
     m3_tmul_v3(turned, t->r_enu_from_body, t->v_enu_mps); /* body */
     for (int n = node; n >= 0; n = t->of->node[n].parent) {
-        const ModelNode *of = &t->of->node[n];
-        const double     rate = of->roll_radius_m > 0 ? turned[0] / of->roll_radius_m
-                                : e->drives.engine > 0 ? of->spin_rps_moving
-                                                       : 0;
+        const double rate = spin_of(t, n, turned[0]);
         if (rate == 0) continue;
         double axis[3], lever[3], more[3];
-        m3_mul_v3(axis, t->pose[n].r_body_from_node, of->axis);
+        m3_mul_v3(axis, t->pose[n].r_body_from_node, t->of->node[n].axis);
         v3_scale(axis, rate, axis);
         v3_sub(lever, p_body, t->pose[n].p_body);
         v3_cross(more, axis, lever);
@@ -50,125 +41,158 @@ static void velocity_of(double v_enu[3], const Target *t, int node, const double
     v3_add(v_enu, t->v_enu_mps, turned);
 }
 
-/* ---- what is in its way --------------------------------------------------------------------------- */
-
-/* Share of the sight lines to points of its box that nothing but itself meets before. */
-static double visible_share(const Making *m, const Target *t, const Model *model)
-{
-    static _Thread_local Rays rays;
-    static _Thread_local Hits hits;
-    VisibilityCounters        counters = {0};
-    double                    box[2][3];
-    for (int k = 0; k < 3; k++) {
-        box[0][k] = model->box_low[k];
-        box[1][k] = model->box_high[k];
-    }
-    rays.count = sight_points;
-    rays.columns = 0;
-    for (int i = 0; i < sight_points; i++) {
-        const int at[3] = {i % 3, i / 3 % 3, i / 9};
-        double    p_body[3], p[3], d[3];
-        for (int k = 0; k < 3; k++) p_body[k] = box[0][k] + (box[1][k] - box[0][k]) * (at[k] + 0.5) / 3;
-        m3_mul_v3(p, t->r_enu_from_body, p_body);
-        v3_add(p, p, t->p_enu);
-        v3_sub(d, p, m->scene->view->p_enu);
-        rays.far_m[i] = v3_length(d);
-        v3_normalize(d, d);
-        for (int k = 0; k < 3; k++) {
-            rays.o_enu[k][i] = m->scene->view->p_enu[k];
-            rays.d_enu[k][i] = d[k];
-        }
-    }
-    visibility_first_hit(&hits, m->visibility, &rays, NULL, -1, m->scene->hidden, &counters);
-    bool hidden[sight_points] = {false};
-    for (int i = 0; i < hits.count; i++) {
-        const int ray = hit_ray(&hits, i);
-        if (hits.kind[i] != hit_sky && hits.range_m[i] < rays.far_m[i] && (int)hits.entity[i] != t->index + 1) hidden[ray] = true;
-    }
-    int seen = 0;
-    for (int i = 0; i < sight_points; i++) seen += !hidden[i];
-    return (double)seen / sight_points;
-}
-
 /* ---- one entity ------------------------------------------------------------------------------------- */
 
+static double square(double complex v) { return creal(v) * creal(v) + cimag(v) * cimag(v); }
+
+/* Keeps it if it is among the strongest, which are in order. */
+static void note_strongest(RadarTruth *truth, const RadarScatterer *of)
+{
+    int at = truth->strongest_count;
+    while (at > 0 && of->hh_m2 + of->vv_m2 > truth->strongest[at - 1].hh_m2 + truth->strongest[at - 1].vv_m2) at--;
+    if (at == radar_strongest || !(of->hh_m2 + of->vv_m2 > 0)) return;
+    if (truth->strongest_count < radar_strongest) truth->strongest_count++;
+    memmove(&truth->strongest[at + 1], &truth->strongest[at], (size_t)(truth->strongest_count - 1 - at) * sizeof *of);
+    truth->strongest[at] = *of;
+}
+
+static void add_turned(ScatterMatrix *sum, const ScatterMatrix *s, double complex turn)
+{
+    sum->hh += s->hh * turn, sum->hv += s->hv * turn, sum->vh += s->vh * turn, sum->vv += s->vv * turn;
+}
+
+/* power: of the centres, HH and VV together, as cross section. */
+static void add_error(RadarTruth *truth, const Centres *centres, const double complex field[3], double power_m2)
+{
+    SignatureError error;
+    signature_error(&error, centres);
+    for (int p = 0; p < 3; p++)
+        truth->rcs_error_db[p] = truth->given ? NAN : signature_error_db(field[p], p == 2 ? error.cross_m2 : error.same_m2);
+    truth->map_error = truth->given ? NAN : 8 * pi_rad * error.same_m2 / power_m2 + signature_cells_error();
+}
+
 static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const Sight *sight, const Centres *centres,
-                      const double h_enu[3], const double v_enu[3])
+                      const bool *seen, const double h_enu[3], const double v_enu[3])
 {
     const double  k = 2 * pi_rad / m->preset->antenna.wavelength_m;
-    ScatterMatrix whole = {0};
+    ScatterMatrix whole = {0}, in_sight = {0};
+    double        power = 0, seen_power = 0;
     for (int i = 0; i < centres->count; i++) {
         const ScatterCentre *c = &centres->centre[i];
-        const double complex phase = cexp(-I * k * c->path_m);
+        const double complex phase = CMPLX(cos(k * c->path_m), -sin(k * c->path_m));
         ScatterMatrix        s = c->s;
-        whole.hh += s.hh * phase, whole.hv += s.hv * phase, whole.vh += s.vh * phase, whole.vv += s.vv * phase;
+        add_turned(&whole, &s, phase);
+        if (seen[i]) add_turned(&in_sight, &s, phase);
         scatter_turn(&s, h_enu, v_enu, m->right);
-        const double vv_m2 = 4 * pi_rad * pow(cabs(s.vv), 2);
-        if (vv_m2 > truth->strongest_m2) {
-            truth->strongest_m2 = vv_m2;
-            memcpy(truth->strongest_body, c->p, sizeof c->p);
-            truth->strongest_bounce = c->bounce;
-            truth->strongest_part = c->part;
-        }
+        const RadarScatterer one = {4 * pi_rad * square(s.hh), 4 * pi_rad * square(s.vv), {c->p[0], c->p[1], c->p[2]}, c->bounce,
+                                    c->part, seen[i]};
+        power += one.hh_m2 + one.vv_m2;
+        if (seen[i]) seen_power += one.hh_m2 + one.vv_m2;
+        note_strongest(truth, &one);
     }
     scatter_turn(&whole, h_enu, v_enu, m->right);
+    scatter_turn(&in_sight, h_enu, v_enu, m->right);
     const double complex of[3] = {whole.hh, whole.vv, whole.hv};
-    for (int p = 0; p < 3; p++) truth->rcs_m2[p] = 4 * pi_rad * pow(cabs(of[p]), 2);
+    for (int p = 0; p < 3; p++) truth->rcs_m2[p] = 4 * pi_rad * square(of[p]);
     truth->centres = centres->count;
+    add_error(truth, centres, of, power);
+    truth->visible = power > 0 ? seen_power / power : 0;
 
     const RadarPreset *preset = m->preset;
     double complex     amplitude[interval_channels];
-    making_amplitudes(amplitude, m, sight, &whole);
-    const double share = truth->visible * pow(cabs(amplitude[CHANNEL_SUM]), 2);
-    truth->snr = share / (receiver_noise_w(&preset->receiver, &preset->wave) * interval_noise_share(m->radar->plan));
+    making_amplitudes(amplitude, m, sight, &in_sight);
+    truth->snr = square(amplitude[CHANNEL_SUM]) /
+                 (receiver_noise_w(&preset->receiver, &preset->wave) * interval_noise_share(m->radar->plan));
     truth->range_rate_mps = making_range_rate(m, sight, t->v_enu_mps);
     truth->appears_m = making_appears_m(m, sight, truth->range_rate_mps);
 }
 
-static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *truth)
+/* *found false: its signature is still to be made. */
+static Status find_centres(bool *found, Making *m, Target *t, RadarTruth *truth)
 {
-    const RadarPreset *p = m->preset;
-    const TotalField  *field;
-    SeekerRadar       *r = m->radar;
-    const double       interval_s = p->wave.pulses / p->wave.repeat_hz, pulse_s = 1 / p->wave.repeat_hz;
-    double             across_mps[3], v[3];
-    radar_antenna(&t->antenna, m->scene->view->p_enu, t->p_enu, t->r_enu_from_body);
-    *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down,
-                          .visible = visible_share(m, t, t->of)};
-    Status status = signatures_find(&field, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &t->antenna, m->pool);
+    SeekerRadar          *r = m->radar;
+    const double          centre_hz = m->preset->wave.centre_hz;
+    const GivenSignature *given = given_list_find(r->given, t->entity->id, t->of->name);
+    const SignatureLook   direct = signature_look(&t->antenna);
+    const Signature      *signature;
+    *found = true;
+    truth->given = given && given_signature_knows(given, &t->antenna, centre_hz);
+    if (truth->given) return given_signature_centres(&r->centres, given, &t->antenna, centre_hz);
+    const Status status = signatures_find(&signature, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &direct, m->pool);
     if (status != STATUS_OK) return status;
-    t->pose = signatures_target(r->signatures)->pose;
+    *found = signature != NULL;
+    t->pose = signatures_pose(r->signatures);
+    return signature ? centres_make(&r->centres, signature, &t->antenna, &t->antenna) : STATUS_OK;
+}
 
-    v3_sub(v, t->v_enu_mps, m->scene->v_enu_mps);
-    v3_add_scaled(across_mps, v, -v3_dot(v, sight->d_enu), sight->d_enu);
-    const double turn_rad = interval_s * (v3_length(across_mps) / sight->range_m + v3_length(t->entity->w_body_rps));
-    status = centres_make(&r->centres, field, &t->antenna, &t->antenna,
-                          &(CentresConfig){.frequency_hz = p->wave.centre_hz, .bandwidth_hz = p->wave.bandwidth_hz,
-                                           .turn_rad = turn_rad, .phase_rad = 0.1});
-    if (status != STATUS_OK) return status;
+enum { block_centres = 512 };
 
-    double h_enu[3], v_enu[3];
-    basis_of(h_enu, v_enu, t);
-    add_truth(truth, m, t, sight, &r->centres, h_enu, v_enu);
-    if (!(truth->visible > 0)) return STATUS_OK;
-    Echo *echo = arena_alloc(m->arena, (size_t)r->centres.count + 1, sizeof *echo);
-    if (!echo) return STATUS_NO_MEMORY;
-    for (int i = 0; i < r->centres.count; i++) {
-        ScatterCentre *c = &r->centres.centre[i];
+typedef struct EchoJob {
+    const Making  *making;
+    const Target  *target;
+    const Sight   *sight;              /* of the target's origin */
+    ScatterCentre *centre;             /* [count]; turned to the antenna's axes */
+    Echo          *echo;               /* [count] */
+    double         h_enu[3], v_enu[3];
+    int            count;
+} EchoJob;
+
+static void echo_block(void *user, int worker, int task)
+{
+    const EchoJob *job = user;
+    const Making  *m = job->making;
+    const Target  *t = job->target;
+    const double   pulse_s = 1 / m->preset->wave.repeat_hz;
+    const int      end = (task + 1) * block_centres < job->count ? (task + 1) * block_centres : job->count;
+    (void)worker;
+    for (int i = task * block_centres; i < end; i++) {
+        ScatterCentre *c = &job->centre[i];
+        Echo          *e = &job->echo[i];
         double         p_enu[3], moves[3];
         Sight          to;
         m3_mul_v3(p_enu, t->r_enu_from_body, c->p);
         v3_add(p_enu, p_enu, t->p_enu);
         making_sight(&to, m, p_enu, 0);
-        velocity_of(moves, t, t->of->part[c->part].node, c->p);
-        scatter_turn(&c->s, h_enu, v_enu, m->right);
-        making_amplitudes(echo[i].amplitude, m, &to, &c->s);
-        for (int k = 0; k < interval_channels; k++) echo[i].amplitude[k] *= sqrt(truth->visible);
-        echo[i].path_m = 2 * (sight->range_m - m->frame->reference_m) + c->path_m;
-        echo[i].path_per_pulse_m = 2 * (making_range_rate(m, &to, moves) - m->frame->reference_rate_mps) * pulse_s;
+        making_target_velocity(moves, t, c->part < 0 ? -1 : t->of->part[c->part].node, c->p);
+        scatter_turn(&c->s, job->h_enu, job->v_enu, m->right);
+        making_amplitudes(e->amplitude, m, &to, &c->s);
+        e->path_m = 2 * (job->sight->range_m - m->frame->reference_m) + c->path_m;
+        e->path_per_pulse_m = 2 * (making_range_rate(m, &to, moves) - m->frame->reference_rate_mps) * pulse_s;
     }
-    echo_add(r->echoes, echo, r->centres.count, m->pool);
-    return STATUS_OK;
+}
+
+static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *truth)
+{
+    SeekerRadar  *r = m->radar;
+    ScatterMatrix field;
+    bool          found;
+    radar_antenna(&t->antenna, m->scene->view->p_enu, t->p_enu, t->r_enu_from_body);
+    *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down};
+    Status status = find_centres(&found, m, t, truth);
+    if (status != STATUS_OK) return status;
+    if (!found) m->missing++;
+    if (m->missing > 0) return truth->given ? STATUS_OK : making_bounce(m, t, NULL, truth); /* the rest is asked for alone */
+    bool *seen = arena_alloc(m->arena, (size_t)r->centres.count + 1, sizeof *seen);
+    Echo *echo = arena_alloc(m->arena, (size_t)r->centres.count + 1, sizeof *echo);
+    if (!seen || !echo) return STATUS_NO_MEMORY;
+    status = radar_sight_centres(seen, m, t->index, t->p_enu, t->r_enu_from_body, &r->centres);
+    if (status != STATUS_OK) return status;
+
+    double h_enu[3], v_enu[3];
+    int    count = 0;
+    basis_of(h_enu, v_enu, t);
+    add_truth(truth, m, t, sight, &r->centres, seen, h_enu, v_enu);
+    centres_field(&field, &r->centres, m->preset->wave.centre_hz);
+    for (int i = 0; i < r->centres.count; i++)
+        if (seen[i]) r->centres.centre[count++] = r->centres.centre[i];
+    EchoJob job = {m, t, sight, r->centres.centre, echo, {0}, {0}, count};
+    memcpy(job.h_enu, h_enu, sizeof h_enu);
+    memcpy(job.v_enu, v_enu, sizeof v_enu);
+    const int blocks = (count + block_centres - 1) / block_centres;
+    if (m->pool) pool_run(m->pool, blocks, echo_block, &job);
+    else for (int b = 0; b < blocks; b++) echo_block(&job, 0, b);
+    echo_add(r->echoes, echo, count, m->pool);
+    return truth->given || !(truth->visible > 0) ? STATUS_OK : making_bounce(m, t, &field, truth);
 }
 
 /* False: it cannot be seen by this radar. */
@@ -193,6 +217,7 @@ static Status take_target(bool *taken, Making *m, Target *t, Sight *sight)
     t->joint = arena_alloc(m->arena, (size_t)t->of->node_count + 1, sizeof *t->joint);
     if (!pose || !t->joint) return STATUS_NO_MEMORY;
     snapshot_pose(pose, t->joint, m->scene->snapshot, t->index, t->of);
+    if (m->scene->joint) memcpy(t->joint, m->scene->joint + e->first_node, (size_t)t->of->node_count * sizeof *t->joint);
     *taken = true;
     return STATUS_OK;
 }

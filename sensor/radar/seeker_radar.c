@@ -1,12 +1,14 @@
 /* sensor/radar/seeker_radar.c: see seeker_radar.h. */
 #include "sensor/radar/seeker_radar_private.h"
 
+#include "render/radar/cloud_attenuation.h"
 #include "render/radar/radar_equation.h"
 #include "sensor/radar/mti.h"
 
 #include <stdlib.h>
 
 enum { detections_most = 256, stream_noise = 0x3d000000 };
+static const double fog_top_m = 300;       /* above the ground; of fogs 100 .. 500 m deep: estimate */
 static const double no_reference_m = 1000; /* where there is neither an aim nor ground ahead */
 
 /* ---- what lasts -------------------------------------------------------------------------------- */
@@ -19,7 +21,8 @@ static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
                         ? radar_preset_read(&r->preset, own ? config->table : path, config->preset)
                         : STATUS_BAD_VALUE;
     if (status != STATUS_OK) return status;
-    if (!clutter_band_of(&r->band, r->preset.wave.centre_hz) && config->ground) {
+    r->in_band = clutter_band_of(&r->band, r->preset.wave.centre_hz);
+    if (!r->in_band && config->ground) {
         log_error("radar: %s: no ground is known at %g GHz (etc/radar/clutter.csv: 12-18, 27-40, 75-110); set radar.ground: false",
                   r->preset.name, 1e-9 * r->preset.wave.centre_hz);
         return STATUS_BAD_VALUE;
@@ -27,10 +30,20 @@ static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
     if (!etc_path(path, sizeof path, "radar/clutter.csv")) return STATUS_BAD_VALUE;
     status = clutter_table_open(&r->clutter, path);
     if (status == STATUS_OK) status = radar_materials_load(&r->materials);
+    if (status == STATUS_OK)
+        status = etc_path(path, sizeof path, "radar/ground.csv") ? ground_table_open(&r->mirror, path) : STATUS_BAD_VALUE;
     if (status != STATUS_OK) return status;
     if (!etc_path(path, sizeof path, "radar/oxygen_lines.csv") || !etc_path(water, sizeof water, "radar/water_lines.csv"))
         return STATUS_BAD_VALUE;
     return gas_lines_read(&r->gases, path, water);
+}
+
+SignaturesConfig seeker_radar_signatures(const RadarPreset *preset, double warp_m, const char *isa)
+{
+    return (SignaturesConfig){.frequency_hz = preset->wave.centre_hz, .bandwidth_hz = preset->wave.bandwidth_hz,
+                              .aspect_rad = 0.3 * rad_per_deg, .interval_s = preset->wave.pulses / preset->wave.repeat_hz,
+                              .rays_per_wavelength = 0.5, .warp_m = warp_m,
+                              .most_octets = (size_t)1 << 30, .isa = isa};
 }
 
 Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
@@ -38,17 +51,21 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     SeekerRadar *r = calloc(1, sizeof *r);
     if (!r) return STATUS_NO_MEMORY;
     r->ground = config->ground;
+    r->ground_bounce = config->ground_bounce;
     r->wind_mps = config->wind_mps;
     r->seed = config->seed;
+    r->chaff_dipoles = config->chaff_dipoles;
     Status status = open_tables(r, config);
     const Waveform *wave = &r->preset.wave;
     if (status == STATUS_OK) status = catalog_open(&r->catalog, config->catalog, radar_sag_m(wave->centre_hz));
-    if (status == STATUS_OK)
-        status = signatures_create(&r->signatures,
-                                   &(SignatureConfig){.frequency_hz = wave->centre_hz, .aspect_rad = 0.3 * rad_per_deg,
-                                                      .rays_per_wavelength = 0.5, .warp_m = config->warp_m, .most_octets = (size_t)1 << 30,
-                                                      .isa = config->isa},
-                                   r->catalog, &r->materials);
+    SignaturesConfig signatures = seeker_radar_signatures(&r->preset, config->warp_m, config->isa);
+    if (status == STATUS_OK && config->library && *config->library)
+        status = signature_library_open(&r->library, config->library, &signatures, &r->materials);
+    if (r->library) signatures.store = signature_library_store(r->library);
+    signatures.background = config->background;
+    if (status == STATUS_OK) status = signatures_create(&r->signatures, &signatures, r->catalog, &r->materials);
+    if (status == STATUS_OK && config->given && *config->given) status = given_list_open(&r->given, config->given);
+    if (status == STATUS_OK && r->ground) status = clutter_cache_create(&r->drawn);
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
     if (status == STATUS_OK)
         status = interval_plan_create(&r->plan, wave, &r->preset.range_window, &r->preset.doppler_window);
@@ -64,7 +81,11 @@ void seeker_radar_destroy(SeekerRadar *r)
     interval_plan_destroy(r->plan);
     echo_grid_destroy(r->echoes);
     centres_free(&r->centres);
+    clutter_cache_destroy(r->drawn);
     signatures_destroy(r->signatures);
+    signature_library_close(r->library);
+    given_list_close(r->given);
+    foliage_destroy(r->foliage);
     radar_materials_close(&r->materials);
     if (r->catalog) catalog_close(r->catalog);
     free(r);
@@ -102,14 +123,27 @@ void making_amplitudes(double complex amplitude[interval_channels], const Making
     const RadarPreset   *p = m->preset;
     const AntennaGain    gain = antenna_gain(&p->antenna, sight->cos_right, sight->cos_down);
     const RadarLink      link = {p->power_w, 1, 1, p->antenna.wavelength_m, sight->range_m, p->loss};
-    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-2 * m->air_np_m * sight->range_m)) *
-                        waveform_share(&p->wave, sight->range_m);
+    const double         through_np = m->air_np_m * sight->range_m + making_volume_np(m, sight);
+    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-2 * through_np)) * waveform_share(&p->wave, sight->range_m);
     const double complex same = unit * gain.sum * (p->transmits_h ? s->hh : s->vv);
     const double complex other = unit * gain.sum * (p->transmits_h ? s->vh : s->hv);
     amplitude[CHANNEL_SUM] = same * gain.sum;
     amplitude[CHANNEL_RIGHT] = same * gain.right;
     amplitude[CHANNEL_DOWN] = same * gain.down;
     amplitude[CHANNEL_CROSS] = other * gain.sum;
+}
+
+void making_echo(Echo *out, const Making *m, const Sight *sight, const double v_enu_mps[3])
+{
+    out->path_m = 2 * (sight->range_m - m->frame->reference_m);
+    out->path_per_pulse_m = 2 * (making_range_rate(m, sight, v_enu_mps) - m->frame->reference_rate_mps) / m->preset->wave.repeat_hz;
+}
+
+double making_null(const Making *m)
+{
+    static const double null_u[] = {3.8317, 5.1356, 6.3802}; /* first zero of the sum beam by the dish's taper */
+    const double        reach = pi_rad * m->preset->antenna.diameter_m / m->preset->antenna.wavelength_m;
+    return fmin(null_u[m->preset->antenna.taper] / reach, 1);
 }
 
 /* Range to the ground along the boresight; NAN: there is none. */
@@ -135,9 +169,12 @@ static void aim_window(Making *m)
     f->reference_m = m->scene->reference_m;
     if (!isfinite(f->reference_m)) f->reference_m = range_ahead(m);
     if (!isfinite(f->reference_m)) f->reference_m = no_reference_m;
-    double v[3];
+    double v[3], end[3], ground_m = 0;
     v3_sub(v, m->scene->reference_v_enu_mps, m->scene->v_enu_mps);
     f->reference_rate_mps = v3_dot(v, m->ahead);
+    v3_add_scaled(end, m->scene->view->p_enu, f->reference_m, m->ahead);
+    if (m->scene->world->landscape) ground_m = elevation_height(&m->scene->world->landscape->elevation, end[0], end[1], NULL);
+    m->base_m = isfinite(ground_m) ? ground_m : 0;
 }
 
 /* The window, and what the receiver follows. */
@@ -166,10 +203,10 @@ static Status air_between(Making *m)
     if (!world->atmosphere) return STATUS_OK;
     const Status status = radar_air_of(&m->radar->air, world->atmosphere, m->scene->weather);
     if (status != STATUS_OK) return status;
+    if (m->preset->wave.centre_hz <= 200e9) /* P.840's range */
+        m->radar->air.liquid[0] = (RadarLiquid){0, fog_top_m, fog_liquid_g_m3(m->scene->weather->visibility_m)};
     v3_add_scaled(end, p, m->frame->reference_m, m->ahead);
-    const double ground_m = world->landscape ? elevation_height(&world->landscape->elevation, end[0], end[1], NULL) : 0;
-    const double base_m = isfinite(ground_m) ? ground_m : 0;
-    const RadarPath path = {.a_m = clamp(p[2] - base_m, 0, 20000), .b_m = clamp(end[2] - base_m, 0, 20000),
+    const RadarPath path = {.a_m = clamp(p[2] - m->base_m, 0, 20000), .b_m = clamp(end[2] - m->base_m, 0, 20000),
                             .range_m = fmin(m->frame->reference_m, 1e6), .f_ghz = 1e-9 * m->preset->wave.centre_hz,
                             .tilt_rad = m->preset->transmits_h ? 0 : 0.5 * pi_rad};
     radar_path_loss(&loss, &path, &m->radar->gases, &m->radar->air);
@@ -246,8 +283,11 @@ static Status make(Making *m)
     aim_window(m);
     follow(m);
     status = air_between(m);
+    if (status == STATUS_OK) status = making_volume_open(m);
     if (status == STATUS_OK) status = making_targets(m);
+    if (m->missing > 0) return status;
     if (status == STATUS_OK && m->radar->ground && scene->world->landscape) status = making_ground(m);
+    if (status == STATUS_OK) status = making_volume(m);
     if (status == STATUS_OK) status = visibility_status(visibility);
     if (status == STATUS_OK) status = echo_status(m->radar->echoes);
     if (status != STATUS_OK) return status;
@@ -266,7 +306,9 @@ Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const Ra
     Making m = {.radar = radar, .scene = scene, .preset = p, .frame = frame, .pool = pool, .arena = arena,
                 .half_window_m = p->wave.samples * light_mps / (4 * p->wave.bandwidth_hz),
                 .widest = 16 / (pi_rad * p->antenna.diameter_m / p->antenna.wavelength_m)};
-    *frame = (RadarFrame){.preset = p};
+    *frame = (RadarFrame){.preset = p, .aim_m = scene->reference_m, .number = scene->number};
+    memcpy(frame->v_enu_mps, scene->v_enu_mps, sizeof frame->v_enu_mps);
+    memcpy(frame->aim_v_enu_mps, scene->reference_v_enu_mps, sizeof frame->aim_v_enu_mps);
     waveform_timing(&frame->timing, &p->wave);
     const double *r = scene->view->r_enu_from_cam;
     for (int k = 0; k < 3; k++) {
@@ -275,8 +317,11 @@ Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const Ra
         m.ahead[k] = r[3 * k + 2];
     }
     const Status status = make(&m);
-    if (status != STATUS_OK) echo_forget(radar->echoes);
+    if (status != STATUS_OK || m.missing > 0) echo_forget(radar->echoes);
     frame->spent_s = wall_clock_s() - begun_s;
-    if (status == STATUS_OK) *out = frame;
+    radar->left_out += m.missing > 0;
+    if (status == STATUS_OK) *out = m.missing > 0 ? NULL : frame;
     return status;
 }
+
+SignatureCounters seeker_radar_counters(const SeekerRadar *radar) { return signatures_counters(radar->signatures); }

@@ -6,19 +6,24 @@
  * window, and beyond it where echoes fold over (RadarPreset.far_m),
  *
  *     entities   by their scattering centres (render/radar), each with its own range rate from the motion of its part
- *     ground     by scatterers fixed to it (render/radar/clutter.h), where relief, plants and entities leave it in sight
+ *     and the same by way of the ground near them, once and twice (render/radar/ground_bounce.h)
+ *     ground     by scatterers fixed to it (render/radar/clutter.h), where relief and entities leave it in sight
+ *     plants     by scatterers in their crowns (render/radar/foliage.h); what is behind or below is weakened, not hidden
+ *     rain       by scatterers anew for each interval (render/radar/rain_scatter.h)
+ *     chaff      likewise (render/radar/chaff.h); it weakens what is behind it
  *
  * go through the radar equation, the antenna's pattern at their own direction, and the air (radar_path.h) into the
  * samples of four channels; then receiver and processing. Phases are those of double ranges.
  *
  * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main
- * lobe's null; ground bounce and what one entity mirrors to another; range rates that change within the interval; what FMCW's transmitter leaks into its receiver;
- * the internal motion of ground within the interval (it moves between intervals). An entity partly hidden gives its
- * visible share of power. */
+ * lobe's null; what one entity mirrors to another; range rates that change within the interval; what FMCW's transmitter
+ * leaks into its receiver; the internal motion of ground within the interval (it moves between intervals); diffraction
+ * about what hides part of an entity: each scattering centre is in sight or not. */
 #ifndef SENSOR_RADAR_SEEKER_RADAR_H
 #define SENSOR_RADAR_SEEKER_RADAR_H
 
 #include "render/frame/world.h"
+#include "render/radar/signatures.h"
 #include "render/scene/view.h"
 #include "sensor/radar/radar_frame.h"
 
@@ -27,10 +32,15 @@ typedef struct SeekerRadarConfig {
     const char *table;           /* path; NULL or empty: etc/radars.csv */
     const char *catalog;         /* path; its models are built anew, as fine as the wavelength needs */
     const char *isa;
-    bool        ground;          /* scatterers of the ground */
+    bool        ground;          /* scatterers of the ground and of plants */
+    bool        ground_bounce;   /* the ground mirrors entities */
     double      warp_m;          /* unevenness of surfaces, rms (render/radar/warp.h) */
+    const char *given;           /* a list of given signatures (render/radar/given_list.h); empty: none */
     double      wind_mps;
+    double      chaff_dipoles; /* resonant ones in a cloud of chaff; 0: chaff is not seen */
     uint64_t    seed;
+    const char  *library;        /* folder of signatures, read and added to; NULL or empty: none */
+    bool         background;     /* signatures that are missing are made in a thread of their own; the update is left out */
 } SeekerRadarConfig;
 
 typedef struct SeekerRadar SeekerRadar;
@@ -41,6 +51,7 @@ void   seeker_radar_destroy(SeekerRadar *radar); /* accepts NULL */
 typedef struct RadarScene {
     const World    *world;
     const Snapshot *snapshot;
+    const double   *joint;       /* values of the joints of its nodes, where these are posed; NULL: by snapshot_pose */
     const View     *view;        /* where the antenna is, and its axes */
     int             hidden;      /* snapshot index of the host, -1: none; it is not in its own way */
     double          v_enu_mps[3];/* of the antenna */
@@ -51,7 +62,11 @@ typedef struct RadarScene {
     uint32_t        number;      /* of the frame: for its noise */
 } RadarScene;
 
-/* *out in the arena. */
+/* What a radar of this configuration makes signatures with, now or beforehand. */
+SignaturesConfig seeker_radar_signatures(const RadarPreset *preset, double warp_m, const char *isa);
+
+/* *out in the arena. NULL: left out, as signatures are still being made in the background. */
 Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool, Arena *arena);
+SignatureCounters seeker_radar_counters(const SeekerRadar *radar);
 
 #endif

@@ -3,24 +3,35 @@
 #define SENSOR_RADAR_SEEKER_RADAR_PRIVATE_H
 
 #include "render/radar/centres.h"
-#include "render/radar/clutter.h"
+#include "render/radar/clutter_cache.h"
+#include "render/radar/foliage.h"
+#include "render/radar/given_list.h"
+#include "render/radar/ground_bounce.h"
 #include "render/radar/radar_path.h"
 #include "render/radar/signatures.h"
 #include "sensor/radar/echo.h"
 #include "sensor/radar/seeker_radar.h"
+#include "sensor/radar/signature_library.h"
 
 struct SeekerRadar {
     RadarPreset    preset;
-    bool           ground;
-    double         wind_mps;
+    bool           ground, in_band; /* in_band: of the clutter table */
+    double         wind_mps, chaff_dipoles;
     uint64_t       seed;
     Catalog       *catalog;      /* its own: as fine as the wavelength needs */
     RadarMaterials materials;
+    SignatureLibrary *library;   /* NULL: none */
     Signatures    *signatures;
+    uint64_t       left_out;     /* updates, for want of signatures */
+    GivenList     *given;        /* NULL: none */
     Centres        centres;      /* of the target at work */
     ClutterTable   clutter;
+    GroundTable    mirror;       /* how the ground reflects */
+    bool           ground_bounce;
     ClutterGrid    cells;
+    ClutterCache  *drawn;        /* NULL without ground */
     ClutterBand    band;
+    Foliage       *foliage;      /* of the world's plants; NULL: none stand */
     GasLines       gases;
     RadarAir       air;
     EchoGrid      *echoes;
@@ -38,6 +49,10 @@ typedef struct Making {
     double            near_m, far_m;               /* ranges between which echoes can be in it, fold by fold */
     double            widest;                      /* sine off the axis beyond which entities are left out */
     double            air_np_m;                    /* power, one way, 1/m */
+    int               missing;                     /* entities whose signatures are still to be made */
+    const struct ChaffCloud *chaff;                /* [chaff_count] */
+    int               chaff_count;
+    double            base_m;                      /* height of the ground at the reference, ENU */
     Pool             *pool;
     Arena            *arena;
 } Making;
@@ -58,13 +73,49 @@ double making_range_rate(const Making *making, const Sight *sight, const double 
 double making_appears_m(const Making *making, const Sight *sight, double range_rate_mps);
 
 /* Its amplitudes in the four channels: what is scattered (m, received h or v along the antenna's right and up by
- * transmitted), at a range and direction, through the air. */
+ * transmitted), at a range and direction, through the air, the foliage on the way (render/radar/foliage.h) and chaff. */
 void making_amplitudes(double complex amplitude[interval_channels], const Making *making, const Sight *sight,
                        const ScatterMatrix *s);
+
+/* An entity at work. */
+typedef struct Target {
+    const SnapshotEntity *entity;
+    int            index, model;            /* in the snapshot; in the radar's catalog */
+    const Model   *of;
+    double         p_enu[3], v_enu_mps[3], r_enu_from_body[9];
+    ScatterAntenna antenna;                 /* seen from it */
+    const NodePose *pose;                   /* [node_count], body axes, as in its list of hits */
+    double        *joint;
+} Target;
+/* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. node -1: of none. */
+void making_target_velocity(double v_enu_mps[3], const Target *target, int node, const double p_body[3]);
+
+/* Adds the echoes of an entity by way of the ground, whose field is direct without it (body bases), and their truth. With
+ * signatures missing: asks for its own alone. */
+Status making_bounce(Making *making, const Target *target, const ScatterMatrix *direct, RadarTruth *truth);
+/* Which centres of an entity of the snapshot the antenna sees: seen[centres->count]. Centres share a sight line within
+ * cells of a 47th of their extent, of 0.05 m at least, so that the edge of a shadow is as fine as that; a line that
+ * meets the entity itself first is clear. Those of many mirrors stand for the middle of their path. */
+Status radar_sight_centres(bool *seen, const Making *making, int entity, const double p_enu[3], const double r_enu_from_body[9],
+                           const Centres *centres);
+/* Where relief or an entity is met more than slack_m before the place that a sight leads to. count: up to hits_capacity. */
+void making_hidden(bool *hidden, const Making *making, const Sight *sight, int count, double slack_m);
+/* An echo that moves at v_enu_mps, without its amplitudes. */
+void making_echo(Echo *out, const Making *making, const Sight *sight, const double v_enu_mps[3]);
+/* Rectangle in plan about what the main lobe lights within the window. */
+void making_lit_rectangle(double low_m[2], double high_m[2], const Making *making);
+/* Sine off the axis of the main lobe's null. */
+double making_null(const Making *making);
 
 /* Adds the echoes of entities, and their truth to the frame. */
 Status making_targets(Making *making);
 /* Adds those of the ground. */
 Status making_ground(Making *making);
+/* Before any echo: what weakens all of them on their way, foliage and chaff; its loss to a sight's place in nepers of
+ * power, one way. */
+Status making_volume_open(Making *making);
+double making_volume_np(const Making *making, const Sight *sight);
+/* Adds the echoes of rain, foliage and chaff. */
+Status making_volume(Making *making);
 
 #endif

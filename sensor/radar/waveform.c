@@ -14,6 +14,8 @@ double waveform_step_s(const Waveform *w)
     }
 }
 
+double waveform_share_of_row(const Waveform *w) { return waveform_step_s(w) * w->repeat_hz * w->samples; }
+
 double waveform_time_s(const Waveform *w, int m, int n)
 {
     return (n - 0.5 * (w->pulses - 1)) / w->repeat_hz + (m - w->samples / 2) * waveform_step_s(w);

@@ -42,6 +42,8 @@ typedef struct Waveform {
 
 /* From one sample of a row to the next, s. */
 double waveform_step_s(const Waveform *wave);
+/* Of a row, that its samples take: 0 .. 1. */
+double waveform_share_of_row(const Waveform *wave);
 /* t(m, n), s; f(m), Hz. */
 double waveform_time_s(const Waveform *wave, int m, int n);
 double waveform_frequency_hz(const Waveform *wave, int m);

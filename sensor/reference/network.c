@@ -115,6 +115,60 @@ const Reference reference_stream_pdu = {
         "        if kind == 600301: print(datum[600002], value.decode('ascii'), flush=True)\n",
 };
 
+static const ReferenceField radar_fields[] = {
+    {"fixed 600001", "u32", "", "from 0", "", "number of the frame"},
+    {"fixed 600003", "u32", "", "4 radar", "", "kind"},
+    {"fixed 600012", "u32", "", "", "", "detections in this PDU"},
+    {"fixed 600013", "u32", "", "", "", "detections of the frame in none of its PDUs, the weakest"},
+    {"fixed 600014", "u16[2]", "", "from 0, of how many", "", "number of this PDU among those of the frame"},
+    {"variable 600101+0", "f64", "s", "exercise time", "", "instant of the frame, the middle of the interval"},
+    {"variable 600102+0", "f64[3]", "m", "ecef", "", "position of the antenna"},
+    {"variable 600103+0", "f64[3]", "rad",
+     "psi, theta, phi as in an Entity State; x along the boresight, y right, z down", "", "attitude of the antenna"},
+    {"variable 600104+0", "u16[4]", "", "site, application, entity, 0", "", "the host; 0:0:0: an observer"},
+    {"variable 600401+0", "f64", "Hz", "", "", "centre frequency"},
+    {"variable 600401+8", "f64", "m", "from the antenna", "", "middle of the range window"},
+    {"variable 600401+16", "f32", "Hz", "", "", "bandwidth"},
+    {"variable 600401+20", "f32", "m/s", "above 0: receding", "", "range rate in the middle of the map"},
+    {"variable 600401+24", "f32", "m", "", "", "length of the range window"},
+    {"variable 600401+28", "f32", "m/s", "", "", "span of range rates; others fold over into it"},
+    {"variable 600402+0", "f32", "m", "from the antenna", "", "range"},
+    {"variable 600402+4", "f32", "m/s", "above 0: receding", "", "range rate"},
+    {"variable 600402+8", "f32", "rad", "from the boresight, right positive", "", "azimuth"},
+    {"variable 600402+12", "f32", "rad", "from the boresight, up positive", "", "elevation"},
+    {"variable 600402+16", "f32", "dB", "", "", "signal-to-noise ratio, over the noise and clutter about it"},
+    {"variable 600402+20", "f32", "dB over 1 m2", "", "", "cross section, as one point where it was found"},
+};
+
+const Reference reference_radar_pdu = {
+    .topic = "radar-pdu",
+    .file  = "Radar PDU",
+    .title = "what the radar on the sensor's axis detected, as Data PDUs (type 20)",
+    .about = "Sent with those of data-pdu where radar.preset is set, behind the frame's bands: the 128 strongest detections,\n"
+             "strongest first, 32 a PDU; one PDU where there is none. The values are those of radar.detections in "
+             "truth.jsonl.\n"
+             "Without datum 600002; else as those.",
+    .notation = "Field and type: as in data-pdu. 600402 is there once a detection.",
+    .field = REFERENCE_FIELDS(radar_fields),
+    .python =
+        "import math, socket, struct\n"
+        "listen = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)\n"
+        "listen.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)\n"
+        "listen.bind(('', 3000))               # a multicast group: add IP_ADD_MEMBERSHIP\n"
+        "while True:\n"
+        "    pdu = listen.recv(65536)\n"
+        "    if len(pdu) < 40 or pdu[2] != 20: continue\n"
+        "    fixed, variable = struct.unpack('>II', pdu[32:40])\n"
+        "    datum, at = dict(struct.unpack('>II', pdu[40 + 8 * i:48 + 8 * i]) for i in range(fixed)), 40 + 8 * fixed\n"
+        "    if datum.get(600003) != 4: continue   # a band's or a stream's, or of another program\n"
+        "    for _ in range(variable):\n"
+        "        kind, bits = struct.unpack('>II', pdu[at:at + 8])\n"
+        "        value, at = pdu[at + 8:at + 8 + bits // 8], at + 8 + (bits + 63) // 64 * 8\n"
+        "        if kind == 600402:\n"
+        "            range_m, rate_mps, az_rad, el_rad, snr_db, dbsm = struct.unpack('>6f', value)\n"
+        "            print(datum[600001], range_m, rate_mps, math.degrees(az_rad), snr_db, dbsm, flush=True)\n",
+};
+
 static const ReferenceField pdu_fields[] = {
     {"frame.number", "integer", "", "from 1", "", "packet of the capture"},
     {"dis.proto_ver", "integer", "", "", "", "version of DIS: 5, 6, 7"},

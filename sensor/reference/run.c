@@ -72,6 +72,8 @@ static const ReferenceField fields[] = {
     {"counters.live.files_failed", "integer", "", "", "", "frames whose files could not be written"},
     {"counters.live.files_left_out", "integer", "", "", "", "frames without files because the disk was too slow"},
     {"counters.frames_at_gimbal_limit", "integer", "", "", "", "frames with the aim point beyond the gimbal limit"},
+    {"counters.frames_without_radar", "integer", "", "", "radar.preset, live or a recording of that",
+     "frames whose radar was left out, as signatures of targets were still to be made; absent: none"},
     {"counters.entities", "object", "", "", "", "of the entity table"},
     {"counters.entities.created", "integer", "", "", "", "new ones"},
     {"counters.entities.timed_out", "integer", "", "", "", "removed after a timeout"},

@@ -29,6 +29,7 @@ const Reference reference_products = {
         "    V/settings.yaml, V/log.txt                      of --sweep: its settings for --config; messages\n"
         "    (on the network)                 help data-pdu  what the seeker sees, as DIS; --set publish.dis=sensor\n"
         "    (on the network)                 help stream-pdu  where its video streams are, with publish.stream\n"
+        "    (on the network)                 help radar-pdu what a radar detected, with publish.dis and radar.preset\n"
         "    (standard output)                help pdus      Entity State PDUs of a log; pitviper inspect --pdus tsv\n"
         "    CASE/record/                     help regress-record  of pitviper regress: the baseline\n"
         "\n"
@@ -167,7 +168,7 @@ static const ReferenceField fields[] = {
     {"error.BAND.total_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"radar", "object", "", "", "with radar.preset none", "what the radar on the sensor's axis measured, and the truth of it"},
     {"radar.preset", "string", "", "", "", "row of etc/radars.csv or radar.table"},
-    {"radar.waveform", "object", "", "", "", "its times, and what they limit (etc/reference/radar_seeker.md)"},
+    {"radar.waveform", "object", "", "", "", "its times, and what they limit (etc/reference/radar_waveforms.md)"},
     {"radar.waveform.kind", "string", "", "", "", "lfm, stepped, pulse_doppler or fmcw"},
     {"radar.waveform.pulse_us", "number", "us", "", "", "length of a pulse; of fmcw of a sweep"},
     {"radar.waveform.sample_us", "number", "us", "", "", "from one frequency of a profile to the next; 0: at once"},
@@ -185,11 +186,14 @@ static const ReferenceField fields[] = {
     {"radar.reference_rate_mps", "number", "m/s", "above 0: receding", "", "range rate in the middle of the map"},
     {"radar.ground_rate_mps", "number", "m/s", "above 0: receding", "", "of still ground on the axis"},
     {"radar.notch_mps", "number", "m/s", "", "", "detections so near to the ground's range rate in their direction count as ground"},
-    {"radar.air_db", "number", "dB", "one way", "", "loss by gases and rain over that range"},
+    {"radar.air_db", "number", "dB", "one way", "", "loss by gases, rain and fog over that range"},
     {"radar.noise_dbw", "number", "dB over 1 W", "", "", "thermal noise in a cell of the map"},
     {"radar.saturated", "integer", "", "", "", "I and Q values at the end of the converter's range"},
     {"radar.ground_cells", "integer", "", "", "", "scatterers of the ground within main lobe and window"},
-    {"radar.ground_hidden", "integer", "", "", "", "of these, hidden by relief, plants or entities"},
+    {"radar.ground_hidden", "integer", "", "", "", "of these, hidden by relief or entities"},
+    {"radar.plants", "integer", "", "", "", "plants within main lobe and window, which return from their crowns"},
+    {"radar.chaff", "integer", "", "", "", "clouds of chaff within beam and window"},
+    {"radar.rain_1_m", "number", "m2/m3", "", "", "backscatter of the rain by its volume; 0: none falls"},
     {"radar.map_sha256", "string", "", "", "", "SHA-256 of the map of all channels, before it is rounded for a file"},
     {"radar.detections", "list of objects", "", "strongest first, at most 256", "", "peaks over the threshold of constant false "
      "alarms"},
@@ -209,19 +213,47 @@ static const ReferenceField fields[] = {
      "coupled to its range rate"},
     {"radar.targets[].az_deg", "number", "deg", "camera, right positive", "", "direction of that origin"},
     {"radar.targets[].el_deg", "number", "deg", "camera, up positive", "", "likewise"},
-    {"radar.targets[].visible_fraction", "number", "", "0 .. 1", "", "share of its box in sight; its power is reduced by it"},
-    {"radar.targets[].rcs_dbsm", "object", "", "", "", "cross section at the centre frequency, as if wholly in sight"},
+    {"radar.targets[].signature", "string", "", "model, given", "", "by its model, or by a signature of radar.given"},
+    {"radar.targets[].visible_fraction", "number", "", "0 .. 1", "", "share of its scattering centres' power in sight: those centres "
+     "alone return"},
+    {"radar.targets[].rcs_dbsm", "object", "", "", "", "cross section at the centre frequency, as if wholly in sight, without the ground"},
     {"radar.targets[].rcs_dbsm.hh", "number", "dB over 1 m2", "received, transmitted", "", "h along the camera's columns"},
     {"radar.targets[].rcs_dbsm.vv", "number", "dB over 1 m2", "", "", "v along its rows"},
     {"radar.targets[].rcs_dbsm.hv", "number", "dB over 1 m2", "", "", "received h, transmitted v"},
-    {"radar.targets[].snr_db", "number", "dB", "", "when none of it is in sight", "by the radar equation, as a point, over the "
-     "thermal noise of a cell"},
+    {"radar.targets[].rcs_error_db", "object", "", "", "of a given signature", "estimated standard deviation of these, by the grid of ray "
+     "tubes alone: not by the model or physical optics"},
+    {"radar.targets[].rcs_error_db.hh", "number", "dB", "", "when it scatters nothing back", "of HH"},
+    {"radar.targets[].rcs_error_db.vv", "number", "dB", "", "when it scatters nothing back", "of VV"},
+    {"radar.targets[].rcs_error_db.hv", "number", "dB", "", "when it scatters nothing back", "of HV"},
+    {"radar.targets[].map_error_db", "number", "dB", "", "of a given signature", "error of its cells of the map, over its power in them: by "
+     "ray tubes and by scattering centres"},
+    {"radar.targets[].snr_db", "number", "dB", "", "when none of it is in sight", "by the radar equation, of its centres in sight in "
+     "one cell, over the thermal noise of a cell"},
     {"radar.targets[].centres", "integer", "", "", "", "scattering centres that it was summed from"},
-    {"radar.targets[].strongest", "object", "", "", "when it scatters nothing back", "the strongest of them, at VV"},
-    {"radar.targets[].strongest.rcs_vv_dbsm", "number", "dB over 1 m2", "", "", "its cross section"},
-    {"radar.targets[].strongest.body_m", "list of 3 numbers", "m", "body", "", "middle of its path's first and last mirror"},
-    {"radar.targets[].strongest.bounces", "integer", "", "", "", "mirrors on its path"},
-    {"radar.targets[].strongest.part", "string", "", "", "", "part of the model with the last mirror"},
+    {"radar.targets[].ground_bounce", "object", "", "", "where the ground near it mirrors too little, or out of sight",
+     "what the ground near it mirrors; as if wholly in sight"},
+    {"radar.targets[].ground_bounce.coherence", "number", "", "0.001 .. 1", "",
+     "share of the amplitude that the ground mirrors, roughness included; the larger of both polarisations"},
+    {"radar.targets[].ground_bounce.rcs_dbsm", "object", "", "", "", "cross section by all paths together, the direct one included"},
+    {"radar.targets[].ground_bounce.rcs_dbsm.hh", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
+    {"radar.targets[].ground_bounce.rcs_dbsm.vv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
+    {"radar.targets[].ground_bounce.rcs_dbsm.hv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
+    {"radar.targets[].ground_bounce.once_dbsm", "object", "", "", "", "by the ground one way alone, both ways round together"},
+    {"radar.targets[].ground_bounce.once_dbsm.hh", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
+    {"radar.targets[].ground_bounce.once_dbsm.vv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
+    {"radar.targets[].ground_bounce.once_dbsm.hv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
+    {"radar.targets[].ground_bounce.twice_dbsm", "object", "", "", "", "by the ground both ways alone"},
+    {"radar.targets[].ground_bounce.twice_dbsm.hh", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
+    {"radar.targets[].ground_bounce.twice_dbsm.vv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
+    {"radar.targets[].ground_bounce.twice_dbsm.hv", "number", "dB over 1 m2", "", "when it is 0", "likewise"},
+    {"radar.targets[].strongest", "list of objects", "", "strongest first, at most 8", "", "the strongest of them, by the mean of HH and "
+     "VV"},
+    {"radar.targets[].strongest[].rcs_hh_dbsm", "number", "dB over 1 m2", "", "when it returns nothing so", "its cross section"},
+    {"radar.targets[].strongest[].rcs_vv_dbsm", "number", "dB over 1 m2", "", "when it returns nothing so", "its cross section"},
+    {"radar.targets[].strongest[].body_m", "list of 3 numbers", "m", "body", "", "middle of its path's first and last mirror"},
+    {"radar.targets[].strongest[].bounces", "integer", "", "0: an edge", "", "mirrors on its path"},
+    {"radar.targets[].strongest[].visible", "boolean", "", "", "", "nothing else is in its way"},
+    {"radar.targets[].strongest[].part", "string", "", "", "of a given signature", "part of the model with the last mirror"},
     {"latency_ms", "object", "", "", "in a replay at full speed",
      "when each step of the frame was done; of a run and of replay --speed X"},
     {"latency_ms.arrival_to_pose", "number", "ms", "", "before the first datagram",

@@ -120,9 +120,17 @@ static const Setting keys[] = {
      "and detections are products"},
     {"radar.table", SETTING_PATH, AT(radar.table), 0, 0, NULL, "",
      "a .csv with the columns of etc/radars.csv, whose rows radar.preset names in place of those"},
-    {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of the ground; with a preset"},
+    {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of ground and plants; with a preset"},
+    {"radar.ground_bounce", SETTING_BOOL, AT(radar.ground_bounce), 0, 1, NULL, "",
+     "the ground near entities mirrors that radar's waves to them and back; with a preset"},
+    {"radar.chaff_dipoles", SETTING_DOUBLE, AT(radar.chaff_dipoles), 0, 1e10, NULL, "",
+     "dipoles in resonance with that radar in a cloud of chaff (type 8.*.*.1 or .3); 0: chaff is not seen"},
     {"radar.warp_mm", SETTING_DOUBLE, AT(radar.warp_mm), 0, 20, NULL, "mm",
      "unevenness of entities' surfaces for that radar, rms over 0.5 m: models are planer than sheet metal; 0: as they are"},
+    {"radar.given", SETTING_PATH, AT(radar.given), 0, 0, NULL, "",
+     "CSV file of signatures for that radar, measured or from another program, that stand in for models; empty: none"},
+    {"radar.library", SETTING_PATH, AT(radar.library), 0, 0, NULL, "",
+     "folder of targets' signatures for that radar (`pitviper rcs MODEL --library`), read and added to; it changes times, not bits"},
     {"exercise.port", SETTING_INT, AT(exercise.port), -1, 65535, NULL, "",
      "UDP port of the exercise; 0: any; -1: 3000, or any if nothing was sent to it"},
     {"exercise.exercise", SETTING_INT, AT(exercise.exercise), -2, 255, NULL, "",
@@ -220,6 +228,9 @@ static const Setting keys[] = {
      "atmosphere's"},
     {"weather.cloud", SETTING_DOUBLE, AT(weather.cloud), 0, 1, NULL, "",
      "mean share of the sky that clouds cover, which dim the sun and warm the sky"},
+    {"weather.rain_mmh", SETTING_DOUBLE, AT(weather.rain_mmh), 0, 300, NULL, "mm/h",
+     "rain: weakens and returns what radar.preset sends, and wets the ground; other bands do not see it: lower "
+     "weather.visibility_m for them"},
     {"heat.vehicle_step_s", SETTING_DOUBLE, AT(heat.vehicle_step_s), 1, 600, NULL, "s",
      "longest step of the heat of vehicles, people and buildings"},
     {"heat.step_s", SETTING_DOUBLE, AT(heat.step_s), 60, 3600, NULL, "s", "time grid of the ground's heat"},
@@ -364,7 +375,9 @@ Config config_default(void)
     c.radar.lobe_deg                = 3;
     strcpy(c.radar.preset, "none");
     c.radar.ground                  = true;
+    c.radar.ground_bounce           = true;
     c.radar.warp_mm                 = 1;
+    c.radar.chaff_dipoles           = 1e6; /* of 5.1 million fibres in a cartridge, cut for several bands */
     c.exercise.port                 = -1;
     c.exercise.exercise             = -1;
     c.exercise.listen_s             = 2;

@@ -53,7 +53,11 @@ typedef struct Config {
         char   preset[32];         /* a row of etc/radars.csv, or of `table`; none */
         char   table[1024];        /* radars in place of etc/radars.csv; empty: none */
         bool   ground;             /* of the preset: the ground scatters */
+        bool   ground_bounce;      /* likewise: the ground mirrors entities */
         double warp_mm;            /* likewise: unevenness of surfaces */
+        char   given[256];         /* likewise: list of signatures that are given; empty: none */
+        char   library[1024];      /* likewise: a folder of targets' signatures; empty: none */
+        double chaff_dipoles;      /* likewise: resonant ones in a cloud */
     } radar;
     struct {
         int    port, exercise;     /* exercise -1: the one with the most PDUs, -2: all */
@@ -99,7 +103,7 @@ typedef struct Config {
         char   atmosphere[1024];   /* a folder of etc/atmosphere; with a dot or a slash, any folder */
         char   day[1024];          /* clear, constant or a file */
         double visibility_m, air_temp_k, pressure_mbar, wind_mps, wind_from_deg; /* air_temp_k NaN: the atmosphere's */
-        double air_range_k, humidity_pct, cloud;
+        double air_range_k, humidity_pct, cloud, rain_mmh;
     } weather;
     struct {
         double step_s;             /* of the ground's state */

@@ -141,6 +141,7 @@ Status tables_used(TablesUsed *out, const Config *config, const char *catalog)
     }
     if (status == STATUS_OK && strcmp(config->radar.preset, "none") != 0 && etc_path(folder, sizeof folder, "radar"))
         status = add_csv_of(out, folder, "radar/");
+    if (status == STATUS_OK && *config->radar.given) status = add_in(out, "radar/", config->radar.given);
     snprintf(name, sizeof name, "atmosphere/%.100s", config->weather.atmosphere);
     if (status == STATUS_OK) status = add_folder(out, name);
     if (*config->radar.table && status == STATUS_OK) status = add_in(out, "radar/", config->radar.table);

@@ -37,6 +37,7 @@ Weather frame_weather(const Config *config, const World *world)
     base.wind_from_rad = config->weather.wind_from_deg * rad_per_deg;
     base.humidity      = 0.01 * config->weather.humidity_pct;
     base.cloud         = config->weather.cloud;
+    base.rain_mm_h     = config->weather.rain_mmh;
     return base;
 }
 

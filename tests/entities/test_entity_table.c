@@ -584,6 +584,27 @@ static void what_has_no_shape_is_not_in_the_scene(void **state)
     fixture_close(&f);
 }
 
+/* Clouds of chaff are beside the scene: of chaff alone, and of a cartridge that is a flare too. */
+static void chaff_is_beside_the_scene(void **state)
+{
+    (void)state;
+    static const DisEntityType chaff = {8, 2, 225, 1, 1, 0, 0}, both = {8, 2, 225, 3, 1, 0, 0}, flare = {8, 2, 225, 2, 1, 0, 0};
+    Fixture f = fixture_open(NULL);
+    DisEntityState cloud = report(12, chaff);
+    hear(&f, &cloud, 1);
+    cloud = report(11, both);
+    hear(&f, &cloud, 1.5);
+    cloud = report(10, flare);
+    hear(&f, &cloud, 1.5);
+    CHECK(seen_at(&f, 11, 3) && seen_at(&f, 10, 3) && !seen_at(&f, 12, 3));
+    CHECK(f.snapshot.count == 2 && f.snapshot.chaff_count == 2);
+    CHECK(f.snapshot.chaff[0].id.entity == 11 && f.snapshot.chaff[1].id.entity == 12);
+    CHECK_NEAR(f.snapshot.chaff[0].age_s, 1.5, 1e-12);
+    CHECK_NEAR(f.snapshot.chaff[1].age_s, 2, 1e-12);
+    for (int k = 0; k < 3; k++) CHECK_NEAR(f.snapshot.chaff[0].p_ecef[k], cloud.p_ecef[k], 1e-6);
+    fixture_close(&f);
+}
+
 /* ---- any PDU ------------------------------------------------------------------------------ */
 
 static void pdus_are_checked_and_counted(void **state)
@@ -735,6 +756,7 @@ int main(void)
         cmocka_unit_test(rotors_spin_and_freeze),
         cmocka_unit_test(articulation_and_drives_reach_the_snapshot),
         cmocka_unit_test(what_has_no_shape_is_not_in_the_scene),
+        cmocka_unit_test(chaff_is_beside_the_scene),
         cmocka_unit_test(landing_gear_needs_no_report),
         cmocka_unit_test(pdus_are_checked_and_counted),
         cmocka_unit_test(mutated_octets_do_no_harm),

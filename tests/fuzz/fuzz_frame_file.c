@@ -73,6 +73,10 @@ static void small_file(ByteSink *out, bool invented, bool planted)
     static const WoodsPath path[2] = {{{1, 2}, {3, 4}, 5, 0}, {{6, 7}, {6, 7}, 8, 3}};
     file.planted = planted;
     if (planted) file.woods = (WoodsConfig){.half_width_m = 500, .most_trees = 70, .path_count = 2, .path = path};
+    static double joint[64];
+    file.measured = planted;
+    if (planted) file.radar = (FrameRadar){.has_aim = true, .aim_m = 900, .number = 7, .joint_count = file.snapshot.node_count, .joint = joint};
+    if (file.snapshot.node_count > 64) abort();
     if (frame_file_pack(out, &file, NULL) != STATUS_OK) abort();
 }
 

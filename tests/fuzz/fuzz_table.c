@@ -11,7 +11,9 @@
 #include "render/heat/part_table.h"
 #include "render/materials/materials.h"
 #include "render/radar/gas_attenuation.h"
+#include "render/radar/given_signature.h"
 #include "render/radar/clutter_table.h"
+#include "render/radar/ground_table.h"
 #include "sensor/detector/sheet.h"
 #include "sensor/radar/radar_preset.h"
 
@@ -24,10 +26,17 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const char *const name[] = {"catalog.csv",  "heat.csv",     "effects.csv",
                                        "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet",
-                                       "radars.csv", "radar/oxygen_lines.csv", "radar/water_lines.csv", "radar/clutter.csv"};
+                                       "radars.csv", "radar/oxygen_lines.csv", "radar/water_lines.csv", "radar/clutter.csv",
+                                       "radar/ground.csv"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
-    switch (index % (names + 3)) {
+    switch (index % (names + 6)) {
+    case names + 5:
+        return fuzz_seed_text(out, "az_deg,el_deg,f_ghz,hh_dbsm,vv_dbsm\n0,0,35,1,2\n180,0,35,3,4\n300,0,35,-7,1e1\n");
+    case names + 4:
+        return fuzz_seed_text(out, "az_deg,el_deg,f_ghz,hh_re_m,hh_im_m,vv_re_m,vv_im_m\n0,0,35,1,2,0,1\n0,5,35,1,0,0,-1\n");
+    case names + 3:
+        return fuzz_seed_text(out, "x_m,y_m,z_m,hh_dbsm,vv_dbsm,az_deg,az_width_deg\n1,0,-1,10,5,0,90\n-1,0,-1,3,5,,\n");
     case names + 2:
         return fuzz_seed_text(out, "entity,model,unix_s,node_k\n1:1:7,tank,1782043200.5,290 300.5\n1:1:8,truck,5,1\n");
     case names + 1:
@@ -37,7 +46,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
     default:
         break;
     }
-    FILE *file = etc_path(path, sizeof path, name[index % (names + 3)]) ? fopen(path, "rb") : NULL;
+    FILE *file = etc_path(path, sizeof path, name[index % (names + 6)]) ? fopen(path, "rb") : NULL;
     if (!file) return 0;
     const size_t size = fread(out, 1, fuzz_seed_octets, file);
     fclose(file);
@@ -130,6 +139,21 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                 if (!(given_heat_k(given, index, t_s) >= 1 && given_heat_k(given, index, t_s) <= 4000)) abort();
             given_heat_close(given);
         }
+        GivenSignature *signature;
+        if ((table_column(&table, "f_ghz") >= 0 || table_column(&table, "x_m") >= 0) &&
+            given_signature_open(&signature, path) == STATUS_OK) {
+            Centres centres = {0};
+            for (int look = 0; look < 40; look++) {
+                ScatterAntenna antenna;
+                ScatterMatrix  s;
+                radar_look(&antenna, look * 0.7, 0.1 * (look % 31 - 15), look % 2 ? INFINITY : 2000);
+                given_signature_field(&s, signature, &antenna, 3.5e10);
+                if (!isfinite(creal(s.hh) + cimag(s.hh) + creal(s.hv) + creal(s.vh) + creal(s.vv) + cimag(s.vv))) abort();
+                if (given_signature_centres(&centres, signature, &antenna, 3.5e10) != STATUS_OK || centres.count < 0) abort();
+            }
+            centres_free(&centres);
+            given_signature_close(signature);
+        }
         if (table_column(&table, "line_ghz") >= 0) lines_of(path, table_column(&table, "coupling") >= 0);
         if (table_column(&table, "inside") >= 0) (void)part_table_roles(&parts, path);
         if (table_column(&table, "engine_kw") >= 0) (void)part_table_machines(&parts, path);
@@ -149,6 +173,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                     if (!(clutter_sigma0(row, 0.1, 0.003) >= 0 && clutter_foliage_db(row, 9) >= 0)) abort();
                     if (!(clutter_texture(row, -8) >= 0 && clutter_texture(row, 8) < 1e4)) abort();
                 }
+        static GroundTable ground;
+        if (table_column(&table, "heights") >= 0 && ground_table_open(&ground, path) == STATUS_OK)
+            for (int surface = 0; surface < SURFACE_COUNT; surface++) {
+                const GroundSurface of = ground_surface(&ground.row[surface], 35e9);
+                double complex      te, tm;
+                ground_reflection(&te, &tm, &of, 700, 0.2);
+                if (!(cabs(te) <= 1 + 1e-9 && cabs(tm) <= 1 + 1e-9)) abort();
+            }
         table_close(&table);
     }
     close(file);

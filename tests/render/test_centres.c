@@ -1,8 +1,9 @@
-/* Scattering centres against the hits and edges that they stand for: the field over a band, and from antennas that
- * have moved on. */
+/* Signatures and their centres against the hits and edges that they stand for: the field over a band, and from antennas
+ * elsewhere in the bin. */
 #include "tests/check.h"
 
 #include "render/radar/centres.h"
+#include "render/radar/field.h"
 
 enum { hits = 20000, frequencies = 33 };
 
@@ -13,7 +14,7 @@ static uint16_t       part[hits];
 static const double   centre_hz = 94e9, band_hz = 500e6;
 static ScatterAntenna antenna = {.u = {0.8, 0.36, 0.48}, .range_m = 3000};
 
-/* Paths of one or two mirrors between points of a box of 6 x 3 x 2 m. */
+/* Paths of one or two mirrors between points of a box of 1.2 x 0.6 x 0.3 m. */
 static TubeHits some_hits(void)
 {
     TubeHits h = {.tx = antenna, .rx = antenna, .frequency_hz = centre_hz, .count = hits, .path_m = path_m,
@@ -21,13 +22,13 @@ static TubeHits some_hits(void)
     for (int c = 0; c < 8; c++) h.amplitude[c] = amplitude[c];
     for (int x = 0; x < 3; x++) h.first[x] = first[x], h.last[x] = last[x];
     for (int i = 0; i < hits; i++) {
-        static const double size_m[3] = {6, 3, 2};
+        static const double size_m[3] = {1.2, 0.6, 0.3};
         double              a[3], b[3], way[3];
         bounce[i] = (uint8_t)(1 + i % 2);
         part[i] = (uint16_t)(i % 7);
         for (int x = 0; x < 3; x++) {
             first[x][i] = (float)(size_m[x] * (random_uniform(1, (uint32_t)x, 0, (uint64_t)i) - 0.5));
-            last[x][i] = bounce[i] == 1 ? first[x][i] : first[x][i] + (float)(0.4 * random_uniform(2, (uint32_t)x, 0, (uint64_t)i));
+            last[x][i] = bounce[i] == 1 ? first[x][i] : first[x][i] + (float)(0.1 * random_uniform(2, (uint32_t)x, 0, (uint64_t)i));
             a[x] = (double)first[x][i], b[x] = (double)last[x][i];
         }
         path_m[i] = scatter_path(way, &antenna, a) + scatter_path(way, &antenna, b) + (bounce[i] == 1 ? 0 : 0.3);
@@ -37,87 +38,106 @@ static TubeHits some_hits(void)
     return h;
 }
 
-/* Field of the centres at a wavenumber, from an antenna that the line of sight has turned to. */
-static double complex field_of(const Centres *centres, double k, const ScatterAntenna *now)
+static const double turn_rad = 0.3 * rad_per_deg;
+
+static SignatureCells cells_of(double phase_rad)
 {
-    double complex sum = 0;
-    for (int i = 0; i < centres->count; i++) {
-        const ScatterCentre *c = &centres->centre[i];
-        double               way[3];
-        const double         moved = 2 * (scatter_path(way, now, c->p) - scatter_path(way, &antenna, c->p));
-        sum += c->s.vv * cexp(-I * k * (c->path_m + moved));
-    }
-    return sum;
+    SignatureCells cells = signature_default_cells(centre_hz, band_hz, turn_rad, 0);
+    cells.path_phase_rad = cells.across_phase_rad = phase_rad;
+    return cells;
 }
 
-/* Errors are those of random phases: rms over the band, over the rms of the field. */
-static void error_at(double phase_rad, double *of_band, double *of_turn, int *count)
+/* An antenna at the edge of the bin, by two angles of half a bin, and nearer or farther by the most that a bin spans. */
+static ScatterAntenna moved(int az, int el, double range)
+{
+    ScatterAntenna now = antenna;
+    double         h[3], v[3];
+    scatter_basis(h, v, antenna.u);
+    v3_add_scaled(now.u, now.u, 0.5 * turn_rad * az, h);
+    v3_add_scaled(now.u, now.u, 0.5 * turn_rad * el, v);
+    v3_scale(now.u, 1 / v3_length(now.u), now.u);
+    now.range_m *= range;
+    return now;
+}
+
+static void add(double *error, double *power, const ScatterMatrix *got, const ScatterMatrix *want)
+{
+    const double complex g[4] = {got->hh, got->hv, got->vh, got->vv}, w[4] = {want->hh, want->hv, want->vh, want->vv};
+    for (int p = 0; p < 4; p++) *error += pow(cabs(g[p] - w[p]), 2), *power += pow(cabs(w[p]), 2);
+}
+
+/* Errors are those of random phases: rms over band or bin, over the rms of the field. */
+static void error_at(double phase_rad, double *of_band, double *of_bin, int *count)
 {
     static ScatterMatrix want[frequencies];
-    const double         turn_rad = 2e-4, step_hz = band_hz / (frequencies - 1);
+    const double         step_hz = band_hz / (frequencies - 1);
     const TubeHits       h = some_hits();
+    const SignatureCells cells = cells_of(phase_rad);
+    Signature            signature = {0};
     Centres              centres = {0};
-    CHECK(centres_make(&centres, &(TotalField){.hits = h}, NULL, NULL,
-                       &(CentresConfig){.frequency_hz = centre_hz, .bandwidth_hz = band_hz, .turn_rad = turn_rad,
-                                        .phase_rad = phase_rad}) == STATUS_OK);
+    ScatterMatrix        got;
+    CHECK(signature_make(&signature, &(TotalField){.hits = h}, NULL, &cells) == STATUS_OK);
+    CHECK(signature_is_sound(&signature, 7) && !signature_is_sound(&signature, 3));
     double error = 0, power = 0;
     CHECK(field_sweep(want, frequencies, centre_hz - 0.5 * band_hz, step_hz, &h, NULL, NULL, NULL) == STATUS_OK);
+    CHECK(centres_make(&centres, &signature, &antenna, &antenna) == STATUS_OK);
     for (int f = 0; f < frequencies; f++) {
-        const double k = 2 * pi_rad * (centre_hz - 0.5 * band_hz + f * step_hz) / light_mps;
-        const double complex got = field_of(&centres, k, &antenna);
-        error += pow(cabs(got - want[f].vv), 2);
-        power += pow(cabs(want[f].vv), 2);
+        centres_field(&got, &centres, centre_hz - 0.5 * band_hz + f * step_hz);
+        add(&error, &power, &got, &want[f]);
     }
     *of_band = sqrt(error / power);
     error = power = 0;
-    for (int t = -8; t <= 8; t++) { /* the line of sight, half of the turn either way */
-        ScatterAntenna now = antenna;
-        ScatterMatrix  moved;
-        now.u[0] -= now.u[1] * turn_rad / 2 * t / 8;
-        now.u[1] += antenna.u[0] * turn_rad / 2 * t / 8;
-        v3_scale(now.u, 1 / v3_length(now.u), now.u);
-        CHECK(field_sweep(&moved, 1, centre_hz, 0, &h, &now, &now, NULL) == STATUS_OK);
-        error += pow(cabs(field_of(&centres, 2 * pi_rad * centre_hz / light_mps, &now) - moved.vv), 2);
-        power += pow(cabs(moved.vv), 2);
+    for (int i = 0; i < 18; i++) {
+        const ScatterAntenna now = moved(i % 3 - 1, i / 3 % 3 - 1, i < 9 ? 1.09 : 0.917);
+        ScatterMatrix        exact;
+        CHECK(field_sweep(&exact, 1, centre_hz, 0, &h, &now, &now, NULL) == STATUS_OK);
+        CHECK(centres_make(&centres, &signature, &now, &now) == STATUS_OK);
+        centres_field(&got, &centres, centre_hz);
+        add(&error, &power, &got, &exact);
     }
-    *of_turn = sqrt(error / power);
+    *of_bin = sqrt(error / power);
     *count = centres.count;
     centres_free(&centres);
+    signature_free(&signature);
 }
 
+/* Of paths that fill their cells evenly, with random phases. Over the band the mean path and no more is kept: the error
+ * is of first order, phase / 3, rms over cell and band. Across, first moments are kept and half the square of the
+ * phase is the error: rms 0.516 phase^2 at the corners of the bin, 0.224 in the middle of its sides, 0.375 phase^2 over
+ * both and the middle. A band of 4 or 5 resolution cells of this box, in 4 polarisations, is some 16 draws, whose rms is
+ * within 1.4 in 95 of 100 cases; the bin's are more. */
 static void centres_have_the_field_of_their_hits(void **state)
 {
     (void)state;
-    double of_band[3], of_turn[3];
-    for (int i = 0; i < 3; i++) {
-        static const double phase_rad[3] = {0.025, 0.1, 0.4};
+    double of_band[4], of_bin[4];
+    for (int i = 0; i < 4; i++) {
+        static const double phase_rad[4] = {0.1, 0.3, 0.6, 0.9};
         int                 count;
-        error_at(phase_rad[i], &of_band[i], &of_turn[i], &count);
-        printf("cells of %.3f rad: %d centres of %d hits: %.4f over the band, %.4f over the turn\n", phase_rad[i], count, hits,
-               of_band[i], of_turn[i]);
-        /* even over a cell: phase / 3^0.5 at an end of the band, 3^0.5 less over all of it */
-        CHECK(of_band[i] < 0.5 * phase_rad[i] && of_turn[i] < 0.5 * phase_rad[i] + 0.01);
+        error_at(phase_rad[i], &of_band[i], &of_bin[i], &count);
+        printf("cells of %.1f rad: %d centres of %d hits: %.4f over the band, %.4f at the edge of the bin\n", phase_rad[i], count,
+               hits, of_band[i], of_bin[i]);
+        CHECK(of_band[i] < 1.4 * phase_rad[i] / 3 && of_bin[i] < 1.2 * 0.375 * phase_rad[i] * phase_rad[i]);
     }
-    CHECK(of_band[0] < 0.1 * of_band[2]); /* it falls with the cells */
+    CHECK(of_bin[2] > 3 * of_bin[1] && of_bin[2] < 5 * of_bin[1]); /* of second order: four times */
 }
 
-/* At the centre of band and interval nothing is lost but rounding, however large the cells. */
+/* In the middle of band and bin nothing is lost but the rounding of 16 bits, however large the cells. */
 static void middle_is_exact(void **state)
 {
     (void)state;
-    const TubeHits h = some_hits();
-    Centres        centres = {0};
-    ScatterMatrix  want;
-    double complex got = 0;
-    CHECK(centres_make(&centres, &(TotalField){.hits = h}, NULL, NULL,
-                       &(CentresConfig){.frequency_hz = centre_hz, .bandwidth_hz = 1e6, .turn_rad = 1e-6, .phase_rad = 0.5}) ==
-          STATUS_OK);
+    const TubeHits       h = some_hits();
+    const SignatureCells cells = signature_default_cells(centre_hz, 1e6, 1e-5, 0);
+    Signature            signature = {0};
+    Centres              centres = {0};
+    ScatterMatrix        want, got;
+    CHECK(signature_make(&signature, &(TotalField){.hits = h}, NULL, &cells) == STATUS_OK);
+    CHECK(centres_make(&centres, &signature, &antenna, &antenna) == STATUS_OK);
     CHECK(field_at(&want, centre_hz, &h, NULL) == STATUS_OK);
-    for (int i = 0; i < centres.count; i++)
-        got += centres.centre[i].s.hh * cexp(-I * 2 * pi_rad * centre_hz / light_mps * centres.centre[i].path_m);
+    centres_field(&got, &centres, centre_hz);
     CHECK(centres.count < hits / 100);
-    CHECK(cabs(got - want.hh) < 1e-9 * cabs(want.hh));
+    CHECK(cabs(got.hh - want.hh) < 1e-4 * cabs(want.hh));
     centres_free(&centres);
+    signature_free(&signature);
 }
 
 /* Edges among the hits, of one antenna and of one that has moved: as total_field_sweep adds them. */
@@ -129,8 +149,9 @@ static void edges_are_centres_too(void **state)
     const ScatterAntenna now = {.u = {0.8, 0.3601, 0.479925}, .range_m = 2990};
     TotalField           field = {.hits = some_hits(), .edges = {.count = edges, .segment = segment}};
     ScatterMatrix        want;
+    Signature            signature = {0};
     Centres              centres = {0};
-    double complex       got = 0;
+    ScatterMatrix        got;
     field.hits.count = 1000;
     for (int i = 0; i < edges; i++) {
         EdgeSegment *e = &segment[i];
@@ -145,17 +166,17 @@ static void edges_are_centres_too(void **state)
         for (int c = 0; c < 4; c++) e->amplitude[c / 2][c % 2] = 0.01 * random_normal(6, (uint32_t)c, 0, (uint64_t)i);
     }
     CHECK(total_field_sweep(&want, 1, centre_hz, 0, &field, &now, &now, NULL) == STATUS_OK);
-    CHECK(centres_make(&centres, &field, &now, &now,
-                       &(CentresConfig){.frequency_hz = centre_hz, .bandwidth_hz = band_hz, .turn_rad = 1e-4, .phase_rad = 0.1}) ==
-          STATUS_OK);
+    const SignatureCells cells = cells_of(0.05);
+    CHECK(signature_make(&signature, &field, NULL, &cells) == STATUS_OK);
+    CHECK(centres_make(&centres, &signature, &now, &now) == STATUS_OK);
+    centres_field(&got, &centres, centre_hz);
     int of_edges = 0;
-    for (int i = 0; i < centres.count; i++) {
-        got += centres.centre[i].s.hv * cexp(-I * 2 * pi_rad * centre_hz / light_mps * centres.centre[i].path_m);
-        of_edges += centres.centre[i].bounce == 0 && centres.centre[i].part == 3;
-    }
-    CHECK(cabs(want.hv) > 1e-3 && cabs(got - want.hv) < 1e-6 * cabs(want.hv));
+    for (int i = 0; i < centres.count; i++) of_edges += centres.centre[i].bounce == 0 && centres.centre[i].part == 3;
+    printf("edges among hits, an antenna moved on: %.5f\n", cabs(got.hv - want.hv) / cabs(want.hv));
+    CHECK(cabs(want.hv) > 1e-3 && cabs(got.hv - want.hv) < 1e-3 * cabs(want.hv));
     CHECK(of_edges > edges / 2);
     centres_free(&centres);
+    signature_free(&signature);
 }
 
 int main(void)

@@ -184,6 +184,77 @@ static void what_has_no_room_is_counted_the_smallest_first(void **state)
         }
 }
 
+/* ---- a radar ---- */
+
+enum { most_detections = 300 };
+static Detection         detection[most_detections];
+static const RadarPreset preset = {.name = "paper", .wave = {.centre_hz = 35e9, .bandwidth_hz = 150e6, .samples = 256, .pulses = 64}};
+
+static RadarFrame radar_of(int detections, int in_all)
+{
+    for (int i = 0; i < detections; i++)
+        detection[i] = (Detection){.range_m = 3000.25 + i, .range_rate_mps = -7.5, .cos_right = 0.5, .cos_down = -0.0625,
+                                   .snr = 1000, .rcs_m2 = 0.01};
+    return (RadarFrame){.preset = &preset, .reference_m = 3001.125, .reference_rate_mps = -200,
+                        .map = {.rows = 64, .columns = 256, .metre_per_column = 1, .mps_per_row = 0.5},
+                        .detections = detections, .detections_in_all = in_all, .detection = detection};
+}
+
+static void detections_are_where_the_description_says(void **state)
+{
+    (void)state;
+    FrameRecord      r = frame_of(0, 0);
+    const RadarFrame radar = radar_of(3, 3);
+    uint8_t          pdu[dis_smallest_mtu];
+    uint32_t         bits;
+    r.radar = &radar;
+    CHECK(dis_record_radar_count(&r) == 1);
+    const size_t n = dis_record_radar(pdu, &sender, &r, 0);
+    CHECK(n > 0 && big(pdu + 8, 2) == n && pdu[2] == 20 && big(pdu + 32, 4) == 5 && big(pdu + 36, 4) == 4 + 1 + 3);
+    CHECK(fixed(pdu, 600001) == 123456 && fixed(pdu, 600003) == 4);
+    CHECK(fixed(pdu, 600012) == 3 && fixed(pdu, 600013) == 0 && fixed(pdu, 600014) == 1);
+    CHECK_NEAR(f64(variable(&bits, pdu, n, 600101, 0)), 1392.4, 0);
+    CHECK(f64(variable(&bits, pdu, n, 600102, 0)) == 6378137.25);
+    CHECK(variable(&bits, pdu, n, 600103, 0) && bits == 192);
+    CHECK(big(variable(&bits, pdu, n, 600104, 0), 8) == 0x0007000800090000);
+    const uint8_t *of = variable(&bits, pdu, n, 600401, 0);
+    CHECK(bits == 256 && f64(of) == 35e9 && f64(of + 8) == 3001.125 && f32(of + 16) == 150e6 && f32(of + 20) == -200);
+    CHECK(f32(of + 24) == 256 && f32(of + 28) == 32);
+    const uint8_t *d = variable(&bits, pdu, n, 600402, 2);
+    CHECK(bits == 192 && f32(d) == 3002.25 && f32(d + 4) == -7.5);
+    CHECK_NEAR(f32(d + 8), 0.52359877559829887, 3e-8);  /* 30 degrees to the right */
+    CHECK_NEAR(f32(d + 12), 0.06254076, 1e-8);          /* asin(1/16), up */
+    CHECK_NEAR(f32(d + 16), 30, 0);
+    CHECK_NEAR(f32(d + 20), -20, 0);
+}
+
+/* Every number of detections: in order over the frame's PDUs, none twice, the rest counted. */
+static void many_detections_take_several(void **state)
+{
+    (void)state;
+    FrameRecord r = frame_of(0, 0);
+    uint8_t     pdu[dis_smallest_mtu];
+    uint32_t    bits;
+    for (int all = 0; all <= most_detections; all++) {
+        const int        kept = all < 256 ? all : 256, sent = all < 128 ? all : 128;
+        const RadarFrame radar = radar_of(kept, all);
+        int              next = 0;
+        r.radar = &radar;
+        const int count = dis_record_radar_count(&r);
+        CHECK(count == (sent + 31) / 32 || (sent == 0 && count == 1));
+        for (int k = 0; k < count; k++) {
+            const size_t n = dis_record_radar(pdu, &sender, &r, k);
+            DisPdu       back;
+            CHECK(n > 0 && n <= 1400 && dis_decode(&back, pdu, n) == STATUS_OK && back.type == dis_pdu_data);
+            CHECK(fixed(pdu, 600014) == ((uint32_t)k << 16 | (uint32_t)count) && fixed(pdu, 600013) == (uint32_t)(all - sent));
+            for (uint32_t i = 0; i < fixed(pdu, 600012); i++)
+                CHECK(f32(variable(&bits, pdu, n, 600402, (int)i)) == (double)(float)(3000.25 + next++));
+            CHECK(!variable(&bits, pdu, n, 600402, (int)fixed(pdu, 600012)));
+        }
+        CHECK(next == sent);
+    }
+}
+
 /* ---- a consumer ---- */
 
 enum { most_sent = 64 };
@@ -227,6 +298,30 @@ static Sent *send_frames(Config *config, const double *time_s, int count, Status
     }
     CHECK(consumer->close(consumer) == STATUS_OK);
     return sent;
+}
+
+/* Behind the frame's bands, whichever kind those are of. */
+static void a_consumer_sends_detections(void **state)
+{
+    (void)state;
+    const RadarFrame radar = radar_of(40, 41);
+    Config           config = config_default();
+    for (int truth = 0; truth <= 1; truth++) {
+        Sent        *sent = calloc(1, sizeof *sent);
+        Consumer    *consumer;
+        Frame        frame = {.record = frame_of(3, 0)};
+        strcpy(config.publish.dis, truth ? "truth" : "sensor");
+        const DisOf of = {.config = &config, .bands = 1u << BAND_LWIR, .version = 7, .exercise = 33, .send = take, .user = sent,
+                          .arrival_s = half_a_minute_later, .clock = &sun};
+        CHECK(sent && consume_dis(&consumer, &of) == STATUS_OK);
+        frame.record.radar = &radar;
+        CHECK(consumer->put(consumer, &frame) == STATUS_OK && consumer->close(consumer) == STATUS_OK);
+        CHECK(sent->count == 3);
+        CHECK(fixed(sent->pdu[0], 600003) == (truth ? 2u : 1u));
+        CHECK(fixed(sent->pdu[1], 600003) == 4 && fixed(sent->pdu[1], 600012) == 32);
+        CHECK(fixed(sent->pdu[2], 600003) == 4 && fixed(sent->pdu[2], 600012) == 8 && fixed(sent->pdu[2], 600013) == 1);
+        free(sent);
+    }
 }
 
 static void a_consumer_sends_each_frame_and_band(void **state)
@@ -309,6 +404,9 @@ int main(void)
         cmocka_unit_test(a_seeker_tells_no_names),
         cmocka_unit_test(truth_tells_all),
         cmocka_unit_test(what_has_no_room_is_counted_the_smallest_first),
+        cmocka_unit_test(detections_are_where_the_description_says),
+        cmocka_unit_test(many_detections_take_several),
+        cmocka_unit_test(a_consumer_sends_detections),
         cmocka_unit_test(a_consumer_sends_each_frame_and_band),
         cmocka_unit_test(streams_are_announced),
     };

@@ -6,11 +6,11 @@
 static const double light_mps = 299792458.0;
 static double       uniform(int i) { return random_uniform(3, 0, 0, (uint64_t)i); }
 
-enum { samples = 128, pulses = 20, echoes = 300, all = interval_channels * pulses * samples };
+enum { samples = 128, pulses = 20, echoes = 300, all = interval_channels * pulses * samples, most_pulses = 97 };
 
 static const Waveform wave = {
     .centre_hz = 94e9, .bandwidth_hz = 128 * 4e6, .pulse_s = 1e-5, .repeat_hz = 2e4, .samples = samples, .pulses = pulses};
-static double complex got[all], want[all];
+static double complex got[interval_channels * most_pulses * samples], want[interval_channels * most_pulses * samples];
 
 /* What they stand for, from the times and frequencies of waveform.h's first lines. */
 static void add_by_hand(const Waveform *w, const Echo *e, double unfollowed_m)
@@ -21,19 +21,19 @@ static void add_by_hand(const Waveform *w, const Echo *e, double unfollowed_m)
     const bool   plain = w->kind == WAVEFORM_PULSE_DOPPLER || w->kind == WAVEFORM_STEPPED;
     const double left = plain && turn != 0 ? sin(turn) / turn : 1;
     for (int c = 0; c < interval_channels; c++)
-        for (int p = 0; p < pulses; p++)
+        for (int p = 0; p < w->pulses; p++)
             for (int m = 0; m < samples; m++) {
-                const double t_s = (p - 0.5 * (pulses - 1)) * row_s + (m - samples / 2) * step_s;
+                const double t_s = (p - 0.5 * (w->pulses - 1)) * row_s + (m - samples / 2) * step_s;
                 const double path_m = e->path_m + (e->path_per_pulse_m + unfollowed_m) * t_s / row_s;
-                want[(c * pulses + p) * samples + m] +=
+                want[(c * w->pulses + p) * samples + m] +=
                     left * e->amplitude[c] * cexp(-I * 2 * pi_rad / light_mps * (w->centre_hz + (m - samples / 2) * step_hz) * path_m);
             }
 }
 
-static double worst(void)
+static double worst(int rows)
 {
     double most = 0;
-    for (int i = 0; i < all; i++) most = fmax(most, cabs(got[i] - want[i]));
+    for (int i = 0; i < interval_channels * rows * samples; i++) most = fmax(most, cabs(got[i] - want[i]));
     return most;
 }
 
@@ -59,7 +59,7 @@ static void samples_are_the_sum(void **state)
         echo_add(grid, echo, again == 1 ? 100 : echoes, again == 2 ? pool : NULL);
         if (again == 1) echo_add(grid, echo + 100, echoes - 100, pool);
         echo_sum(got, grid);
-        CHECK(worst() < 1e-6 * total);
+        CHECK(worst(pulses) < 1e-6 * total);
         if (again == 0) memcpy(first, got, sizeof first);
         CHECK(memcmp(first, got, sizeof first) == 0);
     }
@@ -95,7 +95,7 @@ static void moving_echoes_are_at_their_times(void **state)
             echo_add(grid, &echo, 1, NULL);
             echo_sum(got, grid);
             CHECK(echo_status(grid) == STATUS_OK);
-            edge = fmax(edge, worst());
+            edge = fmax(edge, worst(pulses));
             for (int p = 0; p < pulses; p++)
                 middle = fmax(middle, cabs(got[p * samples + samples / 2] - want[p * samples + samples / 2]));
         }
@@ -129,6 +129,97 @@ static void fast_echoes_have_the_same_bits(void **state)
     pool_destroy(pool);
 }
 
+/* From standing echoes to some that need another term each, and on to those that go row by row: all are right, and of
+ * either side the same bits for any pool and any division into calls. Even numbers of rows and odd ones. */
+static void slow_and_fast_echoes_are_alike(void **state)
+{
+    (void)state;
+    enum { rates = 14, many = 2 * rates };
+    static double complex first[interval_channels * most_pulses * samples];
+    static const struct {
+        WaveformKind kind;
+        int          rows, terms_most;
+        double       pulse_s, repeat_hz;
+    } of[] = {{WAVEFORM_LFM, 96, 6, 2e-5, 2e4},          {WAVEFORM_LFM, 97, 6, 2e-5, 2e4}, {WAVEFORM_FMCW, 64, 4, 1e-4, 8e3},
+              {WAVEFORM_STEPPED, 32, 2, 2.5e-7, 781.25}, {WAVEFORM_PULSE_DOPPLER, 64, 4, 1e-6, 4e6}};
+    Pool *pool;
+    CHECK(pool_create(&pool, 3) == STATUS_OK);
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+        Waveform  w = wave;
+        EchoGrid *grid;
+        Echo      echo[many];
+        int       terms = 1;
+        double    edge = 0, middle = 0, even = 0;
+        w.kind = of[k].kind, w.pulses = of[k].rows, w.pulse_s = of[k].pulse_s, w.repeat_hz = of[k].repeat_hz;
+        CHECK(echo_grid_create(&grid, &w) == STATUS_OK);
+        /* radians at the band's ends and the interval's that the delay moves by: 0, then 1e-3 .. 4 */
+        for (int i = 0; i < many; i++) {
+            const double by = i / 2 ? 1e-3 * pow(4000, (i / 2 - 1) / (rates - 2.0)) : 0;
+            echo[i] = (Echo){.path_m = 20 * (uniform(i) - 0.5), .amplitude = {1, 0, I, 0}};
+            echo[i].path_per_pulse_m = (i % 2 ? -1 : 1) * by * light_mps / (pi_rad * w.bandwidth_hz * 0.5 * w.pulses);
+            memset(want, 0, sizeof want);
+            add_by_hand(&w, &echo[i], 0);
+            echo_add(grid, &echo[i], 1, NULL);
+            echo_sum(got, grid);
+            const int used = echo_terms(grid, echo[i].path_per_pulse_m);
+            CHECK(used == 0 || (used >= terms && used <= of[k].terms_most)); /* 0 once, 0 ever after */
+            terms = used ? used : 1000;
+            if (used == 1 && by == 0) CHECK(worst(w.pulses) < 1e-6);
+            edge = fmax(edge, worst(w.pulses));
+            if (used) even = fmax(even, worst(w.pulses));
+            for (int p = 0; p < w.pulses; p++)
+                middle = fmax(middle, cabs(got[p * samples + samples / 2] - want[p * samples + samples / 2]));
+        }
+        CHECK(terms == 1000 && echo_terms(grid, 0) == 1);
+        CHECK(echo_terms(grid, echo[many - 1].path_per_pulse_m) == 0);
+        printf("%s, %d rows: %.1e, over delay and Doppler %.1e; %.1e in the middle of the band\n", waveform_name[w.kind], w.pulses,
+               edge, even, middle);
+        CHECK(edge < 3e-3 && middle < 1e-4);
+        CHECK(even > 1e-4); /* some needed their terms */
+        for (int again = 0; again < 3; again++) {
+            echo_add(grid, echo, again == 1 ? 9 : many, again == 2 ? pool : NULL);
+            if (again == 1) echo_add(grid, echo + 9, many - 9, pool);
+            echo_sum(got, grid);
+            if (again == 0) memcpy(first, got, sizeof first);
+            CHECK(memcmp(first, got, (size_t)interval_channels * (size_t)w.pulses * samples * sizeof *got) == 0);
+        }
+        echo_grid_destroy(grid);
+    }
+    pool_destroy(pool);
+}
+
+/* An LFM echo that crosses the fold within the interval: samples are alike whole repetitions of path apart, but for the
+ * phase of the carrier, row by row. */
+static void an_echo_folds_over_within_the_interval(void **state)
+{
+    (void)state;
+    Waveform     w = wave;
+    EchoGrid    *grid;
+    const double repeat_m = light_mps / wave.repeat_hz, growth_m = 1e-4;
+    w.pulses = 32;
+    CHECK(echo_grid_create(&grid, &w) == STATUS_OK && echo_terms(grid, growth_m) > 0);
+    const double coupled_m = w.centre_hz / w.bandwidth_hz * w.pulse_s * w.repeat_hz * growth_m;
+    for (int side = 0; side < 2; side++) {
+        const double at_m = (side ? 0.5 : 0.25) * repeat_m - coupled_m; /* across the fold; and well within */
+        const Echo   echo = {at_m, growth_m, {1, 0, 0, 0}};
+        echo_add(grid, &echo, 1, NULL);
+        echo_sum(got, grid);
+        /* by hand: each row with the delay that is folded over for it */
+        double most = 0;
+        for (int p = 0; p < w.pulses; p++)
+            for (int m = 0; m < samples; m++) {
+                const double path_m = at_m + (p - 15.5) * growth_m, step_hz = w.bandwidth_hz / samples, off = m - samples / 2;
+                const double folded_m = path_m + coupled_m, back_m = repeat_m * nearbyint(folded_m / repeat_m);
+                const double within_m = growth_m * w.repeat_hz * w.pulse_s / samples * off;
+                const double turns = (w.centre_hz * (path_m + within_m) + off * step_hz * (path_m + within_m - back_m)) / light_mps;
+                most = fmax(most, cabs(got[p * samples + m] - cexp(-I * 2 * pi_rad * turns)));
+            }
+        printf("%s: %.1e\n", side ? "across the fold" : "within", most);
+        CHECK(most < 3e-3);
+    }
+    echo_grid_destroy(grid);
+}
+
 static void sizes_are_checked(void **state)
 {
     (void)state;
@@ -150,6 +241,8 @@ int main(void)
         cmocka_unit_test(samples_are_the_sum),
         cmocka_unit_test(moving_echoes_are_at_their_times),
         cmocka_unit_test(fast_echoes_have_the_same_bits),
+        cmocka_unit_test(slow_and_fast_echoes_are_alike),
+        cmocka_unit_test(an_echo_folds_over_within_the_interval),
         cmocka_unit_test(sizes_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
 /* The radar of a seeker over ground: its power against an integral over the ground that the test makes itself, its
- * place in Doppler, and the same bits whatever made them. */
+ * place in Doppler, and the same bits whatever made them. labels: slow */
 #include "tests/check.h"
 
 #include "sensor/radar/seeker_radar.h"
@@ -72,13 +72,15 @@ static RadarScene scene_of(const double v_enu_mps[3], uint32_t number, const Wea
     return scene;
 }
 
-static SeekerRadar *open_radar(uint64_t seed)
+static SeekerRadar *open_windy_radar(uint64_t seed, double wind_mps)
 {
     SeekerRadar *radar;
     CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = preset, .table = own_table, .catalog = stage.catalog_path, .isa = "avx2",
-                                                           .ground = true, .wind_mps = 0, .seed = seed}) == STATUS_OK);
+                                                           .ground = true, .wind_mps = wind_mps, .seed = seed}) == STATUS_OK);
     return radar;
 }
+
+static SeekerRadar *open_radar(uint64_t seed) { return open_windy_radar(seed, 0); }
 
 /* Share of a pulse of pulse_doppler_ku, 1 us every 10, that arrives past the transmitter's own. */
 static double heard(double range_m)
@@ -87,9 +89,17 @@ static double heard(double range_m)
     return at_m < pulse_m ? at_m / pulse_m : at_m > repeat_m - pulse_m ? (repeat_m - at_m) / pulse_m : 1;
 }
 
+/* Billingsley's law: still + (1 - still) / (1 + (4 pi lag / (beta lambda))^2). */
+static double kept(const ClutterRow *row, const RadarPreset *p, double lag_s, double wind_mps)
+{
+    const ClutterMotion motion = clutter_motion(row, p->wave.centre_hz, wind_mps);
+    return motion.still + (1 - motion.still) / (1 + pow(4 * pi_rad * lag_s * motion.spread_mps / p->antenna.wavelength_m, 2));
+}
+
 /* Sum over ground of the power that each square metre returns: classes, heights and the dish's pattern asked for
- * anew, places and integral the test's own. *far_w: what is beyond the window. */
-static double power_by_integral(double *far_w, const RadarFrame *frame)
+ * anew, places and integral the test's own. Of its fields a share is the same lag_s later, in wind. *far_w: what is
+ * beyond the window. */
+static double power_by_integral(double *far_w, const RadarFrame *frame, double lag_s, double wind_mps)
 {
     static ClutterTable table;
     const RadarPreset  *p = frame->preset;
@@ -117,7 +127,8 @@ static double power_by_integral(double *far_w, const RadarFrame *frame)
             const double sigma0 = clutter_sigma0(&table.row[surface][wide ? CLUTTER_KU : CLUTTER_KA], grazing, p->antenna.wavelength_m);
             const RadarLink link = {p->power_w, gain * gain, gain * gain, p->antenna.wavelength_m, range_m, p->loss};
             const double    share = folds ? heard(range_m) : 1, air_db = frame->air_db * range_m / frame->reference_m;
-            const double    w = share * share * radar_received_w(&link, sigma0 * step_m * step_m / n[2]) * pow(10, -0.2 * air_db);
+            const double    w = share * share * radar_received_w(&link, sigma0 * step_m * step_m / n[2]) * pow(10, -0.2 * air_db) *
+                             kept(&table.row[surface][wide ? CLUTTER_KU : CLUTTER_KA], p, lag_s, wind_mps);
             sum_w += w;
             if (fabs(range_m - reference_m) > window_m) *far_w += w;
         }
@@ -143,7 +154,7 @@ static double ground_over_integral_db(int *cells, double *far_share, int seeds)
         CHECK(window_figures(&figures, weight, samples) == STATUS_OK);
         const double noise_w = frame->receiver.noise_w * figures.noise_bins / samples;
         for (int i = 0; i < samples; i++) got_w += (frame->profile_w[i] - noise_w) / figures.noise_bins;
-        if (seed == 1) want_w = power_by_integral(&far_w, frame); /* the same for all */
+        if (seed == 1) want_w = power_by_integral(&far_w, frame, 0, 0); /* the same for all */
         *cells += frame->ground_cells / seeds;
         CHECK(frame->ground_hidden < 0.02 * frame->ground_cells); /* flat ground hides next to nothing */
         seeker_radar_destroy(radar);
@@ -246,6 +257,46 @@ static void a_rate_not_followed_is_on_the_map(void **state)
     seeker_radar_destroy(radar);
 }
 
+/* Between two frames leaves move: the maps' correlation is the law's, weighted by the power of each class of ground. */
+static void wind_decorrelates_the_ground(void **state)
+{
+    (void)state;
+    enum { lags = 3, seeds = 4 };
+    static const double lag_s[lags] = {0.001, 0.004, 1};
+    const double  v[3] = {0, 0, 0}, wind_mps = 5;
+    const Weather weather = weather_default();
+    double        along[lags] = {0}, power = 0, want[lags], far_w;
+    for (uint64_t seed = 1; seed <= seeds; seed++) {
+        SeekerRadar *radar = open_windy_radar(seed, wind_mps), *calm = open_radar(seed);
+        RadarScene   scene = scene_of(v, (uint32_t)seed, &weather);
+        const RadarFrame *first, *later;
+        arena_reset(stage.arena);
+        CHECK(seeker_radar_measure(&first, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
+        const size_t cells = (size_t)first->map.rows * (size_t)first->map.columns;
+        for (size_t i = 0; i < cells; i++) power += creal(first->map.cell[i] * conj(first->map.cell[i]));
+        for (int l = 0; l < lags; l++) {
+            scene.t_s = lag_s[l];
+            CHECK(seeker_radar_measure(&later, radar, &scene, stage.pool, stage.arena) == STATUS_OK);
+            for (size_t i = 0; i < cells; i++) along[l] += creal(later->map.cell[i] * conj(first->map.cell[i]));
+            want[l] = power_by_integral(&far_w, first, lag_s[l], wind_mps) / power_by_integral(&far_w, first, 0, 0);
+        }
+        /* in a calm nothing moves */
+        scene.t_s = 0;
+        CHECK(seeker_radar_measure(&first, calm, &scene, stage.pool, stage.arena) == STATUS_OK);
+        scene.t_s = 1;
+        CHECK(seeker_radar_measure(&later, calm, &scene, stage.pool, stage.arena) == STATUS_OK);
+        CHECK(memcmp(first->map.cell, later->map.cell, cells * sizeof *first->map.cell) == 0);
+        seeker_radar_destroy(radar);
+        seeker_radar_destroy(calm);
+    }
+    for (int l = 0; l < lags; l++) {
+        print_message("ground in wind of %.0f m/s, %g s later: correlation %.3f, by the law %.3f\n", wind_mps, lag_s[l], along[l] / power, want[l]);
+        /* 4 standard errors of some 1000 independent cells */
+        CHECK_NEAR(along[l] / power, want[l], 0.13);
+    }
+    CHECK(want[0] - want[1] > 0.13 && want[1] - want[2] > 0.13); /* three that differ */
+}
+
 static void the_same_bits(void **state)
 {
     (void)state;
@@ -276,6 +327,7 @@ int main(void)
         cmocka_unit_test(ground_folds_over),
         cmocka_unit_test(ground_is_where_it_must_be_in_doppler),
         cmocka_unit_test(a_rate_not_followed_is_on_the_map),
+        cmocka_unit_test(wind_decorrelates_the_ground),
         cmocka_unit_test(the_same_bits),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);

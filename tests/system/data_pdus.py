@@ -1,11 +1,13 @@
-"""Data PDUs as sensor/publish/dis_records.h describes them, read from recordings: used by test_replay_publishes.sh and
-test_five_records.sh.
+"""Data PDUs as sensor/publish/dis_records.h describes them, read from recordings: used by test_replay_publishes.sh, test_five_records.sh
+and test_live_radar.sh.
 
     data_pdus.py receive ADDRESS PORT FILE     datagrams to ADDRESS:PORT into FILE, a line of hex each, until a line
                                                comes in on standard input, or that is closed; says when it listens
     data_pdus.py same LIVE.pcapng FILE LEAST   the Data PDUs of FILE against those of the recording, by frame and band
+    data_pdus.py radar LIVE.pcapng TRUTH LEAST a radar's detections in the recording against those of truth.jsonl, of at
+                                               least so many frames
 """
-import collections, select, socket, struct, sys, time
+import collections, json, math, select, socket, struct, sys, time
 
 def datagrams(path):
     """UDP payloads of a pcapng written by Pitviper, over IPv4."""
@@ -57,13 +59,14 @@ def same(live_path, path, least):
         for pdu in pdus:
             values, _ = datums(pdu)
             if 600001 not in values: told[k].append(stream(pdu)); continue
-            frames[k][values[600001], values[600002]] += 1
-            octets[k][values[600001], values[600002]] = pdu
+            which = values[600001], values.get(600002, ("radar", values.get(600014)))
+            frames[k][which] += 1
+            octets[k][which] = pdu
     both = octets[0].keys() & octets[1].keys()
     assert len(both) >= int(least), f"only {len(both)} of {len(octets[0])} PDUs of the node are among {len(octets[1])} of the replay"
-    assert octets[0].keys() <= octets[1].keys(), f"the replay lacks {sorted(octets[0].keys() - octets[1].keys())}"
+    assert octets[0].keys() <= octets[1].keys(), f"the replay lacks {sorted(octets[0].keys() - octets[1].keys(), key=str)}"
     assert max(frames[1].values()) == 1, "a frame is sent twice"
-    for key in sorted(both):
+    for key in sorted(both, key=str):
         a, b = octets[0][key], octets[1][key]
         first = next((i for i in range(min(len(a), len(b))) if a[i] != b[i]), min(len(a), len(b)))
         assert a == b, f"frame and band {key}: octet {first} of {len(a)} differs"
@@ -72,5 +75,35 @@ def same(live_path, path, least):
     print(len(both), "PDUs are the same;", len(told[0]), "and", len(told[1]), "announcements")
     for each in sorted(set(told[1])): print("stream", *each)
 
+def radar(live_path, truth_path, least):
+    frames, found, seen = {f["frame"]: f for f in map(json.loads, open(truth_path))}, {}, set()
+    for pdu in data_pdus(datagrams(live_path)):
+        values, records = datums(pdu)
+        if values.get(600003) != 4 or values[600001] not in frames or pdu in seen: continue
+        seen.add(pdu)  # a node receives its own once more
+        assert len(pdu) <= 1400 and 600002 not in values and sorted(values) == [600001, 600003, 600012, 600013, 600014]
+        one = [struct.unpack(">6f", octets) for number, octets in records if number == 600402]
+        assert values[600012] == len(one) <= 32
+        head = struct.unpack(">2d4f", dict(records)[600401])
+        assert dict(records)[600101] == struct.pack(">d", frames[values[600001]]["time_s"])
+        found.setdefault(values[600001], []).append((values[600014] >> 16, values[600014] & 65535, values[600013], head, one))
+    compared = 0
+    for number, pdus in found.items():
+        pdus.sort(key=lambda pdu: pdu[0])
+        truth = frames[number]["radar"]
+        want, many = truth["detections"], len(pdus)
+        assert [p[:2] for p in pdus] == [(k, many) for k in range(many)], f"frame {number}: PDUs {[p[:2] for p in pdus]}"
+        got = [d for p in pdus for d in p[4]]
+        assert len(got) == min(len(want), 128), f"frame {number}: {len(got)} detections of {len(want)}"
+        for p in pdus:
+            assert p[2] == truth["detections_in_all"] - len(got)
+            assert abs(p[3][1] - truth["reference_m"]) < 1e-9 and abs(p[3][3] - truth["reference_rate_mps"]) < 1e-4
+        for d, w in zip(got, want):
+            rows = (w["range_m"], w["range_rate_mps"], math.radians(w["az_deg"]), math.radians(w["el_deg"]), w["snr_db"], w["rcs_dbsm"])
+            assert all(abs(a - b) <= 1e-6 * max(1, abs(b)) for a, b in zip(d, rows)), f"frame {number}: {d}, not {rows}"
+            compared += 1
+    assert len(found) >= int(least) and compared >= int(least), f"{len(found)} frames, {compared} detections"
+    print(len(found), "frames,", compared, "detections are those of truth.jsonl")
+
 if __name__ == "__main__":
-    {"receive": receive, "same": same}[sys.argv[1]](*sys.argv[2:])
+    {"receive": receive, "same": same, "radar": radar}[sys.argv[1]](*sys.argv[2:])

@@ -155,9 +155,10 @@ def datagrams(path):
             if packet[0] >> 4 == 4 and packet[9] == 17: yield packet[(packet[0] & 15) * 4 + 8:]
         at += size
 
-def of_a_stream(pdu):
+def kind_of(pdu):
     fixed, = struct.unpack(">I", pdu[32:36])
-    return 600001 not in [struct.unpack(">I", pdu[40 + 8 * i:44 + 8 * i])[0] for i in range(fixed)]
+    kind = dict(struct.unpack(">II", pdu[40 + 8 * i:48 + 8 * i]) for i in range(fixed))[600003]
+    return {1: "data-pdu", 2: "data-pdu", 3: "stream-pdu", 4: "radar-pdu"}[kind]
 
 width_of = {"u16": 2, "u32": 4, "f32": 4, "f64": 8, "text": None}
 def take_data_pdus(topic, pdus):
@@ -184,7 +185,7 @@ def take_data_pdus(topic, pdus):
                 fields[offset][1].found += 1
             check(not fields or end == size, topic.name, number, "is of", size, "octets, the reference of", end)
         for (where, number), fields in octets.items():
-            if number not in (600201, 600202):
+            if number not in (600201, 600202, 600402):
                 check((where, number) in [s[:2] for s in seen], topic.name, number, "is absent")
 
 # ---- the lines of Python --------------------------------------------------------------------------
@@ -345,12 +346,12 @@ def main():
             take_table(topics["pdus"], open(path).read().splitlines(), "\t", begin)
             runs(topics["pdus"], ".", given=open(path).read())
         elif what == "--capture": pdus += [p for p in datagrams(path) if len(p) > 40 and p[2] == 20]
-        elif what == "--live": meaning_of_data_pdus(path, topics["data-pdu"], [p for p in pdus if not of_a_stream(p)])
+        elif what == "--live": meaning_of_data_pdus(path, topics["data-pdu"], [p for p in pdus if kind_of(p) == "data-pdu"])
         elif what == "--streams": has_streams = path != "0"  # 0: built without FFmpeg's libraries
     if pdus:
-        streams, frames = [p for p in pdus if of_a_stream(p)], [p for p in pdus if not of_a_stream(p)]
-        for name, these, prints in (("data-pdu", frames, r"\d+ \d+ \(\d+, \d+, \d+\) \d+\.\d+"),
-                                    ("stream-pdu", streams, r"\d+ udp://127\.0\.0\.1:\d+\n")):
+        for name, prints in (("data-pdu", r"\d+ \d+ \(\d+, \d+, \d+\) \d+\.\d+"), ("stream-pdu", r"\d+ udp://127\.0\.0\.1:\d+\n"),
+                             ("radar-pdu", r"\d+ \d+\.\d+ -?\d")):
+            these = [p for p in pdus if kind_of(p) == name]
             if name == "stream-pdu" and not has_streams:
                 for row in topics[name].rows.values(): row.found += 1
                 continue

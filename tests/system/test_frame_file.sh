@@ -22,7 +22,7 @@ again() {
         >"$tmp/stdout" 2>"$tmp/stderr"
     check "$name: rendered again" [ $? = 0 ]
     made=$(grep -oE 'frame [0-9a-f]{64}' "$tmp/stdout")
-    was=$(grep -oE '[0-9a-f]{64}' "$tmp/$name/truth.jsonl" | tail -1)
+    was=$(grep -oE '"frame_sha256":"[0-9a-f]{64}' "$tmp/$name/truth.jsonl" | grep -oE '[0-9a-f]{64}' | tail -1)
     check "$name: the frame of the replay" [ "$made" = "frame $was" ]
     size=$(stat -c %s "$tmp/elsewhere/$name.pvf")
     check "$name: $size octets" [ "$size" -lt 100000 ]
@@ -38,6 +38,12 @@ saved demo "$tmp/demo.pcap" 12 --bands swir,mwir,lwir,radar --set sensor.preset=
 check "demo: frame files of an earlier run are removed" [ ! -e "$tmp/demo/frame_000003.pvf" ]
 again demo --out "$tmp/again" --no-skip
 check "products: truth.jsonl is the replay's" cmp "$tmp/demo/truth.jsonl" "$tmp/again/truth.jsonl"
+# a radar over the same ground: its map, its files and its truth
+saved radar "$tmp/demo.pcap" 12 --bands radar --set radar.preset=seeker_35 --no-png
+again radar --out "$tmp/radar_again"
+check "radar: the same map" grep -q "the same: the radar's map, to the bit; [1-9]" "$tmp/stdout"
+check "radar: truth.jsonl is the replay's" cmp "$tmp/radar/truth.jsonl" "$tmp/radar_again/truth.jsonl"
+for file in radar/000012.csv radar/000012.exr; do check "radar: $file" cmp "$tmp/radar/$file" "$tmp/radar_again/$file"; done
 for band in swir mwir lwir radar truth; do
     png=frames/$band/000012.png
     check "products: $band.png is the replay's" cmp "$tmp/demo/$png" "$tmp/again/$png"

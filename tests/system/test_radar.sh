@@ -26,7 +26,7 @@ vehicles:
 Y
 exercise "$tmp/sphere_scene.yaml" "$tmp/ball.pcap"
 seen=(--host 1:3001:31 --set sensor.gimbal_limit_deg=180 --set exercise.aim=1:3001:11 --bands radar --set models.catalog="$tmp/catalog.csv")
-replay "$tmp/ball.pcap" "$tmp/ball" "${seen[@]}" --only 5 --set radar.preset=search_ku --set radar.ground=false --set radar.warp_mm=0
+replay "$tmp/ball.pcap" "$tmp/ball" "${seen[@]}" --only 5 --set radar.preset=search_ku --set radar.ground=false --set radar.ground_bounce=false --set radar.warp_mm=0
 check "a sphere" [ $code = 0 ]; [ $code = 0 ] || tail -n 3 "$tmp/stderr"
 python3 - "$tmp/ball" <<'P' || fail "a sphere of 10 m2"
 import json, math, sys
@@ -47,12 +47,31 @@ print("range %.1f m; sphere %.3f / %.3f dBsm; SNR %.2f, on paper %.2f dB; found 
     got["rcs_dbsm"], got["snr_db"], got["az_deg"] - target["az_deg"], got["el_deg"] - target["el_deg"]))
 good = abs(range_m - 3000) < 30
 good &= all(d["rcs_dbsm"] < got["rcs_dbsm"] - 50 for d in radar["detections"][1:]) # its phase noise, 0.5 degrees over 128 pulses
-good &= all(abs(target["rcs_dbsm"][p] - 10) < 0.2 for p in ("hh", "vv")) and target["rcs_dbsm"]["hv"] < -15
+good &= all(abs(target["rcs_dbsm"][p] - 10) < 0.2 for p in ("hh", "vv")) and target["rcs_dbsm"].get("hv", -99) < -15 # absent: none
 good &= abs(target["snr_db"] - snr_db) < 0.2
 good &= abs(got["rcs_dbsm"] - target["rcs_dbsm"]["hh"]) < 0.2   # I and Q differ by 0.1 dB
 good &= got["snr_db"] > 45                                      # over what phase noise and windows leave of so strong an echo
 good &= abs(got["range_m"] - (range_m - 1.78)) < 0.5            # its front; cells are 7.5 m
 good &= abs(got["az_deg"] - target["az_deg"]) < 0.05 and abs(got["range_rate_mps"]) < 0.3
+sys.exit(not good)
+P
+
+# the same by way of the ground: a sphere returns a / 2 at any of these angles, so of a ground that mirrors G once gives 4 G^2 and
+# both ways G^4 of its cross section; all that is found in one cell is all four paths
+replay "$tmp/ball.pcap" "$tmp/bounce" "${seen[@]}" --only 5 --set radar.preset=search_ku --set radar.ground=false --set radar.warp_mm=0
+check "a sphere on the ground" [ $code = 0 ]; [ $code = 0 ] || tail -n 3 "$tmp/stderr"
+python3 - "$tmp/bounce" <<'P' || fail "a sphere on the ground"
+import json, math, sys
+radar = json.loads(open(sys.argv[1] + "/truth.jsonl").read().splitlines()[-1])["radar"]
+target = [t for t in radar["targets"] if t["entity"] == "1:3001:11"][0]
+bounce, got = target["ground_bounce"], radar["detections"][0]
+g_db = 20 * math.log10(bounce["coherence"]) # across: the larger of the two
+alone = target["rcs_dbsm"]["hh"]
+once_db, twice_db = bounce["once_dbsm"]["hh"] - alone - g_db - 20 * math.log10(2), bounce["twice_dbsm"]["hh"] - alone - 2 * g_db
+print("mirrors %.3f; once %+.2f dB, twice %+.2f dB of a sphere's; all paths %.2f dBsm, found %.2f" % (
+    bounce["coherence"], once_db, twice_db, bounce["rcs_dbsm"]["hh"], got["rcs_dbsm"]))
+good = 0.02 < bounce["coherence"] < 1 and abs(once_db) < 0.5 and abs(twice_db) < 0.5
+good &= abs(got["rcs_dbsm"] - bounce["rcs_dbsm"]["hh"]) < 0.3 and abs(bounce["rcs_dbsm"]["hh"] - alone) > 0.1
 sys.exit(not good)
 P
 
@@ -80,6 +99,35 @@ for line in open(sys.argv[1]):
         aim[0]["rcs_dbsm"]["vv"], aim[0]["range_m"], len(near), frame["radar"]["ground_cells"], frame["radar"]["ground_hidden"]))
     good -= frame["radar"]["ground_cells"] < 1000
 sys.exit(good < 1)
+P
+
+# rain, and a cloud of chaff 50 m before the aim: no entity of the picture, but of the radar's scene
+cat >"$tmp/chaff.yaml" <<'Y'
+duration_s: 8
+seed: 1
+place: {lat_deg: 36, lon_deg: -123, height_m: 120}
+dis: {site: 1, application: 3001, exercise: 1, version: 7}
+vehicles:
+  - {name: Aim, id: 11, type: 8.3.225.5.0.0.0, force: 2, route_m: [[0, 0]]}
+  - {name: Cloud, id: 12, type: 8.2.225.1.1.0.0, force: 2, route_m: [[-50, 0]], height_m: 20}
+  - {name: Watch, id: 31, type: 1.2.225.20.1.0.0, force: 1, route_m: [[-985, 0]], height_m: 100}
+Y
+exercise "$tmp/chaff.yaml" "$tmp/chaff.pcap"
+wet=(--host 1:3001:31 --set sensor.gimbal_limit_deg=180 --set exercise.aim=1:3001:11 --bands radar --size 48x32 --only 5 --set radar.preset=seeker_35)
+replay "$tmp/chaff.pcap" "$tmp/wet" "${wet[@]}" --set weather.rain_mmh=10
+check "rain and chaff" [ $code = 0 ]; [ $code = 0 ] || tail -n 3 "$tmp/stderr"
+replay "$tmp/chaff.pcap" "$tmp/dry" "${wet[@]}" --set radar.chaff_dipoles=0
+python3 - "$tmp/wet/truth.jsonl" "$tmp/dry/truth.jsonl" <<'P' || fail "their weather"
+import json, sys
+wet, dry = (json.loads(open(name).read().splitlines()[-1]) for name in sys.argv[1:])
+rain = wet["radar"]["air_db"] - dry["radar"]["air_db"]
+print("rain %.3f dB one way over %.0f m, %.2e m2/m3; chaff: %d, %d" % (rain, wet["radar"]["reference_m"], wet["radar"]["rain_1_m"],
+      wet["radar"]["chaff"], dry["radar"]["chaff"]))
+# P.838-3 at 35 GHz, 10 mm/h: 2.5 dB/km
+good = 2.0 < rain / wet["radar"]["reference_m"] * 1000 < 2.9 and dry["radar"]["rain_1_m"] == 0 and wet["radar"]["rain_1_m"] > 1e-4
+good &= wet["radar"]["chaff"] == 1 and dry["radar"]["chaff"] == 0
+good &= all(t["entity"] != "1:3001:12" for frame in (wet, dry) for t in frame["radar"]["targets"] + frame.get("targets", []))
+sys.exit(not good)
 P
 
 run replay "$tmp/demo.pcap" --out "$tmp/none" "${small[@]}" --set radar.preset=hubble

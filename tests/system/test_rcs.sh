@@ -53,6 +53,37 @@ run rcs sphere:0.3 -o "$tmp/ball" --azimuth 0:20:10 --image none --overwrite
 check "--overwrite" [ $code = 0 ]
 check "the same again" cmp -s "$tmp/first" "$tmp/ball/rcs.csv"
 
+# what it wrote is a signature: the same fields at its rows, between them those of a sphere, nothing beyond
+run rcs "given:$tmp/first" -o "$tmp/given" --azimuth 0:20:10
+check "a given signature: exit code" [ $code = 0 ] || cat "$tmp/stderr"
+check "a given signature: the same rows" [ -n "$(cut -d, -f1-3,8,9,14,15 "$tmp/first")" -a \
+    "$(cut -d, -f1-3,8,9,14,15 "$tmp/first")" = "$(cut -d, -f1-3,8,9,14,15 "$tmp/given/rcs.csv")" ]
+check "a given signature: no picture" [ ! -e "$tmp/given/isar.png" ]
+printf 'target,f_ghz,az_deg,el_deg,rx_az_deg,rx_el_deg\ngiven:%s,10,5,10,,\ngiven:%s,10,90,10,,\ngiven:%s,10,5,10,6,10\ngiven:none,10,5,10,,\n' \
+    "$tmp/first" "$tmp/first" "$tmp/first" | "$pitviper" probe rcs >"$tmp/rcs" 2>/dev/null
+near "a given sphere, between rows" "$(cell "$tmp/rcs" 1 hh_dbsm)" -5.486 0.1 # pi 0.3^2
+for row in 2 3 4; do check "given, row $row has an error" [ -n "$(cell "$tmp/rcs" $row error)" ]; done
+run rcs "given:$tmp/first" -o "$tmp/beyond" --azimuth 0:40:20
+check "beyond its end: said" complained 'ends before 1 of these looks'
+
+# a plate on a joint: turned by 30 degrees it flashes at an azimuth of 30 degrees, 4 pi (0.3 0.2)^2 / lambda^2
+printf 'o stand\nv -2 0 0\nv -2 0.001 0\nv -2 0 0.001\nf 1 2 3\no plate\nv 0 -0.1 -0.15\nv 0 0.1 -0.15\nv 0 0.1 0.15\nv 0 -0.1 0.15\nf 4 5 6 7\n' >"$tmp/plate.obj"
+printf 'axes: +x +y\norigin: 0 0 0\nmaterials: {"*": metal_steel_galvanized}\njoints:\n- {nodes: "plate*", name: sail, pivot: 0 0 0, axis: yaw, limits_deg: -90 90}\n' >"$tmp/plate.yaml"
+turned=("$tmp/plate.obj" --elevation 0 --azimuth 0:30:30 --image none)
+run rcs "${turned[@]}" -o "$tmp/sail" --joint sail=30
+check "a joint: exit code" [ $code = 0 ] || cat "$tmp/stderr"
+near "a turned plate" "$(cell "$tmp/sail/rcs.csv" 2 vv_dbsm)" 17.019 0.05
+run rcs "${turned[@]}" -o "$tmp/rest"
+near "at rest" "$(cell "$tmp/rest/rcs.csv" 1 vv_dbsm)" 17.019 0.05
+check "and each elsewhere far less" awk -v a="$(cell "$tmp/sail/rcs.csv" 1 vv_dbsm)" -v b="$(cell "$tmp/rest/rcs.csv" 2 vv_dbsm)" \
+    'BEGIN { exit !(a < 0 && b < 0) }'
+run rcs "${turned[@]}" -o "$tmp/wrong" --joint mast=30
+check "no such joint: the joints are said" complained 'no joint mast; it has sail'
+run rcs "${turned[@]}" -o "$tmp/wrong" --joint sail=91
+check "beyond its limits" complained '91 is outside its limits, -90 .. 90'
+run rcs "${turned[@]}" -o "$tmp/wrong" --joint sail
+check "no value" [ $code = 2 ] && complained 'needs NAME=VALUE'
+
 run rcs frigate9 -o "$tmp/none"
 check "no such model: exit code" [ $code = 1 ]
 check "no such model: said" complained "no built-in model of this name: 'frigate9'"

@@ -6,7 +6,7 @@
 
 run help
 check "help: lists the topics" grep -qE '^products truth run\.json exr ' "$tmp/stdout"
-for topic in products truth run.json data-pdu stream-pdu regress-record; do
+for topic in products truth run.json data-pdu stream-pdu radar-pdu regress-record; do
     run help "$topic"
     check "help $topic" [ $code = 0 -a -s "$tmp/stdout" ]
     check "help $topic: lines of a terminal" [ "$(awk '{ if (length > most) most = length } END { print most }' "$tmp/stdout")" -le 120 ]
@@ -24,11 +24,13 @@ command -v python3 >/dev/null || { echo "skipped in part: no python3"; finish; }
 
 free_port
 with_stream udp://127.0.0.1:$port
-# two live nodes, each with an exercise of its own, which send what they see
+# two live nodes, each with an exercise of its own, which send what they see; one has a radar
 for kind in truth sensor; do
     free_port
+    radar=()
+    [ $kind = truth ] || radar=(--set radar.preset=search_ku --set radar.ground=false)
     node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 2 --for 30 --no-png --bands lwir,radar --threads 1 \
-        "${stream[@]}" --latest \
+        "${stream[@]}" "${radar[@]}" --latest \
         --set publish.files=false --set publish.dis=$kind --set exercise.listen_s=1 --record "$tmp/$kind.pcapng"
     heard_by $kind 'listening on' 10
     "$pitviper" exercise demo --send 127.0.0.1:$port >"$tmp/sender.out" 2>&1 &

@@ -1,8 +1,10 @@
-/* sensor/bench/render/precision_radar.c: the field that a target scatters: ray tubes a wavelength, mirrors of a path. */
+/* sensor/bench/render/precision_radar.c: the field that a target scatters: ray tubes a wavelength, their divisions at
+ * edges, mirrors of a path. */
 #include "sensor/bench/render/rows.h"
 
 #include "render/radar/field.h"
 #include "render/radar/radar_model.h"
+#include "sensor/bench/render/precision_radar.h"
 #include "sensor/bench/turn.h"
 
 static const double tank_hz = 16e9;
@@ -14,6 +16,7 @@ typedef struct TankSet {
     Pool              *pool;
     TubeConfig         tubes;
     TubeHits           hits;
+    int                looks;
     ScatterMatrix      s[looks];
     Status             status;
 } TankSet;
@@ -21,11 +24,11 @@ typedef struct TankSet {
 static void look_at_tank(void *user)
 {
     TankSet *t = user;
-    for (int i = 0; i < looks && t->status == STATUS_OK; i++) {
+    for (int i = 0; i < t->looks && t->status == STATUS_OK; i++) {
         ScatterAntenna antenna;
         radar_look(&antenna, (20 + 57 * i) * rad_per_deg, (5 + 5 * i) * rad_per_deg, 2000);
         t->status = tubes_trace(&t->hits, t->target, &antenna, &antenna, &t->tubes, t->pool);
-        if (t->status == STATUS_OK) t->status = field_at(&t->s[i], tank_hz, &t->hits, t->pool);
+        if (t->status == STATUS_OK) t->status = field_at(&t->s[i], t->tubes.frequency_hz, &t->hits, t->pool);
     }
     bench_keep(t);
 }
@@ -36,7 +39,7 @@ static double power(double complex s) { return creal(s) * creal(s) + cimag(s) * 
 static double field_error(const TankSet *got, const TankSet *want)
 {
     double off = 0, whole = 0;
-    for (int i = 0; i < looks; i++) {
+    for (int i = 0; i < got->looks; i++) {
         off += power(got->s[i].hh - want->s[i].hh) + power(got->s[i].vv - want->s[i].vv);
         whole += power(want->s[i].hh) + power(want->s[i].vv);
     }
@@ -45,28 +48,29 @@ static double field_error(const TankSet *got, const TankSet *want)
 
 static TankSet tank_set(const RadarModel *model, Pool *pool, double more_rays)
 {
-    TankSet t = {.target = model->target, .pool = pool, .tubes = tubes_default_config(tank_hz)};
+    TankSet t = {.target = model->target, .pool = pool, .looks = looks, .tubes = tubes_default_config(tank_hz)};
     t.tubes.rays_per_wavelength *= more_rays;
     t.tubes.rays_per_radius *= more_rays;
     return t;
 }
 
-static Status knob(Bench *bench, TankSet set[], TankSet *fine, const char *const name[], int by_default,
-                   const BenchTunable *tunable)
+static Status knob(Bench *bench, TankSet set[], TankSet *fine, const char *const name[], int count,
+                   int by_default, const BenchTunable *tunable)
 {
     BenchWork    work[tank_settings];
     BenchSetting point[tank_settings] = {0};
     look_at_tank(fine);
     Status status = fine->status;
-    for (int k = 0; k < tank_settings && status == STATUS_OK; k++) {
+    for (int k = 0; k < count && status == STATUS_OK; k++) {
         look_at_tank(&set[k]);
         status = set[k].status;
-        work[k] = (BenchWork){look_at_tank, &set[k], looks};
-        point[k] = (BenchSetting){.setting = name[k], .error = field_error(&set[k], fine), .is_default = k == by_default,
+        work[k] = (BenchWork){look_at_tank, &set[k], set[k].looks};
+        point[k] = (BenchSetting){.setting = name[k], .error = field_error(&set[k], fine),
+                                  .is_default = k == by_default,
                                   .bytes = 75.0 * (double)set[k].hits.count};
     }
-    if (status == STATUS_OK) bench_tunable(bench, tunable, work, point, tank_settings);
-    for (int k = 0; k < tank_settings; k++) tubes_free(&set[k].hits);
+    if (status == STATUS_OK) bench_tunable(bench, tunable, work, point, count);
+    for (int k = 0; k < count; k++) tubes_free(&set[k].hits);
     tubes_free(&fine->hits);
     return status;
 }
@@ -78,9 +82,32 @@ static Status knob_tubes(Bench *bench, const RadarModel *model, Pool *pool)
     TankSet set[tank_settings], fine = tank_set(model, pool, bench_quick(bench) ? 5 : 8);
     bench_progress(bench, "ray tubes");
     for (int k = 0; k < tank_settings; k++) set[k] = tank_set(model, pool, more[k]);
-    return knob(bench, set, &fine, name, 1,
+    return knob(bench, set, &fine, name, tank_settings, 1,
                 &(BenchTunable){"ray tubes a wavelength", "render/radar/tubes.h", "a look at a tank at 16 GHz", "%",
                                 "field, rms of six looks; 6 tubes or more", 18});
+}
+
+/* At 10 GHz, where edges rule; on quick runs one look, the last setting left out. */
+static Status knob_splits(Bench *bench, const RadarModel *model, Pool *pool)
+{
+    enum { settings = 4 };
+    static const char *const name[settings] = {"0", "1", "2", "3"};
+    const int count = bench_quick(bench) ? settings - 1 : settings;
+    TankSet   set[settings], fine = tank_set(model, pool, 1);
+    bench_progress(bench, "divisions of ray tubes");
+    fine.tubes.frequency_hz = tank_hz / 1.6;
+    fine.looks = bench_quick(bench) ? 1 : looks;
+    fine.tubes.splits = count;
+    fine.tubes.cuts_per_radius = 1e6;
+    fine.tubes.seed = 1;
+    for (int k = 0; k < count; k++) {
+        set[k] = fine;
+        set[k].tubes.splits = k;
+        set[k].tubes.seed = 0;
+    }
+    return knob(bench, set, &fine, name, count, 2,
+                &(BenchTunable){"divisions of ray tubes at edges", "render/radar/tubes.h", "a look at a tank at 10 GHz",
+                                "%", "field, rms of the looks; another grid, one division more", 8});
 }
 
 static Status knob_mirrors(Bench *bench, const RadarModel *model, Pool *pool)
@@ -94,7 +121,7 @@ static Status knob_mirrors(Bench *bench, const RadarModel *model, Pool *pool)
         set[k] = tank_set(model, pool, 1);
         set[k].tubes.bounces = mirrors[k];
     }
-    return knob(bench, set, &fine, name, 3,
+    return knob(bench, set, &fine, name, tank_settings, 3,
                 &(BenchTunable){"mirrors of a ray tube", "render/radar/tubes.h", "a look at a tank at 16 GHz", "%",
                                 "field, rms of six looks; 40 mirrors", 13});
 }
@@ -108,7 +135,9 @@ Status bench_precision_radar(Bench *bench)
     if (status == STATUS_OK) status = radar_model_open(&model, "tank", &materials, radar_sag_m(tank_hz));
     if (status == STATUS_OK) status = pool_create(&pool, bench_threads(bench));
     if (status == STATUS_OK) status = knob_tubes(bench, &model, pool);
+    if (status == STATUS_OK) status = knob_splits(bench, &model, pool);
     if (status == STATUS_OK) status = knob_mirrors(bench, &model, pool);
+    if (status == STATUS_OK) status = precision_radar_reuse(bench, model.target, pool);
     if (status != STATUS_OK) log_error("bench: precision: radar: %s", status_name(status));
     pool_destroy(pool);
     radar_model_close(&model);

@@ -12,7 +12,7 @@ const BenchSuite render_benches[] = {
     {.name = "precision", .help = "a vehicle's heat: steps", .run = bench_precision_network},
     {.name = "precision", .help = "a vehicle's heat: patches", .run = bench_precision_patches},
     {.name = "precision", .help = "hot gas: grey gases", .run = bench_precision_gas},
-    {.name = "precision", .help = "the radar field of a target: tubes, mirrors", .run = bench_precision_radar},
+    {.name = "precision", .help = "the radar field of a target: tubes, mirrors, edges, reuse", .run = bench_precision_radar},
     {.name = "speed", .help = "a step of a vehicle's heat", .run = bench_speed_network},
     {.name = "crowd", .help = "frames in a world of 100,000 entities, and of tanks stacked in one place",
      .run = bench_speed_crowd},

@@ -144,7 +144,7 @@ Status bench_stability(Bench *bench)
 {
     static Status (*const part[])(Bench *) = {stability_parts, stability_ground, stability_light, stability_sun,
                                               stability_pictures, stability_crowd, stability_plants, stability_heat,
-                                              stability_network};
+                                              stability_network, stability_radar};
     Status failed = STATUS_OK;
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
         const Status status = part[k](bench);

@@ -51,5 +51,6 @@ Status stability_plants(Bench *bench);   /* rays against plants */
 Status stability_heat(Bench *bench);     /* the ground's heat */
 Status stability_network(Bench *bench);  /* networks of thermal nodes */
 Status stability_crowd(Bench *bench);    /* numbers of entities, positions of the eye, the radar */
+Status stability_radar(Bench *bench);    /* the field of a radar target */
 
 #endif

@@ -12,12 +12,16 @@
 const BenchSuite sensor_benches[] = {
     {.name = "speed",
      .options = "size=WxH: 720x486,ground=KMxKM: 12x16; of posts 1 m apart,model=FILE: fills the picture; "
-                "models/brlcad/ktank.obj of the reference data or else the built-in tank",
+                "models/brlcad/ktank.obj of the reference data or else the built-in tank,"
+                "bands=optical|radar: pictures of all bands or the radar with phase alone; both",
      .help = "frames over a large ground with twenty vehicles: whole, by stage, against the tracer alone",
      .run = bench_speed,
      .reads =
          "Frames are whole, planes of truth and all, handed over in memory; stages are of one thread, where they add "
          "up to the frame (bars: their share), and `rays alone` is the least that a frame could take."},
+    {.name = "speed",
+     .help = "a 94 GHz seeker's radar: a target in a new bin of aspect and in one at hand, ten of them with clutter",
+     .run = bench_speed_radar},
     {.name = "woods",
      .options = "trees=N: at most; 3000000,level1-px=PX: plants lower than this are simplified; 24",
      .help = "frames of three million trees over 192 M posts, in full detail and with two levels of it",

@@ -491,8 +491,20 @@ static Status time_all(Speed *s)
     return status;
 }
 
+bool speed_wants(const Bench *bench, const char *rows)
+{
+    const char *bands = bench_option(bench, "bands");
+    return !bands || strcmp(bands, rows) == 0;
+}
+
 Status bench_speed(Bench *bench)
 {
+    const char *bands = bench_option(bench, "bands");
+    if (bands && strcmp(bands, "optical") != 0 && strcmp(bands, "radar") != 0) {
+        log_error("bench: speed: --bands %s: optical (pictures of all bands) or radar; without it both", bands);
+        return STATUS_BAD_VALUE;
+    }
+    if (!speed_wants(bench, "optical")) return STATUS_OK;
     Speed        s = {.bench = bench};
     const Status status = time_all(&s);
     if (status != STATUS_OK) log_error("bench: speed: %s", status_name(status));

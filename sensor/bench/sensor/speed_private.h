@@ -23,6 +23,8 @@ typedef struct Speed {
     char       target[96];     /* what fills the image, and the sensor position */
 } Speed;
 
+/* Whether the rows of `optical` (pictures of all bands) or `radar` are asked for: --bands names one of them. */
+bool          speed_wants(const Bench *bench, const char *rows);
 RenderRequest speed_request(const View *view, unsigned bands, bool truth);
 TrialFrame    speed_frame(const Speed *s, const TrialScene *scene, const RenderRequest *request, bool many);
 /* The rows of a frame's files; of memory. */
