@@ -3,11 +3,10 @@
 
 #include "render/radar/scatter.h"
 #include "sensor/radar/pulse_grid.h"
-#include "sensor/radar/row_grid.h"
 
 #include <stdlib.h>
 
-enum { chunk = 4096, block = 256, pulses_a_term = 16 };
+enum { chunk = 4096, block = 256, pulses_a_term = 8 };
 static const double part = 2e-3; /* of an amplitude, at the ends of band and interval, that a series may leave out */
 
 struct EchoGrid {

@@ -16,7 +16,7 @@
 
 #include "sensor/radar/interval.h"
 
-enum { pulse_terms_most = 6 };
+enum { pulse_terms_most = 8 };
 
 typedef struct PulsePoint {
     double         per_sample, per_pulse; /* turns; whole ones do not count */

@@ -8,7 +8,13 @@
 #ifndef SENSOR_RADAR_ROW_GRID_H
 #define SENSOR_RADAR_ROW_GRID_H
 
-#include "sensor/radar/echo.h"
+#include "sensor/radar/interval.h"
+
+/* One echo: echo.h says what it adds. */
+typedef struct Echo {
+    double path_m, path_per_pulse_m; /* in the middle of the interval; from row to row */
+    double complex amplitude[interval_channels];
+} Echo;
 
 typedef struct RowGrid RowGrid;
 
