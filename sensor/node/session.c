@@ -83,7 +83,8 @@ static Status measure(Frame *f, const Session *s, const Eye *eye)
     const LocalFrame *frame = &s->shared->world->frame;
     const Weather     weather = frame_weather_at(s->shared->config, s->shared->world, f->unix_s);
     RadarScene        scene = {.world = s->shared->world, .snapshot = &f->seen.snapshot, .view = &eye->view, .hidden = eye->hidden,
-                               .reference_m = NAN, .t_s = f->time_s, .weather = &weather, .number = (uint32_t)f->number};
+                               .reference_m = NAN, .t_s = f->time_s, .weather = &weather, .number = (uint32_t)f->number,
+                               .range_m = f->seen.picture.range_m, .entity = f->seen.picture.entity};
     m3_tmul_v3(scene.v_enu_mps, frame->r_ecef_from_enu, eye->state.v_ecef_mps);
     const int aim = dis_entity_id_is_none(s->plan.aim) ? -1 : snapshot_find(&f->seen.snapshot, s->plan.aim);
     if (eye->aim_known) {
@@ -245,6 +246,8 @@ static Status open_radar(Session *s)
     return seeker_radar_create(&s->radar, &(SeekerRadarConfig){.preset = config->radar.preset, .catalog = catalog,
                                                                .isa = shared->isa, .ground = config->radar.ground,
                                                                .warp_m = 1e-3 * config->radar.warp_mm,
+                                                               .scan_rad = config->radar.scan_deg * rad_per_deg,
+                                                               .scan_step = config->radar.scan_step,
                                                                .wind_mps = config->weather.wind_mps,
                                                                .seed = (uint64_t)config->seed});
 }

@@ -150,23 +150,27 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     basis_of(h_enu, v_enu, t);
     add_truth(truth, m, t, sight, &r->centres, h_enu, v_enu);
     if (!(truth->visible > 0)) return STATUS_OK;
-    Echo *echo = arena_alloc(m->arena, (size_t)r->centres.count + 1, sizeof *echo);
-    if (!echo) return STATUS_NO_MEMORY;
+    RadarPoint *point = points_room(&r->points, r->centres.count);
+    if (!point) return STATUS_NO_MEMORY;
+    const double room_m = 2 * t->of->radius_m, widest = m->widest + room_m / sight->range_m;
     for (int i = 0; i < r->centres.count; i++) {
         ScatterCentre *c = &r->centres.centre[i];
-        double         p_enu[3], moves[3];
+        RadarPoint    *q = &point[i];
         Sight          to;
-        m3_mul_v3(p_enu, t->r_enu_from_body, c->p);
-        v3_add(p_enu, p_enu, t->p_enu);
-        making_sight(&to, m, p_enu, 0);
-        velocity_of(moves, t, t->of->part[c->part].node, c->p);
+        m3_mul_v3(q->p_enu, t->r_enu_from_body, c->p);
+        v3_add(q->p_enu, q->p_enu, t->p_enu);
+        making_sight(&to, m, q->p_enu, 0);
+        velocity_of(q->v_enu_mps, t, t->of->part[c->part].node, c->p);
         scatter_turn(&c->s, h_enu, v_enu, m->right);
-        making_amplitudes(echo[i].amplitude, m, &to, &c->s);
-        for (int k = 0; k < interval_channels; k++) echo[i].amplitude[k] *= sqrt(truth->visible);
-        echo[i].path_m = 2 * (sight->range_m - m->frame->reference_m) + c->path_m;
-        echo[i].path_per_pulse_m = 2 * (making_range_rate(m, &to, moves) - m->frame->reference_rate_mps) * pulse_s;
+        q->same = p->transmits_h ? c->s.hh : c->s.vv;
+        q->other = p->transmits_h ? c->s.vh : c->s.hv;
+        q->share = sqrt(truth->visible);
+        q->path_m = 2 * (sight->range_m - m->frame->reference_m) + c->path_m;
+        q->path_per_pulse_m = 2 * (making_range_rate(m, &to, q->v_enu_mps) - m->frame->reference_rate_mps) * pulse_s;
+        q->widest = widest;
+        q->room_m = room_m;
     }
-    echo_add(r->echoes, echo, r->centres.count, m->pool);
+    r->points.count += r->centres.count;
     return STATUS_OK;
 }
 
@@ -182,7 +186,7 @@ static Status take_target(bool *taken, Making *m, Target *t, Sight *sight)
     if (!catalog_has_shape(m->scene->world->catalog, e->model)) return STATUS_OK;
     enu_from_ecef(t->p_enu, frame, e->p_ecef);
     making_sight(sight, m, t->p_enu, shown->radius_m);
-    const double sine = hypot(sight->cos_right, sight->cos_down), room = shown->radius_m / fmax(sight->range_m, 1);
+    const double sine = making_off_axis(m, sight), room = shown->radius_m / fmax(sight->range_m, 1);
     if (!sight->within || sine > m->widest + room || sight->range_m < 2 * shown->radius_m) return STATUS_OK;
     t->model = catalog_find(m->radar->catalog, e->type, &origin, NULL);
     t->of = catalog_model(m->radar->catalog, t->model);

@@ -8,7 +8,8 @@
  *     ground     by scatterers fixed to it (render/radar/clutter.h), where relief, plants and entities leave it in sight
  *
  * go through the radar equation, the antenna's pattern at their own direction, and the air (radar_path.h) into the
- * samples of four channels; then receiver and processing. Phases are those of double ranges.
+ * samples of four channels; then receiver and processing. Phases are those of double ranges. A beam that scans
+ * (scan.h) has further intervals before and after.
  *
  * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main
  * lobe's null; ground bounce and what one entity mirrors to another; range rates that change within the interval;
@@ -26,6 +27,8 @@ typedef struct SeekerRadarConfig {
     const char *catalog;         /* path; its models are built anew, as fine as the wavelength needs */
     const char *isa;
     bool        ground;          /* scatterers of the ground */
+    double      scan_rad;        /* sector that the beam scans, about the boresight; 0: it stares */
+    double      scan_step;       /* between its positions, over the beamwidth */
     double      warp_m;          /* unevenness of surfaces, rms (render/radar/warp.h) */
     double      wind_mps;
     uint64_t    seed;
@@ -47,6 +50,8 @@ typedef struct RadarScene {
     double          t_s;         /* exercise time */
     const Weather  *weather;     /* at the ground */
     uint32_t        number;      /* of the frame: for its noise */
+    const float    *range_m;     /* [view height][width]: of what each pixel shows, INFINITY: sky. NULL: no pixels */
+    const uint32_t *entity;      /* likewise: snapshot index + 1, 0: none */
 } RadarScene;
 
 /* *out in the arena. */

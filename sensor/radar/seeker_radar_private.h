@@ -6,7 +6,9 @@
 #include "render/radar/clutter.h"
 #include "render/radar/radar_path.h"
 #include "render/radar/signatures.h"
+#include "sensor/radar/beam.h"
 #include "sensor/radar/echo.h"
+#include "sensor/radar/scan.h"
 #include "sensor/radar/seeker_radar.h"
 
 struct SeekerRadar {
@@ -25,21 +27,29 @@ struct SeekerRadar {
     RadarAir       air;
     EchoGrid      *echoes;
     IntervalPlan  *plan;
+    RadarPoints    points;       /* of the frame at work */
+    Echo          *batch;        /* [beam_batch] */
+    ScanPlan       scan;         /* positions 1: the beam stares */
+    double complex *scan_pulse;  /* [positions][pulses][samples]: compressed in range, sum channel; NULL: it stares */
 };
 
-typedef struct Making {
+struct Making {
     SeekerRadar      *radar;
     const RadarScene *scene;
     const RadarPreset *preset;
     const Visibility *visibility;
     RadarFrame       *frame;
-    double            right[3], down[3], ahead[3]; /* of the antenna, ENU */
+    double            p_enu[3];                    /* of the antenna */
+    double            right[3], down[3], ahead[3]; /* its axes, ENU */
+    double            reference_m;                 /* middle of the range window now */
+    double            after_s;                     /* since the frame's time */
+    double            scan_half_rad, sweep_m;      /* the beam will turn so far to both sides; and ranges will change by up to */
     double            half_window_m;               /* of range */
     double            widest;                      /* sine off the axis beyond which entities are left out */
     double            air_np_m;                    /* power, one way, 1/m */
     Pool             *pool;
     Arena            *arena;
-} Making;
+};
 
 /* From the antenna to a place: range, unit direction, cosines along right and down, whether it is ahead and within
  * the window (grown by more_m). */
@@ -48,6 +58,8 @@ typedef struct Sight {
     bool   within;
 } Sight;
 void making_sight(Sight *out, const Making *making, const double p_enu[3], double more_m);
+/* Sine of the angle off the beam's axis, off the nearest of its axes if it will turn. */
+double making_off_axis(const Making *making, const Sight *sight);
 
 /* Range rate of a place that moves, relative to the antenna; and over the reference's as growth of the two-way path
  * a pulse. */
@@ -58,7 +70,7 @@ double making_range_rate(const Making *making, const Sight *sight, const double 
 void making_amplitudes(double complex amplitude[interval_channels], const Making *making, const Sight *sight,
                        const ScatterMatrix *s);
 
-/* Adds the echoes of entities, and their truth to the frame. */
+/* Adds the echoes of entities to the radar's points, and their truth to the frame. */
 Status making_targets(Making *making);
 /* Adds those of the ground. */
 Status making_ground(Making *making);

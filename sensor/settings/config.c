@@ -121,6 +121,10 @@ static const Setting keys[] = {
     {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of the ground; with a preset"},
     {"radar.warp_mm", SETTING_DOUBLE, AT(radar.warp_mm), 0, 20, NULL, "mm",
      "unevenness of entities' surfaces for that radar, rms over 0.5 m: models are planer than sheet metal; 0: as they are"},
+    {"radar.scan_deg", SETTING_DOUBLE, AT(radar.scan_deg), 0, 160, NULL, "deg",
+     "sector that that radar's beam scans about the sensor's axis; 0: it stares"},
+    {"radar.scan_step", SETTING_DOUBLE, AT(radar.scan_step), 0.05, 1, NULL, "",
+     "between positions of the scanning beam, over its width at half power, one way"},
     {"exercise.port", SETTING_INT, AT(exercise.port), -1, 65535, NULL, "",
      "UDP port of the exercise; 0: any; -1: 3000, or any if nothing was sent to it"},
     {"exercise.exercise", SETTING_INT, AT(exercise.exercise), -2, 255, NULL, "",
@@ -363,6 +367,7 @@ Config config_default(void)
     strcpy(c.radar.preset, "none");
     c.radar.ground                  = true;
     c.radar.warp_mm                 = 1;
+    c.radar.scan_step               = 0.5;
     c.exercise.port                 = -1;
     c.exercise.exercise             = -1;
     c.exercise.listen_s             = 2;

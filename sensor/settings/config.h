@@ -53,6 +53,7 @@ typedef struct Config {
         char   preset[32];         /* a row of etc/radars.csv; none */
         bool   ground;             /* of the preset: the ground scatters */
         double warp_mm;            /* likewise: unevenness of surfaces */
+        double scan_deg, scan_step;/* likewise: sector of its scan, 0: it stares; step over the beamwidth */
     } radar;
     struct {
         int    port, exercise;     /* exercise -1: the one with the most PDUs, -2: all */
