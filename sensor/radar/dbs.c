@@ -35,6 +35,29 @@ static bool real_beam(double *power_w, const ScanWork *w, double x, const double
     return true;
 }
 
+/* At which position, from the first and between two, the beam's axis has the azimuth that the place has by then. Each step
+ * brings it nearer by the place's rate over that of the scan. NAN: never ahead. */
+static double position_of(const ScanWork *w, const double p_enu[3], const double v_enu_mps[3])
+{
+    enum { steps = 8 };
+    const Making   *m = w->making;
+    const ScanPlan *plan = &w->scan->plan;
+    const double    middle = plan->positions / 2;
+    double          x = middle;
+    if (plan->positions == 1) return 0;
+    for (int i = 0; i < steps; i++) {
+        const double t_s = (clamp(x, 0, plan->positions - 1) - middle) * plan->interval_s;
+        double       to[3];
+        v3_sub(to, p_enu, m->p_enu);
+        v3_add_scaled(to, to, t_s, v_enu_mps);
+        v3_add_scaled(to, to, -t_s, m->scene->v_enu_mps);
+        const double ahead = v3_dot(to, m->ahead);
+        if (!(ahead > 0)) return NAN;
+        x = atan2(v3_dot(to, m->right), ahead) / plan->step_rad + middle;
+    }
+    return x;
+}
+
 /* How fast the range rate of still ground changes over azimuth, m/s a radian, turn_rad from a direction. */
 static double rate_slope(const Making *m, const double d_enu[3], double turn_rad)
 {
@@ -84,10 +107,8 @@ bool scan_look(ScanLook *out, const ScanWork *w, const double p_enu[3], const do
     const RadarScan *s = w->scan;
     double           to[3];
     v3_sub(to, p_enu, m->p_enu);
-    const double range_m = v3_length(to), ahead = v3_dot(to, m->ahead), right = v3_dot(to, m->right);
-    if (!(ahead > 0)) return false;
-    const double x = s->plan.positions > 1 ? atan2(right, ahead) / s->plan.step_rad + s->plan.positions / 2 : 0;
-    if (x < -0.5 || x > s->plan.positions - 0.5) return false;
+    const double range_m = v3_length(to), x = position_of(w, p_enu, v_enu_mps);
+    if (!(x >= -0.5 && x <= s->plan.positions - 0.5)) return false;
     if (!real_beam(&out->beam_w, w, x, p_enu, v_enu_mps)) return false;
     v3_scale(to, 1 / range_m, to);
     const double width_rad = sharp_rad(w, to), level = sqrt(fmax(1 - pow(v3_dot(to, m->down), 2), 0));

@@ -97,6 +97,14 @@ double making_off_axis(const Making *m, const Sight *sight)
     return hypot(sin(off) * hypot(sight->cos_right, ahead), sight->cos_down);
 }
 
+double making_wait_s(const Making *m, const Sight *sight)
+{
+    if (!(m->scan_half_rad > 0)) return 0;
+    const ScanPlan *scan = &m->radar->scan;
+    const double    azimuth = fabs(atan2(sight->cos_right, v3_dot(sight->d_enu, m->ahead)));
+    return fmin(azimuth + antenna_width_rad(&m->preset->antenna), m->scan_half_rad) / scan->step_rad * scan->interval_s;
+}
+
 double making_range_rate(const Making *m, const Sight *sight, const double v_enu_mps[3])
 {
     return v3_dot(sight->d_enu, v_enu_mps) - v3_dot(sight->d_enu, m->scene->v_enu_mps);

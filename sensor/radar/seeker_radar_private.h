@@ -60,6 +60,8 @@ typedef struct Sight {
 void making_sight(Sight *out, const Making *making, const double p_enu[3], double more_m);
 /* Sine of the angle off the beam's axis, off the nearest of its axes if it will turn. */
 double making_off_axis(const Making *making, const Sight *sight);
+/* From the frame's time to the farthest interval in which a beam that scans still lights it, s; 0: the beam stares. */
+double making_wait_s(const Making *making, const Sight *sight);
 
 /* Range rate of a place that moves, relative to the antenna; and over the reference's as growth of the two-way path
  * a pulse. */
