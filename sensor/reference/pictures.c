@@ -275,7 +275,7 @@ static const ReferenceField radar_scan_fields[] = {
 const Reference reference_radar_scan = {
     .topic = "radar-scan",
     .file  = "radar/NNNNNN_scan.exr, NNNNNN_dbs.exr, NNNNNN_view.exr",
-    .title = "scan of the radar of radar.preset: real beam, sharpened, and on the frame's pixels",
+    .title = "scan of radar.preset: real beam, sharpened, on pixels",
     .about = "With radar.scan_deg. An echo's peak is its received power. The PNGs of the same names (NNNNNN_view_scan,\n"
              "NNNNNN_view_dbs) show decibels from 5 dB below the noise to the greatest, 45 dB at least; black: no value. Columns of\n"
              "_view are those of the band images, pixel by pixel.",

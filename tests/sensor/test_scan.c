@@ -401,6 +401,47 @@ static void pixels_have_the_value_of_their_range_and_azimuth(void **state)
     seeker_radar_destroy(radar);
 }
 
+/* A fifth of a step from a position the cubic is farthest off: by 2.15 % of the beamwidth for a dish of taper 1. */
+static void between_positions_the_beam_is_nearly_a_gaussian(void **state)
+{
+    (void)state;
+    static const double still[3] = {0, 0, 0};
+    const Weather       weather = weather_default();
+    SeekerRadar        *radar = open_radar("search_ku", 32, 0.5, false);
+    ScanPlan            plan;
+    RadarPreset         preset;
+    char                path[4096];
+    CHECK(etc_path(path, sizeof path, "radars.csv") && radar_preset_read(&preset, path, "search_ku") == STATUS_OK);
+    CHECK(scan_plan(&plan, &preset, 32 * rad_per_deg, 0.5) == STATUS_OK);
+    const double azimuth = 3.2 * plan.step_rad, want = 0.5 * columns_px + 500 * tan(azimuth) - 0.5;
+    place_sphere(0, azimuth, still);
+    RadarScene scene = scene_of(0, &weather);
+    for (int i = 0; i < rows_px * columns_px; i++) stage.range_m[i] = (float)(range_m - radius_m);
+    scene.range_m = stage.range_m;
+    arena_reset(stage.arena);
+    const RadarScan *s = measure(radar, &scene, stage.pool)->scan;
+    double           real[columns_px];
+    for (int x = 0; x < columns_px; x++) real[x] = isnan(s->view_w[x]) ? 0 : s->view_w[x];
+    const double error_rad = (vertex_of(real, peak_of(real, columns_px)) - want) / 500 * pow(cos(azimuth), 2);
+    printf("between positions: %.2f %% of the beamwidth off\n", 100 * error_rad / (2 * plan.step_rad));
+    CHECK_NEAR(error_rad / (2 * plan.step_rad), 0, 0.03);
+    seeker_radar_destroy(radar);
+}
+
+/* What is refused: more positions than there is room for. */
+static void too_fine_a_scan_is_refused(void **state)
+{
+    (void)state;
+    RadarPreset preset;
+    ScanPlan    plan;
+    char        path[4096];
+    CHECK(etc_path(path, sizeof path, "radars.csv") && radar_preset_read(&preset, path, "search_ku") == STATUS_OK);
+    CHECK(scan_plan(&plan, &preset, 160 * rad_per_deg, 0.05) == STATUS_BAD_VALUE);
+    CHECK(scan_plan(&plan, &preset, 160 * rad_per_deg, 0.5) == STATUS_OK && plan.positions % 2 == 1);
+    CHECK((plan.positions - 1) * plan.step_rad >= 160 * rad_per_deg && (plan.positions - 3) * plan.step_rad < 160 * rad_per_deg);
+    CHECK(scan_plan(&plan, &preset, 0, 0.5) == STATUS_OK && plan.positions == 1);
+}
+
 /* Whatever makes it: and the middle position is the interval of a beam that stares: over ground bit for bit, of entities but
  * for finer scattering centres, which are to hold over all positions. */
 static void the_same_bits(void **state)
@@ -451,6 +492,38 @@ static void the_same_bits(void **state)
     seeker_radar_destroy(stares);
 }
 
+/* From a still antenna each position sees what a beam sees that stares there: the same ground, to the sector's ends. */
+static void a_position_is_a_beam_that_stares_there(void **state)
+{
+    (void)state;
+    const Weather weather = weather_default();
+    SeekerRadar  *radar = open_radar("seeker_35", 24, 0.5, true), *stares = open_radar("seeker_35", 0, 0.5, true);
+    stage.snapshot.count = 0;
+    RadarScene   scene = scene_of(0, &weather);
+    const double r[9] = {0, -0.2, sqrt(0.96), -1, 0, 0, 0, -sqrt(0.96), -0.2};
+    memcpy(stage.view.r_enu_from_cam, r, sizeof r);
+    scene.reference_m = eye_m / 0.2;
+    arena_reset(stage.arena);
+    const RadarScan *s = measure(radar, &scene, stage.pool)->scan;
+    for (int i = 0; i < s->plan.positions; i += s->plan.positions / 2) {
+        const double azimuth = (i - s->plan.positions / 2) * s->plan.step_rad, c = cos(azimuth), n = sin(azimuth);
+        for (int k = 0; k < 3; k++) {
+            stage.view.r_enu_from_cam[3 * k] = c * r[3 * k] - n * r[3 * k + 2];
+            stage.view.r_enu_from_cam[3 * k + 2] = c * r[3 * k + 2] + n * r[3 * k];
+        }
+        const RadarFrame *there = measure(stares, &scene, stage.pool);
+        double            apart = 0, all = 0;
+        for (int x = 0; x < s->columns; x++) {
+            apart += fabs(s->power_w[(size_t)i * (size_t)s->columns + (size_t)x] - there->profile_w[x]);
+            all += there->profile_w[x];
+        }
+        printf("position %d, %.1f deg: %.1e off the beam that stares there\n", i, azimuth / rad_per_deg, apart / all);
+        CHECK(apart < 0.01 * all);
+    }
+    seeker_radar_destroy(radar);
+    seeker_radar_destroy(stares);
+}
+
 /* What a position leaves out: two-way power of ground beyond the null, over all, for ground lit evenly; and of one
  * target beyond u = 16. By sums over the aperture. */
 static void little_is_left_out(void **state)
@@ -481,7 +554,10 @@ int main(void)
         cmocka_unit_test(what_moves_is_met_where_it_is_then),
         cmocka_unit_test(doppler_sharpens_as_on_paper),
         cmocka_unit_test(pixels_have_the_value_of_their_range_and_azimuth),
+        cmocka_unit_test(between_positions_the_beam_is_nearly_a_gaussian),
+        cmocka_unit_test(too_fine_a_scan_is_refused),
         cmocka_unit_test(the_same_bits),
+        cmocka_unit_test(a_position_is_a_beam_that_stares_there),
         cmocka_unit_test(little_is_left_out),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
