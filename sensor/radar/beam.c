@@ -1,29 +1,11 @@
-/* sensor/radar/beam.c: see beam.h. */
+/* sensor/radar/beam.c: what one position of the beam receives of a frame's points.
+ *
+ * A position is a Making with an axis of its own, an instant of its own (after_s, from the frame's time) and the antenna
+ * where it is then; points have moved by their own velocities. A path and its growth are those at the frame's time plus
+ * the change of the range of the point since: exact for what moves evenly. */
 #include "sensor/radar/seeker_radar_private.h"
 
-#include <stdlib.h>
-
 enum { block = 1024 };
-
-RadarPoint *points_room(RadarPoints *points, int more)
-{
-    if (more > INT32_MAX / 2 - points->count) return NULL;
-    const int need = points->count + more;
-    if (need > points->capacity) {
-        const int   capacity = need > 2 * points->capacity ? need : 2 * points->capacity;
-        RadarPoint *grown = realloc(points->point, (size_t)capacity * sizeof *grown);
-        if (!grown) return NULL;
-        points->point = grown;
-        points->capacity = capacity;
-    }
-    return points->point + points->count;
-}
-
-void points_free(RadarPoints *points)
-{
-    free(points->point);
-    *points = (RadarPoints){0};
-}
 
 void beam_at(Making *out, const Making *m, double azimuth_rad, double after_s)
 {

@@ -8,7 +8,7 @@
 
 #include "sensor/radar/detect.h"
 #include "sensor/radar/radar_preset.h"
-#include "sensor/radar/scan.h"
+#include "sensor/radar/radar_scan.h"
 
 /* Truth of one entity within beam and range window. */
 typedef struct RadarTruth {

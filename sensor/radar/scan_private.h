@@ -27,7 +27,4 @@ bool scan_look(ScanLook *out, const ScanWork *work, const double p_enu[3], const
 Status scan_sharpen(ScanWork *work);
 Status scan_pixels(ScanWork *work);
 
-/* All positions but the middle one, whose interval is given, measured anew; then the pictures of the frame. */
-Status making_scan(Making *making, Interval *middle);
-
 #endif

@@ -1,5 +1,5 @@
 /* sensor/radar/seeker_radar.c: see seeker_radar.h. */
-#include "sensor/radar/scan_private.h"
+#include "sensor/radar/seeker_radar_private.h"
 
 #include "render/radar/radar_equation.h"
 

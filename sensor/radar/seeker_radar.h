@@ -9,7 +9,7 @@
  *
  * go through the radar equation, the antenna's pattern at their own direction, and the air (radar_path.h) into the
  * samples of four channels; then receiver and processing. Phases are those of double ranges. A beam that scans
- * (scan.h) has further intervals before and after.
+ * (radar_scan.h) has further intervals before and after.
  *
  * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main
  * lobe's null; ground bounce and what one entity mirrors to another; range rates that change within the interval;

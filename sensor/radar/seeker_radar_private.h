@@ -6,10 +6,11 @@
 #include "render/radar/clutter.h"
 #include "render/radar/radar_path.h"
 #include "render/radar/signatures.h"
-#include "sensor/radar/beam.h"
 #include "sensor/radar/echo.h"
-#include "sensor/radar/scan.h"
+#include "sensor/radar/radar_points.h"
 #include "sensor/radar/seeker_radar.h"
+
+enum { beam_batch = 1 << 16 }; /* echoes of a round */
 
 struct SeekerRadar {
     RadarPreset    preset;
@@ -33,7 +34,7 @@ struct SeekerRadar {
     double complex *scan_pulse;  /* [positions][pulses][samples]: compressed in range, sum channel; NULL: it stares */
 };
 
-struct Making {
+typedef struct Making {
     SeekerRadar      *radar;
     const RadarScene *scene;
     const RadarPreset *preset;
@@ -49,7 +50,7 @@ struct Making {
     double            air_np_m;                    /* power, one way, 1/m */
     Pool             *pool;
     Arena            *arena;
-};
+} Making;
 
 /* From the antenna to a place: range, unit direction, cosines along right and down, whether it is ahead and within
  * the window (grown by more_m). */
@@ -76,5 +77,13 @@ void making_amplitudes(double complex amplitude[interval_channels], const Making
 Status making_targets(Making *making);
 /* Adds those of the ground. */
 Status making_ground(Making *making);
+
+/* A position of the beam: turned about the antenna's down axis to the right, after_s from the frame's time. */
+void   beam_at(Making *out, const Making *making, double azimuth_rad, double after_s);
+/* Adds the echoes of all points to the radar's grid; sum_alone: to its sum channel only. In the order of the points, for
+ * any number of threads. */
+void   beam_echoes(const Making *beam, bool sum_alone);
+/* All positions but the middle one, whose interval is given, measured anew; then the pictures of the frame. */
+Status making_scan(Making *making, Interval *middle);
 
 #endif

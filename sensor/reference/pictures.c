@@ -249,13 +249,13 @@ const Reference reference_radar_map = {
 };
 
 static const ReferenceField radar_scan_fields[] = {
-    {"_scan channel Y", "float", "W", "", "", "real beam: mean power of the pulses of a position, sum beam, noise included; a column a "
+    {"channel scan/Y", "float", "W", "", "", "real beam: mean power of the pulses of a position, sum beam, noise included; a column a "
      "position, left to right, a row a range cell, the farthest on top"},
-    {"_dbs channel Y", "float", "W", "", "out of the window", "sharpened by Doppler where that is finer, else the real beam; finer columns, the same rows"},
-    {"_dbs channel resolution_m", "float", "m", "across, at half power", "out of the window", "of what stands there"},
-    {"_dbs channel sharpened", "float", "", "1, 0", "", "1: by Doppler; 0: the real beam"},
-    {"_view channel scan", "float", "W", "", "sky, out of sector or window", "real beam at range and azimuth of what the frame's pixel shows"},
-    {"_view channel dbs", "float", "W", "", "likewise", "the same, sharpened, for the pixel's own direction"},
+    {"channel dbs/Y", "float", "W", "", "out of the window", "sharpened by Doppler where that is finer, else the real beam; finer columns, the same rows"},
+    {"channel dbs/resolution_m", "float", "m", "across, at half power", "out of the window", "of what stands there"},
+    {"channel dbs/sharpened", "float", "", "1, 0", "", "1: by Doppler; 0: the real beam"},
+    {"channel view/scan", "float", "W", "", "sky, out of sector or window", "real beam at range and azimuth of what the frame's pixel shows"},
+    {"channel view/dbs", "float", "W", "", "likewise", "the same, sharpened, for the pixel's own direction"},
     {"header radar", "string", "", "", "", "row of etc/radars.csv"},
     {"header frame", "int", "", "from 0", "", "number of the frame"},
     {"header time_s", "double", "s", "exercise time", "", "middle of the middle position's interval"},
@@ -279,7 +279,7 @@ const Reference reference_radar_scan = {
     .about = "With radar.scan_deg. An echo's peak is its received power. The PNGs of the same names (NNNNNN_view_scan,\n"
              "NNNNNN_view_dbs) show decibels from 5 dB below the noise to the greatest, 45 dB at least; black: no value. Columns of\n"
              "_view are those of the band images, pixel by pixel.",
-    .notation = "Field: file, `channel` of it, or `header`: attribute of each.",
+    .notation = "Field: `channel` FILE/NAME, or `header`: attribute of each file.",
     .field = REFERENCE_FIELDS(radar_scan_fields),
     .python =
         "import glob, math, numpy, OpenEXR\n"

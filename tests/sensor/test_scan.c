@@ -2,7 +2,6 @@
  * and resolutions against an integral over the aperture and lambda R / (2 v T sin psi). labels: threads */
 #include "tests/check.h"
 
-#include "sensor/radar/beam.h"
 #include "sensor/radar/seeker_radar.h"
 
 static const double radius_m = 0.5, range_m = 3000, eye_m = 200;

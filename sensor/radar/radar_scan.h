@@ -1,4 +1,4 @@
-/* sensor/radar/scan.h: a beam that scans a sector: its real-beam picture, the same sharpened by Doppler, and both on the
+/* sensor/radar/radar_scan.h: a beam that scans a sector: its real-beam picture, the same sharpened by Doppler, and both on the
  * pixels of the frame.
  *
  * The beam steps through positions in azimuth about the antenna's down axis, an odd number, from left to right; each is
@@ -17,8 +17,8 @@
  * The sharpened picture takes the ground as level, at the height of the reference point; the pixels have their own
  * directions. What moves is displaced in it, as in every picture by Doppler. Between positions the real beam is a cubic
  * (Catmull and Rom's) of the logarithm: exact for a Gaussian beam. */
-#ifndef SENSOR_RADAR_SCAN_H
-#define SENSOR_RADAR_SCAN_H
+#ifndef SENSOR_RADAR_RADAR_SCAN_H
+#define SENSOR_RADAR_RADAR_SCAN_H
 
 #include "sensor/radar/radar_preset.h"
 
