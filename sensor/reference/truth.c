@@ -181,9 +181,9 @@ static const ReferenceField fields[] = {
     {"radar.scan.step_deg", "number", "deg", "", "", "between positions, left to right, about the camera's rows axis"},
     {"radar.scan.interval_s", "number", "s", "", "", "from one position to the next"},
     {"radar.scan.beam_deg", "number", "deg", "", "", "width of the two-way beam at half power"},
-    {"radar.scan.noise_dbw", "number", "dB over 1 W", "", "", "thermal noise in a cell of the real-beam picture"},
-    {"radar.scan.sharpened_share", "number", "", "0 .. 1", "", "of the sharpened picture's cells where Doppler is finer than the beam"},
-    {"radar.scan.sha256", "string", "", "", "", "SHA-256 of both pictures over range and azimuth, before they are rounded for a file"},
+    {"radar.scan.noise_dbw", "number", "dB over 1 W", "", "", "thermal noise in a cell of the real-beam image"},
+    {"radar.scan.sharpened_share", "number", "", "0 .. 1", "", "of the sharpened image's cells where Doppler is finer than the beam"},
+    {"radar.scan.sha256", "string", "", "", "", "SHA-256 of both images over range and azimuth, before they are rounded for a file"},
     {"radar.detections", "list of objects", "", "strongest first, at most 256", "", "peaks over the threshold of constant false "
      "alarms"},
     {"radar.detections[].range_m", "number", "m", "from the sensor", "", "between cells"},
