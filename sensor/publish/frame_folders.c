@@ -54,7 +54,8 @@ static bool is_frame_name(const char *name)
         if (name[i] < '0' || name[i] > '9') return false;
     const size_t stem = strcspn(name + 6, ".");
     bool         known = stem == 0;
-    for (size_t i = 0; i < sizeof scan / sizeof *scan; i++) known |= strlen(scan[i]) == stem && strncmp(name + 6, scan[i], stem) == 0;
+    for (size_t i = 0; i < sizeof scan / sizeof *scan; i++)
+        known |= strlen(scan[i]) == stem && strncmp(name + 6, scan[i], stem) == 0;
     const char *ending = name + 6 + stem;
     return known && (strcmp(ending, ".exr") == 0 || strcmp(ending, ".png") == 0 || strcmp(ending, ".csv") == 0);
 }

@@ -1,8 +1,8 @@
 /* sensor/radar/beam.c: what one position of the beam receives of a frame's points.
  *
- * A position is a Making with an axis of its own, an instant of its own (after_s, from the frame's time) and the antenna
- * where it is then; points have moved by their own velocities. A path and its growth are those at the frame's time plus
- * the change of the range of the point since: exact for what moves evenly. */
+ * A position is a Making with an axis of its own, an instant of its own (after_s, from the frame's time) and the
+ * antenna where it is then; points have moved by their own velocities. A path and its growth are those at the frame's
+ * time plus the change of the range of the point since: exact for what moves evenly. */
 #include "sensor/radar/seeker_radar_private.h"
 
 enum { block = 1024 };
@@ -62,7 +62,8 @@ static void echo_block(void *user, int worker, int task)
     int kept = 0;
     for (int i = first; i < end; i++) {
         if (!echo_of(&e[kept], job->beam, &job->beam->radar->points.point[i])) continue;
-        if (job->sum_alone) e[kept].amplitude[CHANNEL_RIGHT] = e[kept].amplitude[CHANNEL_DOWN] = e[kept].amplitude[CHANNEL_CROSS] = 0;
+        if (job->sum_alone)
+            for (int c = CHANNEL_SUM + 1; c < interval_channels; c++) e[kept].amplitude[c] = 0;
         kept++;
     }
     job->kept[task] = kept;
@@ -79,7 +80,8 @@ void beam_echoes(const Making *beam, bool sum_alone)
         else for (int b = 0; b < blocks; b++) echo_block(&job, 0, b);
         int kept = 0; /* moved together: one call for all */
         for (int b = 0; b < blocks; b++) {
-            if (kept != b * block) memmove(r->batch + kept, r->batch + (size_t)b * block, (size_t)job.kept[b] * sizeof *r->batch);
+            if (kept != b * block)
+                memmove(r->batch + kept, r->batch + (size_t)b * block, (size_t)job.kept[b] * sizeof *r->batch);
             kept += job.kept[b];
         }
         echo_add(r->echoes, r->batch, kept, beam->pool);

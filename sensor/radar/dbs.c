@@ -1,4 +1,5 @@
-/* sensor/radar/dbs.c: a scan looked up for one place; Doppler beam sharpening; the picture of it over range and azimuth. */
+/* sensor/radar/dbs.c: a scan looked up for one place; Doppler beam sharpening; its picture over range and azimuth, and
+ * over the frame's pixels. */
 #include "sensor/radar/scan_private.h"
 
 enum { cells_a_resolution = 3, finer_most = 64 };
@@ -30,13 +31,14 @@ static bool real_beam(double *power_w, const ScanWork *w, double x, const double
         if (column < 0) return false;
         ln[k] = log(fmax(s->power_w[(size_t)i * (size_t)s->columns + (size_t)column], 1e-300));
     }
-    const double b = 0.5 * (ln[2] - ln[0]), c = ln[0] - 2.5 * ln[1] + 2 * ln[2] - 0.5 * ln[3], d = 1.5 * (ln[1] - ln[2]) + 0.5 * (ln[3] - ln[0]);
+    const double b = 0.5 * (ln[2] - ln[0]), c = ln[0] - 2.5 * ln[1] + 2 * ln[2] - 0.5 * ln[3];
+    const double d = 1.5 * (ln[1] - ln[2]) + 0.5 * (ln[3] - ln[0]);
     *power_w = exp(ln[1] + f * (b + f * (c + f * d)));
     return true;
 }
 
-/* At which position, from the first and between two, the beam's axis has the azimuth that the place has by then. Each step
- * brings it nearer by the place's rate over that of the scan. NAN: never ahead. */
+/* At which position, from the first and between two, the beam's axis has the azimuth that the place has by then. Each
+ * step brings it nearer by the place's rate over that of the scan. NAN: never ahead. */
 static double position_of(const ScanWork *w, const double p_enu[3], const double v_enu_mps[3])
 {
     enum { steps = 8 };
@@ -73,7 +75,8 @@ static double sharp_rad(const ScanWork *w, const double d_enu[3])
 {
     const Making   *m = w->making;
     const Waveform *wave = &m->preset->wave;
-    const double    lambda_m = m->preset->antenna.wavelength_m, slope = rate_slope(m, d_enu, 0), lobe = w->beamwidth_rad;
+    const double    lambda_m = m->preset->antenna.wavelength_m, lobe = w->beamwidth_rad;
+    const double    slope = rate_slope(m, d_enu, 0);
     if (!(slope * rate_slope(m, d_enu, lobe) > 0 && slope * rate_slope(m, d_enu, -lobe) > 0)) return INFINITY;
     if (2 * lobe * fabs(slope) > 0.5 * lambda_m * wave->repeat_hz) return INFINITY;
     const double width = w->width_bins * lambda_m * wave->repeat_hz / (2 * wave->pulses * fabs(slope));
@@ -88,8 +91,8 @@ static double sum_power(const ScanWork *w, int position, int column, const Sight
     const Waveform *wave = &beam->preset->wave;
     const size_t    row = (size_t)wave->samples;
     const double complex *pulse = beam->radar->scan_pulse + (size_t)position * row * (size_t)wave->pulses + column;
-    const double    growth_m = 2 * (making_range_rate(beam, sight, still) - beam->frame->reference_rate_mps) / wave->repeat_hz;
-    const double    phase = 2 * pi_rad / beam->preset->antenna.wavelength_m * growth_m;
+    const double    rate_mps = making_range_rate(beam, sight, still) - beam->frame->reference_rate_mps;
+    const double    phase = 2 * pi_rad / beam->preset->antenna.wavelength_m * (2 * rate_mps / wave->repeat_hz);
     const double complex turn = cexp(I * phase);
     double complex  sum = 0, back = 1;
     for (int n = 0; n < wave->pulses; n++) {

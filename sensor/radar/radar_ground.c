@@ -1,4 +1,4 @@
-/* sensor/radar/radar_ground.c: the echoes of the ground within the main lobe, wherever it turns to, and the range window. */
+/* sensor/radar/radar_ground.c: the echoes of the ground within the main lobe, wherever it turns, and range window. */
 #include "sensor/radar/seeker_radar_private.h"
 
 enum { cells_most = 400000, block = hits_capacity };
@@ -141,8 +141,8 @@ static void scatter_block(void *user, int worker, int task)
         job->point[first + i] = (RadarPoint){
             .p_enu = {g->p_enu[0][i], g->p_enu[1][i], g->p_enu[2][i]},
             .path_m = 2 * (g->sight[i].range_m - m->frame->reference_m),
-            .path_per_pulse_m =
-                2 * (making_range_rate(m, &g->sight[i], still) - m->frame->reference_rate_mps) / m->preset->wave.repeat_hz,
+            .path_per_pulse_m = 2 * (making_range_rate(m, &g->sight[i], still) - m->frame->reference_rate_mps) /
+                                m->preset->wave.repeat_hz,
             .same = m->preset->transmits_h ? matrix[i].hh : matrix[i].vv,
             .other = m->preset->transmits_h ? matrix[i].vh : matrix[i].hv,
             .share = 1, .widest = job->widest};
@@ -177,8 +177,9 @@ Status making_ground(Making *m)
     if (m->pool) pool_run(m->pool, blocks, scatter_block, &job);
     else for (int b = 0; b < blocks; b++) scatter_block(&job, 0, b);
     for (int b = 0; b < blocks; b++) {
-        memmove(r->points.point + r->points.count, job.point + (size_t)b * block, (size_t)job.ground[b].count * sizeof *job.point);
-        r->points.count += job.ground[b].count;
+        const size_t kept = (size_t)job.ground[b].count;
+        memmove(r->points.point + r->points.count, job.point + (size_t)b * block, kept * sizeof *job.point);
+        r->points.count += (int)kept;
         m->frame->ground_cells += job.ground[b].count + job.hidden[b];
         m->frame->ground_hidden += job.hidden[b];
     }

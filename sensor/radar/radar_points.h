@@ -14,7 +14,7 @@ typedef struct RadarPoint {
     double         path_m, path_per_pulse_m; /* as Echo's, at the frame's time */
     double complex same, other;              /* scattered, m: received as transmitted, and in the other polarisation */
     double         share;                    /* of the amplitude that is in sight */
-    double         widest, room_m;           /* sine off an axis, and metres beyond the window, within which it counts */
+    double         widest, room_m;           /* counts so far off an axis (sine), and beyond the window */
 } RadarPoint;
 
 typedef struct RadarPoints {

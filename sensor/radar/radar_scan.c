@@ -9,8 +9,9 @@ Status scan_plan(ScanPlan *out, const RadarPreset *preset, double sector_rad, do
     out->step_rad = step_share * antenna_width_rad(&preset->antenna);
     const double side = ceil(0.5 * sector_rad / out->step_rad - 1e-9), all = 2 * side + 1;
     if (all > scan_positions_most || all * wave->pulses * wave->samples > 1 << 27) {
-        log_error("radar: a scan of %.1f degrees is %.0f positions of %s; choose a smaller radar.scan_deg or a larger radar.scan_step "
-                  "(at most %d positions, 2^27 samples in all)", sector_rad / rad_per_deg, all, preset->name, scan_positions_most);
+        log_error("radar: a scan of %.1f degrees is %.0f positions of %s; choose a smaller radar.scan_deg or a larger "
+                  "radar.scan_step (at most %d positions, 2^27 samples in all)",
+                  sector_rad / rad_per_deg, all, preset->name, scan_positions_most);
         return STATUS_BAD_VALUE;
     }
     out->positions = (int)all;

@@ -1,17 +1,17 @@
-/* sensor/radar/radar_scan.h: a beam that scans a sector: its real-beam picture, the same sharpened by Doppler, and both on the
- * pixels of the frame.
+/* sensor/radar/radar_scan.h: a beam that scans a sector: its real-beam picture, that picture sharpened by Doppler, and
+ * both on the pixels of the frame.
  *
  * The beam steps through positions in azimuth about the antenna's down axis, an odd number, from left to right; each is
  * one coherent interval, they follow each other without pause, and the middle one is the frame's own at its time. The
  * antenna and what it sees move on meanwhile.
  *
  *     real beam    mean power of a position's pulses over range (relative to the reference, which is followed)
- *     sharpened    of the position that comes nearest in azimuth, the pulses summed for the Doppler of still ground there, which
- *                  the antenna's own velocity gives; over the pattern's loss off the position's axis. Resolution
- *                  width lambda R / (2 T |v . (down x d)|), which is lambda R / (2 v T sin psi) for level flight: width
- *                  is the Doppler window's at half power. Where that is no finer than the two-way beam, where the other
- *                  side of the velocity is within a beamwidth, or Doppler folds over within the beam, the real beam
- *                  stands in its place (`sharpened` 0)
+ *     sharpened    of the position that comes nearest in azimuth, the pulses summed for the Doppler of still ground
+ *                  there, which the antenna's own velocity gives; over the pattern's loss off the position's axis.
+ *                  Resolution width lambda R / (2 T |v . (down x d)|), which is lambda R / (2 v T sin psi) for level
+ *                  flight: width is the Doppler window's at half power. Where that is no finer than the two-way beam,
+ *                  where the other side of the velocity is within a beamwidth, or Doppler folds over within the beam,
+ *                  the real beam stands in its place (`sharpened` 0)
  *     on pixels    value at the range and azimuth of what the pixel shows, moved on to when the beam's axis meets it
  *
  * The sharpened picture takes the ground as level, at the height of the reference point; the pixels have their own

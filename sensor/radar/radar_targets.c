@@ -140,7 +140,8 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
 
     v3_sub(v, t->v_enu_mps, m->scene->v_enu_mps);
     v3_add_scaled(across_mps, v, -v3_dot(v, sight->d_enu), sight->d_enu);
-    const double turn_rad = (interval_s + 2 * making_wait_s(m, sight)) * (v3_length(across_mps) / sight->range_m + v3_length(t->entity->w_body_rps));
+    const double span_s = interval_s + 2 * making_wait_s(m, sight);
+    const double turn_rad = span_s * (v3_length(across_mps) / sight->range_m + v3_length(t->entity->w_body_rps));
     status = centres_make(&r->centres, field, &t->antenna, &t->antenna,
                           &(CentresConfig){.frequency_hz = p->wave.centre_hz, .bandwidth_hz = p->wave.bandwidth_hz,
                                            .turn_rad = turn_rad, .phase_rad = 0.1});

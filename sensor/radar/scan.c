@@ -12,7 +12,8 @@ static void keep_position(ScanWork *w, const Interval *interval, int i)
     interval_compress(pulse, r->plan, interval, CHANNEL_SUM);
     for (size_t x = 0; x < row; x++) {
         double power = 0;
-        for (size_t at = x; at < plane; at += row) power += creal(pulse[at]) * creal(pulse[at]) + cimag(pulse[at]) * cimag(pulse[at]);
+        for (size_t at = x; at < plane; at += row)
+            power += creal(pulse[at]) * creal(pulse[at]) + cimag(pulse[at]) * cimag(pulse[at]);
         w->scan->power_w[(size_t)i * row + x] = power / interval->wave.pulses;
     }
 }
@@ -33,7 +34,8 @@ static Status measure_positions(ScanWork *w, Interval *middle)
         if (from_middle == 0) continue;
         beam_echoes(&w->beam[i], true);
         echo_sum(interval.sample, r->echoes);
-        receiver_apply(&report, &interval, &m->preset->receiver, r->seed, stream_scan + 2u * (uint32_t)i, m->scene->number);
+        receiver_apply(&report, &interval, &m->preset->receiver, r->seed, stream_scan + 2u * (uint32_t)i,
+                       m->scene->number);
         keep_position(w, &interval, i);
     }
     return STATUS_OK;
@@ -68,8 +70,9 @@ Status making_scan(Making *m, Interval *middle)
     const RadarPreset *p = m->preset;
     const ScanPlan     plan = m->radar->scan;
     RadarScan         *scan = arena_alloc(m->arena, 1, sizeof *scan);
-    ScanWork           w = {.making = m, .scan = scan, .beam = arena_alloc(m->arena, (size_t)plan.positions, sizeof *w.beam),
-                            .beamwidth_rad = antenna_width_rad(&p->antenna), .metre_per_column = m->frame->map.metre_per_column};
+    ScanWork           w = {.making = m, .scan = scan, .beamwidth_rad = antenna_width_rad(&p->antenna),
+                            .metre_per_column = m->frame->map.metre_per_column};
+    w.beam = arena_alloc(m->arena, (size_t)plan.positions, sizeof *w.beam);
     if (!scan || !w.beam) return STATUS_NO_MEMORY;
     *scan = (RadarScan){.plan = plan, .columns = p->wave.samples, .beam_rad = antenna_two_way_width_rad(&p->antenna)};
     scan->power_w = arena_alloc(m->arena, (size_t)plan.positions * (size_t)scan->columns, sizeof *scan->power_w);

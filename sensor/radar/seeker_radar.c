@@ -86,7 +86,8 @@ void making_sight(Sight *out, const Making *m, const double p_enu[3], double mor
     v3_scale(out->d_enu, 1 / fmax(out->range_m, 1e-3), to);
     out->cos_right = v3_dot(out->d_enu, m->right);
     out->cos_down = v3_dot(out->d_enu, m->down);
-    out->within = v3_dot(out->d_enu, m->ahead) > 0 && fabs(out->range_m - m->reference_m) < m->half_window_m + (m->sweep_m + more_m);
+    out->within = v3_dot(out->d_enu, m->ahead) > 0 &&
+                  fabs(out->range_m - m->reference_m) < m->half_window_m + (m->sweep_m + more_m);
 }
 
 double making_off_axis(const Making *m, const Sight *sight)

@@ -44,7 +44,8 @@ typedef struct Making {
     double            right[3], down[3], ahead[3]; /* its axes, ENU */
     double            reference_m;                 /* middle of the range window now */
     double            after_s;                     /* since the frame's time */
-    double            scan_half_rad, sweep_m;      /* the beam will turn so far to both sides; and ranges will change by up to */
+    double            scan_half_rad;               /* the beam will turn so far to both sides */
+    double            sweep_m;                     /* and ranges will change by up to this */
     double            half_window_m;               /* of range */
     double            widest;                      /* sine off the axis beyond which entities are left out */
     double            air_np_m;                    /* power, one way, 1/m */
@@ -80,8 +81,8 @@ Status making_ground(Making *making);
 
 /* A position of the beam: turned about the antenna's down axis to the right, after_s from the frame's time. */
 void   beam_at(Making *out, const Making *making, double azimuth_rad, double after_s);
-/* Adds the echoes of all points to the radar's grid; sum_alone: to its sum channel only. In the order of the points, for
- * any number of threads. */
+/* Adds the echoes of all points to the radar's grid; sum_alone: to its sum channel only. In the order of the points,
+ * for any number of threads. */
 void   beam_echoes(const Making *beam, bool sum_alone);
 /* All positions but the middle one, whose interval is given, measured anew; then the pictures of the frame. */
 Status making_scan(Making *making, Interval *middle);

@@ -249,12 +249,15 @@ const Reference reference_radar_map = {
 };
 
 static const ReferenceField radar_scan_fields[] = {
-    {"channel scan/Y", "float", "W", "", "", "real beam: mean power of the pulses of a position, sum beam, noise included; a column a "
+    {"channel scan/Y", "float", "W", "", "",
+     "real beam: mean power of the pulses of a position, sum beam, noise included; a column a "
      "position, left to right, a row a range cell, the farthest on top"},
-    {"channel dbs/Y", "float", "W", "", "out of the window", "sharpened by Doppler where that is finer, else the real beam; finer columns, the same rows"},
+    {"channel dbs/Y", "float", "W", "", "out of the window",
+     "sharpened by Doppler where that is finer, else the real beam; finer columns, the same rows"},
     {"channel dbs/resolution_m", "float", "m", "across, at half power", "out of the window", "of what stands there"},
     {"channel dbs/sharpened", "float", "", "1, 0", "", "1: by Doppler; 0: the real beam"},
-    {"channel view/scan", "float", "W", "", "sky, out of sector or window", "real beam at range and azimuth of what the frame's pixel shows"},
+    {"channel view/scan", "float", "W", "", "sky, out of sector or window",
+     "real beam at range and azimuth of what the frame's pixel shows"},
     {"channel view/dbs", "float", "W", "", "likewise", "the same, sharpened, for the pixel's own direction"},
     {"header radar", "string", "", "", "", "row of etc/radars.csv"},
     {"header frame", "int", "", "from 0", "", "number of the frame"},
@@ -265,9 +268,11 @@ static const ReferenceField radar_scan_fields[] = {
     {"header beam_deg", "double", "deg", "", "", "width of the two-way beam at half power"},
     {"header noise_w", "double", "W", "", "", "thermal noise in the real beam"},
     {"header sharp_noise_w", "double", "W", "", "", "thermal noise where it is sharpened, on the axis of a position"},
-    {"header reference_m", "double", "m", "from the sensor", "in _view", "range of row height / 2 - 1; followed over the positions"},
+    {"header reference_m", "double", "m", "from the sensor", "in _view",
+     "range of row height / 2 - 1; followed over the positions"},
     {"header metre_per_row", "double", "m", "", "in _view", "range"},
-    {"header first_azimuth_deg", "double", "deg", "right positive", "in _view", "of the first column, off the camera's axis"},
+    {"header first_azimuth_deg", "double", "deg", "right positive", "in _view",
+     "of the first column, off the camera's axis"},
     {"header azimuth_step_deg", "double", "deg", "", "in _view", "between columns"},
     {"header capDate", "string", "", "UTC, YYYY:MM:DD HH:MM:SS", "", "instant of the frame; DateTime in OpenImageIO"},
 };
@@ -276,9 +281,9 @@ const Reference reference_radar_scan = {
     .topic = "radar-scan",
     .file  = "radar/NNNNNN_scan.exr, NNNNNN_dbs.exr, NNNNNN_view.exr",
     .title = "scan of radar.preset: real beam, sharpened, on pixels",
-    .about = "With radar.scan_deg. An echo's peak is its received power. The PNGs of the same names (NNNNNN_view_scan,\n"
-             "NNNNNN_view_dbs) show decibels from 5 dB below the noise to the greatest, 45 dB at least; black: no value. Columns of\n"
-             "_view are those of the band images, pixel by pixel.",
+    .about = "With radar.scan_deg. An echo's peak is its received power. The PNGs of the same names\n"
+             "(NNNNNN_view_scan, NNNNNN_view_dbs) show decibels from 5 dB below the noise to the greatest, 45 dB at\n"
+             "least; black: no value. _view has the pixels of the band images.",
     .notation = "Field: `channel` FILE/NAME, or `header`: attribute of each file.",
     .field = REFERENCE_FIELDS(radar_scan_fields),
     .python =
