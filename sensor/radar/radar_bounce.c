@@ -68,7 +68,7 @@ static bool reflection_is_seen(const Making *m, const Target *t, const Bounce *b
     VisibilityCounters        counters = {0};
     Sight                     to;
     making_sight(&to, m, p_enu, m->half_window_m);
-    if (!(v3_dot(to.d_enu, m->ahead) > 0) || hypot(to.cos_right, to.cos_down) > m->widest) return false;
+    if (!(v3_dot(to.d_enu, m->ahead) > 0) || making_off_axis(m, &to) > m->widest) return false;
     rays.count = 1;
     rays.columns = 0;
     rays.far_m[0] = to.range_m;

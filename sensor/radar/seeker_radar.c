@@ -65,6 +65,13 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
     if (status == STATUS_OK)
         status = interval_plan_create(&r->plan, wave, &r->preset.range_window, &r->preset.doppler_window);
+    if (status == STATUS_OK) status = scan_plan(&r->scan, &r->preset, config->scan_rad, config->scan_step);
+    if (status == STATUS_OK) {
+        const size_t samples = (size_t)r->scan.positions * (size_t)wave->pulses * (size_t)wave->samples;
+        r->batch = malloc(beam_batch * sizeof *r->batch);
+        if (config->scan_rad > 0) r->scan_pulse = malloc(samples * sizeof *r->scan_pulse);
+        if (!r->batch || (config->scan_rad > 0 && !r->scan_pulse)) status = STATUS_NO_MEMORY;
+    }
     r->cells = (ClutterGrid){.side_m = 0.25 * light_mps / wave->bandwidth_hz, .seed = config->seed};
     if (status == STATUS_OK) *out = r;
     else seeker_radar_destroy(r);
@@ -78,6 +85,9 @@ void seeker_radar_destroy(SeekerRadar *r)
     echo_grid_destroy(r->echoes);
     centres_free(&r->centres);
     clutter_cache_destroy(r->drawn);
+    points_free(&r->points);
+    free(r->batch);
+    free(r->scan_pulse);
     signatures_destroy(r->signatures);
     signature_library_close(r->library);
     given_list_close(r->given);
@@ -92,12 +102,21 @@ void seeker_radar_destroy(SeekerRadar *r)
 void making_sight(Sight *out, const Making *m, const double p_enu[3], double more_m)
 {
     double to[3];
-    v3_sub(to, p_enu, m->scene->view->p_enu);
+    v3_sub(to, p_enu, m->p_enu);
     out->range_m = v3_length(to);
     v3_scale(out->d_enu, 1 / fmax(out->range_m, 1e-3), to);
     out->cos_right = v3_dot(out->d_enu, m->right);
     out->cos_down = v3_dot(out->d_enu, m->down);
-    out->within = v3_dot(out->d_enu, m->ahead) > 0 && fabs(out->range_m - m->frame->reference_m) < m->half_window_m + more_m;
+    out->within = v3_dot(out->d_enu, m->ahead) > 0 &&
+                  fabs(out->range_m - m->reference_m) < m->half_window_m + (m->sweep_m + more_m);
+}
+
+double making_off_axis(const Making *m, const Sight *sight)
+{
+    if (!(m->scan_half_rad > 0)) return hypot(sight->cos_right, sight->cos_down);
+    const double ahead = v3_dot(sight->d_enu, m->ahead), azimuth = atan2(sight->cos_right, ahead);
+    const double off = azimuth - clamp(azimuth, -m->scan_half_rad, m->scan_half_rad);
+    return hypot(sin(off) * hypot(sight->cos_right, ahead), sight->cos_down);
 }
 
 double making_range_rate(const Making *m, const Sight *sight, const double v_enu_mps[3])
@@ -117,12 +136,6 @@ void making_amplitudes(double complex amplitude[interval_channels], const Making
     amplitude[CHANNEL_RIGHT] = same * gain.right;
     amplitude[CHANNEL_DOWN] = same * gain.down;
     amplitude[CHANNEL_CROSS] = other * gain.sum;
-}
-
-void making_echo(Echo *out, const Making *m, const Sight *sight, const double v_enu_mps[3])
-{
-    out->path_m = 2 * (sight->range_m - m->frame->reference_m);
-    out->path_per_pulse_m = 2 * (making_range_rate(m, sight, v_enu_mps) - m->frame->reference_rate_mps) / m->preset->wave.repeat_hz;
 }
 
 double making_null(const Making *m)
@@ -161,6 +174,12 @@ static void aim_window(Making *m)
     v3_add_scaled(end, m->scene->view->p_enu, f->reference_m, m->ahead);
     if (m->scene->world->landscape) ground_m = elevation_height(&m->scene->world->landscape->elevation, end[0], end[1], NULL);
     m->base_m = isfinite(ground_m) ? ground_m : 0;
+    m->reference_m = f->reference_m;
+    /* to be kept for positions of the beam before and after */
+    const ScanPlan *scan = &m->radar->scan;
+    const double    half_s = scan->positions / 2 * scan->interval_s;
+    m->scan_half_rad = scan->positions / 2 * scan->step_rad;
+    m->sweep_m = half_s * (v3_length(v) + v3_length(m->scene->v_enu_mps));
 }
 
 /* Loss by the air over the reference range, taken as even along it. */
@@ -228,6 +247,7 @@ static Status make(Making *m)
     if (status != STATUS_OK) return status;
     visibility_materials(visibility, &scene->world->materials);
     m->visibility = visibility;
+    m->radar->points.count = 0;
     interval.sample = arena_alloc(m->arena, interval_channels * (size_t)wave->pulses * (size_t)wave->samples, sizeof *interval.sample);
     if (!interval.sample) return STATUS_NO_MEMORY;
     aim_window(m);
@@ -239,9 +259,14 @@ static Status make(Making *m)
     if (status == STATUS_OK) status = making_volume(m);
     if (status == STATUS_OK) status = visibility_status(visibility);
     if (status != STATUS_OK) return status;
+    Making beam;
+    beam_at(&beam, m, 0, 0);
+    status = beam_echoes(&beam, false);
+    if (status != STATUS_OK) return status;
     echo_sum(interval.sample, m->radar->echoes);
     receiver_apply(&m->frame->receiver, &interval, &m->preset->receiver, m->radar->seed, stream_noise, scene->number);
-    return process(m, &interval);
+    status = process(m, &interval);
+    return status == STATUS_OK && m->radar->scan_pulse ? making_scan(m, &interval) : status;
 }
 
 Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool, Arena *arena)
@@ -258,6 +283,7 @@ Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const Ra
     memcpy(frame->aim_v_enu_mps, scene->reference_v_enu_mps, sizeof frame->aim_v_enu_mps);
     const double *r = scene->view->r_enu_from_cam;
     for (int k = 0; k < 3; k++) {
+        m.p_enu[k] = scene->view->p_enu[k];
         m.right[k] = r[3 * k];
         m.down[k] = r[3 * k + 1];
         m.ahead[k] = r[3 * k + 2];
