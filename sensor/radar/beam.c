@@ -2,7 +2,8 @@
  *
  * A position is a Making with an axis of its own, an instant of its own (after_s, from the frame's time) and the
  * antenna where it is then; points have moved by their own velocities. A path and its growth are those at the frame's
- * time plus the change of the range of the point since: exact for what moves evenly. */
+ * time plus the change of the range of the point since: exact for what moves evenly. Entities are seen anew, as their
+ * aspect changes; so is rain. */
 #include "sensor/radar/seeker_radar_private.h"
 
 enum { block = 1024 };
@@ -26,7 +27,7 @@ static bool echo_of(Echo *e, const Making *beam, const RadarPoint *q)
 {
     double p[3];
     Sight  sight;
-    v3_add_scaled(p, q->p_enu, beam->after_s, q->v_enu_mps);
+    v3_add_scaled(p, q->p_enu, q->own ? 0 : beam->after_s, q->v_enu_mps);
     making_sight(&sight, beam, p, q->room_m);
     if (!sight.within || hypot(sight.cos_right, sight.cos_down) > q->widest) return false;
     const ScatterMatrix s = {.hh = q->same, .vv = q->same, .hv = q->other, .vh = q->other};
@@ -34,7 +35,7 @@ static bool echo_of(Echo *e, const Making *beam, const RadarPoint *q)
     for (int k = 0; k < interval_channels; k++) e->amplitude[k] *= q->share;
     e->path_m = q->path_m;
     e->path_per_pulse_m = q->path_per_pulse_m;
-    if (beam->after_s == 0) return true;
+    if (beam->after_s == 0 || q->own) return true;
     double at_frame[3];
     v3_sub(at_frame, q->p_enu, beam->scene->view->p_enu);
     const double was_m = v3_length(at_frame), rate_mps = making_range_rate(beam, &sight, q->v_enu_mps);
@@ -72,10 +73,11 @@ static void echo_block(void *user, int worker, int task)
 Status beam_echoes(Making *beam, bool sum_alone)
 {
     SeekerRadar *r = beam->radar;
-    const int    lasting = r->points.count;
-    const Status status = making_rain(beam);
-    if (status != STATUS_OK) return status;
-    for (int first = 0; first < r->points.count; first += beam_batch) {
+    const int    lasting = r->points.count, from = beam->after_s == 0 ? 0 : r->target_points;
+    Status       status = making_rain(beam);
+    if (status == STATUS_OK && beam->after_s != 0) status = making_targets_anew(beam);
+    if (status != STATUS_OK || beam->missing > 0) return status;
+    for (int first = from; first < r->points.count; first += beam_batch) {
         const int end = first + beam_batch < r->points.count ? first + beam_batch : r->points.count;
         const int blocks = (end - first + block - 1) / block;
         BeamJob   job = {.beam = beam, .first = first, .end = end, .sum_alone = sum_alone, .echo = r->batch};

@@ -73,7 +73,7 @@ static bool reflection_is_seen(const Making *m, const Target *t, const Bounce *b
     rays.columns = 0;
     rays.far_m[0] = to.range_m;
     for (int k = 0; k < 3; k++) {
-        rays.o_enu[k][0] = m->scene->view->p_enu[k];
+        rays.o_enu[k][0] = m->p_enu[k];
         rays.d_enu[k][0] = to.d_enu[k];
     }
     visibility_first_hit(&hits, m->visibility, &rays, NULL, -1, m->scene->hidden, &counters);
@@ -144,7 +144,7 @@ static Status add_echoes(Making *m, const Target *t, const Bounce *b, const Rada
         making_target_velocity(v_enu_mps, t, t->of->part[c->part].node, c->p);
         const Way ground = way_by_ground(m, b, p_enu, v_enu_mps), other = once ? way_direct(m, p_enu, v_enu_mps) : ground;
         ground_through(&s, &c->s, &b->by_ground, once ? &b->direct : &b->by_ground);
-        echo[i] = (Echo){.path_m = t->antenna.range_m + b->image.range_m - 2 * m->frame->reference_m + c->path_m};
+        echo[i] = (Echo){.path_m = t->antenna.range_m + b->image.range_m - 2 * m->reference_m + c->path_m};
         if (!once) echo[i].path_m += b->by_ground.extra_m;
         add_amplitudes(echo[i].amplitude, m, &other, &ground, &s);
         if (once) add_amplitudes(echo[i].amplitude, m, &ground, &other, &(ScatterMatrix){s.hh, s.vh, s.hv, s.vv});

@@ -15,6 +15,7 @@ typedef struct RadarPoint {
     double complex same, other;              /* scattered, m: received as transmitted, and in the other polarisation */
     double         share;                    /* of the amplitude that is in sight */
     double         widest, room_m;           /* counts so far off an axis (sine), and beyond the window */
+    bool           own;                      /* of one position, not the frame's: place and path are those at its instant */
 } RadarPoint;
 
 typedef struct RadarPoints {

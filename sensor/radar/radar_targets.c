@@ -156,10 +156,11 @@ static void point_block(void *user, int worker, int task)
         q->same = m->preset->transmits_h ? c->s.hh : c->s.vv;
         q->other = m->preset->transmits_h ? c->s.vh : c->s.hv;
         q->share = 1;
-        q->path_m = 2 * (job->sight->range_m - m->frame->reference_m) + c->path_m;
+        q->path_m = 2 * (job->sight->range_m - m->reference_m) + c->path_m;
         q->path_per_pulse_m = 2 * (making_range_rate(m, &to, q->v_enu_mps) - m->frame->reference_rate_mps) * pulse_s;
         q->widest = m->widest + room_m / job->sight->range_m;
         q->room_m = room_m;
+        q->own = m->after_s != 0;
     }
 }
 
@@ -168,7 +169,7 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     SeekerRadar  *r = m->radar;
     ScatterMatrix field;
     bool          found;
-    radar_antenna(&t->antenna, m->scene->view->p_enu, t->p_enu, t->r_enu_from_body);
+    radar_antenna(&t->antenna, m->p_enu, t->p_enu, t->r_enu_from_body);
     *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down};
     Status status = find_centres(&found, m, t, truth);
     if (status != STATUS_OK) return status;
@@ -186,7 +187,7 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     centres_field(&field, &r->centres, m->preset->wave.centre_hz);
     for (int i = 0; i < r->centres.count; i++)
         if (seen[i]) r->centres.centre[count++] = r->centres.centre[i];
-    PointJob job = {m, t, sight, r->centres.centre, points_room(&r->points, count), {0}, {0}, count};
+    PointJob job = {m, t, sight, r->centres.centre, points_room(&r->points, count + 1), {0}, {0}, count};
     if (!job.point) return STATUS_NO_MEMORY;
     memcpy(job.h_enu, h_enu, sizeof h_enu);
     memcpy(job.v_enu, v_enu, sizeof v_enu);
@@ -208,12 +209,13 @@ static Status take_target(bool *taken, Making *m, Target *t, Sight *sight)
     const Model *shown = catalog_model(m->scene->world->catalog, e->model);
     if (!catalog_has_shape(m->scene->world->catalog, e->model)) return STATUS_OK;
     enu_from_ecef(t->p_enu, frame, e->p_ecef);
+    m3_tmul_v3(t->v_enu_mps, frame->r_ecef_from_enu, e->v_ecef_mps);
+    v3_add_scaled(t->p_enu, t->p_enu, m->after_s, t->v_enu_mps);
     making_sight(sight, m, t->p_enu, shown->radius_m);
     const double sine = making_off_axis(m, sight), room = shown->radius_m / fmax(sight->range_m, 1);
     if (!sight->within || sine > m->widest + room || sight->range_m < 2 * shown->radius_m) return STATUS_OK;
     t->model = catalog_find(m->radar->catalog, e->type, &origin, NULL);
     t->of = catalog_model(m->radar->catalog, t->model);
-    m3_tmul_v3(t->v_enu_mps, frame->r_ecef_from_enu, e->v_ecef_mps);
     m3_tmul(t->r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
     NodePose *pose = arena_alloc(m->arena, (size_t)t->of->node_count + 1, sizeof *pose);
     t->joint = arena_alloc(m->arena, (size_t)t->of->node_count + 1, sizeof *t->joint);
@@ -224,18 +226,35 @@ static Status take_target(bool *taken, Making *m, Target *t, Sight *sight)
     return STATUS_OK;
 }
 
-Status making_targets(Making *m)
+static Status each_target(Making *m, RadarTruth **truth, int *count)
 {
     const Snapshot *snapshot = m->scene->snapshot;
-    RadarTruth     *truth = arena_alloc(m->arena, (size_t)snapshot->count + 1, sizeof *truth);
-    Status          status = truth ? STATUS_OK : STATUS_NO_MEMORY;
-    m->frame->target = truth;
+    Status          status = STATUS_OK;
+    *truth = arena_alloc(m->arena, (size_t)snapshot->count + 1, sizeof **truth);
+    *count = 0;
+    if (!*truth) return STATUS_NO_MEMORY;
     for (int i = 0; i < snapshot->count && status == STATUS_OK; i++) {
         Target t = {.entity = &snapshot->entity[i], .index = i};
         Sight  sight;
         bool   taken;
         status = take_target(&taken, m, &t, &sight);
-        if (status == STATUS_OK && taken) status = add_target(m, &t, &sight, &truth[m->frame->targets++]);
+        if (status == STATUS_OK && taken) status = add_target(m, &t, &sight, &(*truth)[(*count)++]);
     }
     return status;
+}
+
+Status making_targets(Making *m)
+{
+    RadarTruth  *truth;
+    const Status status = each_target(m, &truth, &m->frame->targets);
+    m->frame->target = truth;
+    m->radar->target_points = m->radar->points.count;
+    return status;
+}
+
+Status making_targets_anew(Making *beam)
+{
+    RadarTruth *truth;
+    int         count;
+    return each_target(beam, &truth, &count);
 }

@@ -59,23 +59,18 @@ void making_wind(double v_enu_mps[3], const Making *m)
     v_enu_mps[2] = 0;
 }
 
-/* As it is at the frame's time, of one that is where a sight leads to at the position's. */
 static void place_point(RadarPoint *q, const Making *m, const VolumePoint *point, double widest)
 {
-    double to[3];
     v3_add_scaled(q->p_enu, m->p_enu, point->sight.range_m, point->sight.d_enu);
-    v3_add_scaled(q->p_enu, q->p_enu, -m->after_s, point->v_enu_mps);
     memcpy(q->v_enu_mps, point->v_enu_mps, sizeof q->v_enu_mps);
-    v3_sub(to, q->p_enu, m->scene->view->p_enu);
-    Sight sight = {.range_m = v3_length(to)};
-    v3_scale(sight.d_enu, 1 / fmax(sight.range_m, 1e-3), to);
-    q->path_m = 2 * (sight.range_m - m->frame->reference_m);
-    q->path_per_pulse_m = 2 * (making_range_rate(m, &sight, q->v_enu_mps) - m->frame->reference_rate_mps) / m->preset->wave.repeat_hz;
+    q->path_m = 2 * (point->sight.range_m - m->reference_m);
+    q->path_per_pulse_m = 2 * (making_range_rate(m, &point->sight, q->v_enu_mps) - m->frame->reference_rate_mps) / m->preset->wave.repeat_hz;
     q->same = m->preset->transmits_h ? point->s.hh : point->s.vv;
     q->other = m->preset->transmits_h ? point->s.vh : point->s.hv;
     q->share = 1;
     q->widest = widest;
     q->room_m = 0;
+    q->own = m->after_s != 0;
 }
 
 int making_keep(RadarPoint *out, VolumePoint *point, int count, const Making *m, double slack_m, double widest)

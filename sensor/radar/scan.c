@@ -20,7 +20,7 @@ static void keep_position(ScanWork *w, const Interval *interval, int i)
 
 static Status measure_positions(ScanWork *w, Interval *middle)
 {
-    const Making  *m = w->making;
+    Making         *m = w->making;
     const ScanPlan *plan = &w->scan->plan;
     const Waveform *wave = &middle->wave;
     SeekerRadar    *r = m->radar;
@@ -32,8 +32,11 @@ static Status measure_positions(ScanWork *w, Interval *middle)
         const int from_middle = i - plan->positions / 2;
         beam_at(&w->beam[i], m, from_middle * plan->step_rad, from_middle * plan->interval_s);
         if (from_middle == 0) continue;
+        arena_reset(r->position);
+        w->beam[i].arena = r->position;
         const Status status = beam_echoes(&w->beam[i], true);
-        if (status != STATUS_OK) return status;
+        m->missing += w->beam[i].missing;
+        if (status != STATUS_OK || m->missing > 0) return status;
         echo_sum(interval.sample, r->echoes);
         receiver_apply(&report, &interval, &m->preset->receiver, r->seed, stream_scan + 2u * (uint32_t)i,
                        m->scene->number);
@@ -80,7 +83,8 @@ Status making_scan(Making *m, Interval *middle)
     if (!scan->power_w) return STATUS_NO_MEMORY;
     Status status = know_windows(&w);
     if (status == STATUS_OK) status = measure_positions(&w, middle);
-    if (status == STATUS_OK) status = scan_sharpen(&w);
+    if (status != STATUS_OK || m->missing > 0) return status;
+    status = scan_sharpen(&w);
     if (status == STATUS_OK && m->scene->range_m) status = scan_pixels(&w);
     if (status == STATUS_OK) m->frame->scan = scan;
     return status;

@@ -5,7 +5,7 @@
 #include "sensor/radar/seeker_radar_private.h"
 
 typedef struct ScanWork {
-    const Making *making;
+    Making       *making;
     RadarScan    *scan;
     Making       *beam;             /* [positions] */
     double       *weight;           /* [pulses]: Doppler window, over its sum */

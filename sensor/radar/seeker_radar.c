@@ -70,7 +70,8 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
         const size_t samples = (size_t)r->scan.positions * (size_t)wave->pulses * (size_t)wave->samples;
         r->batch = malloc(beam_batch * sizeof *r->batch);
         if (config->scan_rad > 0) r->scan_pulse = malloc(samples * sizeof *r->scan_pulse);
-        if (!r->batch || (config->scan_rad > 0 && !r->scan_pulse)) status = STATUS_NO_MEMORY;
+        if (config->scan_rad > 0) r->position = arena_create();
+        if (!r->batch || (config->scan_rad > 0 && (!r->scan_pulse || !r->position))) status = STATUS_NO_MEMORY;
     }
     r->cells = (ClutterGrid){.side_m = 0.25 * light_mps / wave->bandwidth_hz, .seed = config->seed};
     if (status == STATUS_OK) *out = r;
@@ -88,6 +89,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     points_free(&r->points);
     free(r->batch);
     free(r->scan_pulse);
+    if (r->position) arena_destroy(r->position);
     signatures_destroy(r->signatures);
     signature_library_close(r->library);
     given_list_close(r->given);

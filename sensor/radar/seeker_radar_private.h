@@ -40,6 +40,8 @@ struct SeekerRadar {
     EchoGrid      *echoes;
     IntervalPlan  *plan;
     RadarPoints    points;       /* of the frame at work */
+    int            target_points;/* of them, of entities: the first */
+    Arena         *position;     /* what one position of a scan needs; NULL: it stares */
     Echo          *batch;        /* [beam_batch] */
     ScanPlan       scan;         /* positions 1: the beam stares */
     double complex *scan_pulse;  /* [positions][pulses][samples]: compressed in range, sum channel; NULL: it stares */
@@ -117,6 +119,8 @@ double making_null(const Making *making);
 
 /* Adds the echoes of entities to the radar's points, and their truth to the frame. */
 Status making_targets(Making *making);
+/* Those of entities in one position of a scan. */
+Status making_targets_anew(Making *beam);
 /* Adds those of the ground. */
 Status making_ground(Making *making);
 /* Before any echo: what weakens all of them on their way, foliage and chaff; its loss to a sight's place in nepers of

@@ -123,7 +123,8 @@ static void pixels_have_the_value_of_their_range_and_azimuth(void **state)
         CHECK(real[0] == 0 && real[columns_px - 1] == 0); /* out of the sector */
         const int px = (int)lround(want);
         CHECK(s->view_w[beyond + px] < 1e-3 * real[px]);
-        CHECK_NEAR(at_real, want, 0.05 * beam_px);
+        /* what moves goes through cells of range, and loses more and less between them */
+        CHECK_NEAR(at_real, want, (moves ? 0.1 : 0.03) * beam_px);
         if (!moves) CHECK_NEAR(at_sharp, want, 0.5); /* Doppler displaces what moves */
     }
     seeker_radar_destroy(radar);
