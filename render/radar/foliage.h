@@ -36,7 +36,7 @@ int foliage_in(int *index, int most, const Foliage *foliage, const double low_m[
 
 /* Loss along a ray to range_m from o_enu in direction d_enu (unit), dB, one way: of the length in crowns, linear for 14
  * m and then less (clutter_foliage_db), each class with its share. depth_m (may be NULL): that length. Thread-safe, no
- * allocation: 0.1 us where the ray stays above the plants, some us in woods. Lengths against a march in steps of 5 mm:
+ * allocation: 0.1 us where the ray stays above the plants, some us in woods. Lengths against a march in steps of 2 cm:
  * tests/render/test_foliage.c. */
 double foliage_loss_db(double *depth_m, const Foliage *foliage, const double o_enu[3], const double d_enu[3],
                        double range_m);

@@ -282,7 +282,7 @@ static void rain_behind_the_ground_is_hidden(void **state)
 /* Loss from a place towards the antenna by a march through all crowns, dB one way. */
 static double march_db(const double p_enu[3])
 {
-    static const double step_m = 0.1;
+    static const double step_m = 0.2;
     double              d[3], depth = 0, weighted = 0;
     int                 near[plants], count = 0;
     v3_sub(d, stage.view.p_enu, p_enu);
@@ -315,7 +315,7 @@ static double march_db(const double p_enu[3])
 /* Crowns by points of the test's own in each; and the ground below them. */
 static double canopy_by_integral(const RadarFrame *frame)
 {
-    enum { points = 40 };
+    enum { points = 20 };
     double sum_w = 0;
     for (int i = 0; i < plants; i++) {
         double axis[3][3], scale[2], middle[3];
@@ -342,7 +342,7 @@ static double canopy_by_integral(const RadarFrame *frame)
 
 static double ground_by_integral(const RadarFrame *frame)
 {
-    const double step_m = 2, *o = stage.woods.origin_enu;
+    const double step_m = 4, *o = stage.woods.origin_enu;
     double       sum_w = 0;
     for (double x = o[0] - 100; x < o[0] + 420; x += step_m)
         for (double y = o[1] - 100; y < o[1] + 420; y += step_m) {
