@@ -65,14 +65,16 @@ Status making_canopy(Making *m)
         Sight               sight;
         for (int k = 0; k < 3; k++) p[k] = origin[k] + (double)c->centre_m[k];
         making_sight(&sight, m, p, room_m);
-        if (!sight.within || making_off_axis(m, &sight) > canopy.null + room_m / fmax(sight.range_m, 1)) continue;
+        const double room = room_m / fmax(sight.range_m, 1);
+        if (!sight.within || making_off_axis(m, &sight) > canopy.null + room) continue;
         widest_m = fmax(widest_m, (double)c->across_m);
         crown[lit++] = crown[i];
     }
     if (lit == 0) return STATUS_OK;
     canopy.crown = crown;
     canopy.each = least_each;
-    const double want = fmin(4 * 2 * widest_m / (0.5 * light_mps / m->preset->wave.bandwidth_hz), (double)points_most / lit);
+    const double cell_m = 0.5 * light_mps / m->preset->wave.bandwidth_hz;
+    const double want = fmin(4 * 2 * widest_m / cell_m, (double)points_most / lit);
     while (canopy.each < want && canopy.each < most_each) canopy.each *= 2;
     for (int s = 0; s < SURFACE_COUNT; s++)
         canopy.motion[s] = clutter_motion(&r->clutter.row[s][r->band], m->preset->wave.centre_hz, r->wind_mps);

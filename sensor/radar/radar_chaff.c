@@ -87,7 +87,8 @@ Status making_chaff(Making *m)
         const struct ChaffCloud *cloud = &m->chaff[i];
         Sight                    sight;
         making_sight(&sight, m, cloud->p_enu, 5 * cloud->radius_m);
-        if (!sight.within || making_off_axis(m, &sight) > m->widest + 5 * cloud->radius_m / fmax(sight.range_m, 1)) continue;
+        const double room = 5 * cloud->radius_m / fmax(sight.range_m, 1);
+        if (!sight.within || making_off_axis(m, &sight) > m->widest + room) continue;
         /* some 32 points in a step of range, the cloud being six radii long */
         ChaffJob job = {cloud, (int)clamp(ceil(32 * 6 * cloud->radius_m / cell_m), 512, points_most), making_key(m)};
         status = making_points(m, (job.points + points_a_task - 1) / points_a_task, points_a_task, make_chaff, &job);
