@@ -21,7 +21,7 @@ static const double chaff_same = 0.151, chaff_taken = 0.15915494309189535; /* of
  * dispenser throws, 1 m, tends to 8 m with a time constant of 1 s by the ejection and the wake, and spreads by 0.3 m/s
  * as dipoles fall at different speeds: estimates, after films of cartridges that bloom within a second. */
 double chaff_radius_m(double age_s);
-/* Fall of a dipole in still air: 0.3 m/s (Arnott et al., Desert Research Institute, 2004: 0.2 .. 0.4), so much about it. */
+/* Fall of a dipole in still air: the figure in common use, and an estimate of its spread. */
 static const double chaff_fall_mps = 0.3, chaff_fall_spread_mps = 0.07;
 static const double chaff_turbulence_mps = 0.5; /* rms of the air's motion within a cloud, each way; estimate */
 
@@ -29,7 +29,7 @@ static const double chaff_turbulence_mps = 0.5; /* rms of the air's motion withi
  * normals: complex Gaussian, <|hh|^2> = <|vv|^2> = 3 <|hv|^2> = 3 <hh vv*>. The same in any basis. */
 void chaff_scatter(ScatterMatrix *out, double sigma_m2, const double normal[6]);
 
-/* Dipoles by area along a ray, 1/m2, from its start to range_m: of `dipoles` about centre_m (seen from the ray's start). */
+/* Dipoles by area along a ray, 1/m2, from its start to range_m: of `dipoles` about centre_m, seen from its start. */
 double chaff_column_1_m2(double dipoles, double radius_m, const double centre_m[3], const double d[3], double range_m);
 
 #endif

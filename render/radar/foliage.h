@@ -21,7 +21,8 @@ typedef struct FoliageCrown {
 
 /* Of all standing plants of woods, which need not outlive it. Squares of 16 m (larger where the woods are so wide that
  * there would be more than four million) list what reaches into them: 24 octets a plant and some 10 more. */
-Status foliage_create(Foliage **out, const Woods *woods, const Plants *plants, const ClutterTable *table, ClutterBand band);
+Status foliage_create(Foliage **out, const Woods *woods, const Plants *plants, const ClutterTable *table,
+                      ClutterBand band);
 void   foliage_destroy(Foliage *foliage); /* accepts NULL */
 const Woods *foliage_woods(const Foliage *foliage); /* by which it was made: to compare only */
 
@@ -35,9 +36,10 @@ int foliage_in(int *index, int most, const Foliage *foliage, const double low_m[
 
 /* Loss along a ray to range_m from o_enu in direction d_enu (unit), dB, one way: of the length in crowns, linear for 14
  * m and then less (clutter_foliage_db), each class with its share. depth_m (may be NULL): that length. Thread-safe, no
- * allocation: 0.1 us where the ray stays above the plants, some us in woods. Lengths against a march in steps of 5 mm:
+ * allocation: 0.1 us where the ray stays above the plants, some us in woods. Lengths against a march in steps of 2 cm:
  * tests/render/test_foliage.c. */
-double foliage_loss_db(double *depth_m, const Foliage *foliage, const double o_enu[3], const double d_enu[3], double range_m);
+double foliage_loss_db(double *depth_m, const Foliage *foliage, const double o_enu[3], const double d_enu[3],
+                       double range_m);
 
 /* Whether a place is where plants stand or could: within the squares of the woods, and not beyond what they hold. */
 bool foliage_reaches(const Foliage *foliage, double x_m, double y_m);

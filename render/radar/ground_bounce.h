@@ -46,8 +46,8 @@ typedef struct GroundFields {
 /* Their sum, in the antenna's axes. */
 void ground_sum(ScatterMatrix *out, const GroundFields *s, const GroundLeg *direct, const GroundLeg *image, double k);
 
-/* Below this coherence the ground's paths are left out: of what a perfect mirror would add (once: both ways round)
- * at most 2 and 0.001 thousandths are missed, -54 dB and less; test_ground_bounce.c. */
+/* Below this coherence c the ground's paths are left out: what is missed is at most 2 c |S(i, a)| + c^2 |S(i, i)|, as
+ * a perfect mirror would have them; test_ground_bounce.c. */
 extern const double ground_least_coherence;
 
 /* Where on the ground the leg to a target is reflected: towards the antenna from the target's foot on the plane. */

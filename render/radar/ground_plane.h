@@ -14,7 +14,8 @@ typedef struct GroundPlane {
     double height_m;  /* of the target's origin above it */
 } GroundPlane;
 
-/* ground's: a point of the plane and its upward unit normal, in any frame that target's origin and axes are given in. */
+/* p_ground, n_ground: a point of the plane and its upward unit normal, in the frame that the target's origin and axes
+ * are given in. */
 void ground_plane(GroundPlane *out, const double p_ground[3], const double n_ground[3], const double p_target[3],
                   const double r_from_body[9]);
 static inline double ground_above_m(const GroundPlane *plane, const double p[3])

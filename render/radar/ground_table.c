@@ -12,7 +12,8 @@ static Status bad_row(const Table *table, int row, const char *what, const char 
 
 static Status read_row(GroundTable *out, const Table *table, int row, const int at[column_count])
 {
-    const char        *name = table_text(table, row, at[column_surface]), *heights = table_text(table, row, at[column_heights]);
+    const char        *name = table_text(table, row, at[column_surface]);
+    const char        *heights = table_text(table, row, at[column_heights]);
     const SurfaceClass surface = surface_find(name);
     const bool         waves = strcmp(heights, "waves") == 0;
     double             f_ghz, e1, e2, rms_mm;

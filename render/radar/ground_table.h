@@ -32,8 +32,8 @@ typedef struct GroundSurface {
 GroundSurface ground_surface(const GroundRow *row, double frequency_hz);
 
 /* Share of the amplitude that the mean plane mirrors coherently; x = 2 (k rms sin grazing)^2. Normal heights: exp(-x)
- * (Ament, Proc. IRE 41, 142, 1953). Waves: exp(-x) I0(x) (Miller, Brown & Vegh, IEE Proc. F 131(2), 1984). Slopes small,
- * nothing in its own shadow. Within 3e-7 (tests/render/test_ground_bounce.c). */
+ * (Ament, Proc. IRE 41, 142, 1953). Waves: exp(-x) I0(x) (Miller, Brown & Vegh, IEE Proc. F 131(2), 1984). Slopes
+ * small, nothing in its own shadow. Within 3e-7 (tests/render/test_ground_bounce.c). */
 double ground_roughness(double rms_m, bool waves, double k, double sin_grazing);
 
 /* Reflection for E across and in the plane of incidence (fresnel.h's signs), roughness included. */

@@ -10,10 +10,12 @@ static const double largest_mm = 8;
 bool rain_scatter(RainScatter *out, double f_ghz, double temp_k, double rain_mm_h)
 {
     *out = (RainScatter){0};
-    if (!(f_ghz >= 1 && f_ghz <= 200 && temp_k >= 273.15 && temp_k <= 323.15 && rain_mm_h >= 0 && rain_mm_h <= 300)) return false;
+    if (!(f_ghz >= 1 && f_ghz <= 200 && temp_k >= 273.15 && temp_k <= 323.15 && rain_mm_h >= 0 && rain_mm_h <= 300))
+        return false;
     if (rain_mm_h == 0) return true;
     const double complex water = water_permittivity(f_ghz, temp_k);
-    const double wavelength_m = 1e-9 * light_mps / f_ghz, slope = 4.1 * pow(rain_mm_h, -0.21), step_mm = largest_mm / rain_sizes;
+    const double wavelength_m = 1e-9 * light_mps / f_ghz, slope = 4.1 * pow(rain_mm_h, -0.21);
+    const double step_mm = largest_mm / rain_sizes;
     for (int i = 0; i < rain_sizes; i++) {
         const double    mm = (i + 0.5) * step_mm, drops = 8000 * exp(-slope * mm) * step_mm;
         const MieSphere one = mie_sphere(0.5e-3 * mm, water, wavelength_m);

@@ -5,7 +5,8 @@
  *     N(D) = 8000 exp(-4.1 R^-0.21 D) per m3 and mm        D in mm, R in mm/h
  *
  * each with its cross section by Mie's series: Rayleigh's form is 3 dB too strong at 35 GHz and 25 mm/h, and 13 dB at
- * 95 GHz and 5 mm/h. They fall at 9.65 - 10.3 exp(-0.6 D) m/s in still air (Atlas, Srivastava & Sekhon, Rev. Geophys. 11 (1973) 1).
+ * 95 GHz and 5 mm/h. They fall at 9.65 - 10.3 exp(-0.6 D) m/s in still air (Atlas, Srivastava & Sekhon,
+ * Rev. Geophys. 11 (1973) 1).
  *
  * Drops are flattened and canted, so that a little comes back cross-polarised: the linear depolarisation ratio of rain
  * is -25 dB here; measured -35 .. -20 dB, with rate and elevation (Bringi & Chandrasekar, Polarimetric Doppler Weather

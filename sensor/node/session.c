@@ -88,7 +88,8 @@ static Status measure(Frame *f, Session *s, const Eye *eye)
     const LocalFrame *frame = &s->shared->world->frame;
     const Weather     weather = frame_weather_at(s->shared->config, s->shared->world, f->unix_s);
     RadarScene        scene = {.world = s->shared->world, .snapshot = &f->seen.snapshot, .view = &eye->view, .hidden = eye->hidden,
-                               .reference_m = NAN, .t_s = f->time_s, .weather = &weather, .number = (uint32_t)f->number};
+                               .reference_m = NAN, .t_s = f->time_s, .weather = &weather, .number = (uint32_t)f->number,
+                               .range_m = f->seen.picture.range_m, .entity = f->seen.picture.entity};
     m3_tmul_v3(scene.v_enu_mps, frame->r_ecef_from_enu, eye->state.v_ecef_mps);
     const int aim = dis_entity_id_is_none(s->plan.aim) ? -1 : snapshot_find(&f->seen.snapshot, s->plan.aim);
     if (eye->aim_known) {

@@ -2,6 +2,7 @@
 #include "sensor/publish/consumers.h"
 
 #include "sensor/publish/image_file.h"
+#include "sensor/publish/radar_scan_files.h"
 
 #include <stdlib.h>
 
@@ -114,6 +115,11 @@ static Status write_files(RadarFiles *to, const Frame *f)
     if (status == STATUS_OK) status = path_of(path, to, f, "exr") ? write_map(path, f) : STATUS_BAD_VALUE;
     if (status == STATUS_OK && to->of.config->publish.png)
         status = path_of(path, to, f, "png") ? write_picture(path, f->radar) : STATUS_BAD_VALUE;
+    if (status == STATUS_OK && f->radar->scan) {
+        status = path_of(path, to, f, "") ? STATUS_OK : STATUS_BAD_VALUE;
+        path[strlen(path) - 1] = 0; /* the point */
+        if (status == STATUS_OK) status = radar_scan_files(path, f, to->of.config->publish.png);
+    }
     return status;
 }
 
@@ -140,6 +146,7 @@ Status consume_radar(Consumer **out, const PictureFiles *made_of)
     RadarFiles *to = calloc(1, sizeof *to);
     if (!to) return STATUS_NO_MEMORY;
     *to = (RadarFiles){.consumer = {0, put, NULL, close_files, "radar_files"}, .of = *made_of, .retry = {.what = "files of the radar"}};
+    if (made_of->config->radar.scan_deg > 0) to->consumer.wants |= WANT_PLANES; /* what each pixel shows */
     Status status = snprintf(path, sizeof path, "%s/radar", made_of->out) < (int)sizeof path ? STATUS_OK : STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = frame_files_folder(path);
     if (status == STATUS_OK) *out = &to->consumer;

@@ -46,12 +46,18 @@ Status frame_files_folder(const char *path)
     return STATUS_OK;
 }
 
-/* NNNNNN.exr, .png, .csv: the files of frame_files_write and nothing else. */
+/* NNNNNN.exr, .png, .csv: the files of frame_files_write, and those of radar_scan_files, and nothing else. */
 static bool is_frame_name(const char *name)
 {
+    static const char *const scan[] = {"_scan", "_dbs", "_view", "_view_scan", "_view_dbs"};
     for (int i = 0; i < 6; i++)
         if (name[i] < '0' || name[i] > '9') return false;
-    return strcmp(name + 6, ".exr") == 0 || strcmp(name + 6, ".png") == 0 || strcmp(name + 6, ".csv") == 0;
+    const size_t stem = strcspn(name + 6, ".");
+    bool         known = stem == 0;
+    for (size_t i = 0; i < sizeof scan / sizeof *scan; i++)
+        known |= strlen(scan[i]) == stem && strncmp(name + 6, scan[i], stem) == 0;
+    const char *ending = name + 6 + stem;
+    return known && (strcmp(ending, ".exr") == 0 || strcmp(ending, ".png") == 0 || strcmp(ending, ".csv") == 0);
 }
 
 /* frame_NNNNNN.pvf: the files of frame_save. */

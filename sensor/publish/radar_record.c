@@ -112,6 +112,23 @@ static void set_hash(json_t *o, const RadarFrame *r)
     if (radar_map_sha256(hash, r) == STATUS_OK) json_object_set_new(o, "map_sha256", json_string(hash));
 }
 
+/* The scan: how it was made, and the hash of its pictures before anything is rounded for a file. */
+static json_t *scan_json(const RadarScan *s)
+{
+    json_t     *o = json_object();
+    char        hash[sha256_text_size];
+    const Plane plane[] = {{"scan", PLANE_F64, s->columns, s->plan.positions, s->power_w},
+                           {"dbs", PLANE_F64, s->columns, s->azimuths, s->sharp_w}};
+    json_object_set_new(o, "positions", json_integer(s->plan.positions));
+    set_number(o, "step_deg", s->plan.step_rad / rad_per_deg);
+    set_number(o, "interval_s", s->plan.interval_s);
+    set_number(o, "beam_deg", s->beam_rad / rad_per_deg);
+    set_number(o, "noise_dbw", db(s->noise_w));
+    set_number(o, "sharpened_share", s->sharpened_share);
+    if (plane_hash(hash, plane, 2) == STATUS_OK) json_object_set_new(o, "sha256", json_string(hash));
+    return o;
+}
+
 json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const Catalog *catalog)
 {
     json_t *o = json_object(), *detections = json_array(), *targets = json_array();
@@ -130,6 +147,7 @@ json_t *radar_record_json(const RadarFrame *r, const Snapshot *snapshot, const C
     json_object_set_new(o, "rain_1_m", json_real(r->rain_1_m));
     json_object_set_new(o, "ground_hidden", json_integer(r->ground_hidden));
     set_hash(o, r);
+    if (r->scan) json_object_set_new(o, "scan", scan_json(r->scan));
     for (int i = 0; i < r->detections; i++) json_array_append_new(detections, detection_json(&r->detection[i]));
     json_object_set_new(o, "detections", detections);
     json_object_set_new(o, "detections_in_all", json_integer(r->detections_in_all));

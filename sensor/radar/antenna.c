@@ -41,10 +41,14 @@ static double solve(int m, double scale, double low, double high, double value, 
 
 static double sum_power(int m, double scale, double u) { return scale * lambda(m, u) * lambda(m, u); }
 
-double antenna_width_rad(const Antenna *a)
+static double width_rad(const Antenna *a, double power)
 {
-    return 2 * asin(fmin(solve(a->taper + 1, 1, 0, 3, 0.5, sum_power) / u_per_sine(a), 1));
+    return 2 * asin(fmin(solve(a->taper + 1, 1, 0, 3, power, sum_power) / u_per_sine(a), 1));
 }
+
+double antenna_width_rad(const Antenna *a) { return width_rad(a, 0.5); }
+
+double antenna_two_way_width_rad(const Antenna *a) { return width_rad(a, sqrt(0.5)); }
 
 /* Of the ratio, negative: it rises without bound up to the sum's first zero. */
 static double minus_ratio(int n, double scale, double u) { return -scale * u * lambda(n + 2, u) / lambda(n + 1, u); }

@@ -31,6 +31,8 @@ AntennaGain antenna_gain(const Antenna *antenna, double cos_right, double cos_do
 double antenna_peak_gain(const Antenna *antenna);
 /* Full width between half-power directions, one way, rad. To 1e-9. */
 double antenna_width_rad(const Antenna *antenna);
+/* Both ways: between directions where the product of both ways' gains is half of its peak. To 1e-9. */
+double antenna_two_way_width_rad(const Antenna *antenna);
 /* Direction cosines of one target from the ratios of the differences to the sum, where it is within the first zero
  * of the sum: the result's length is at most that zero's. */
 void antenna_direction(double *cos_right, double *cos_down, const Antenna *antenna, double right, double down);

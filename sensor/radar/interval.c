@@ -112,6 +112,13 @@ double interval_lobe(const IntervalPlan *p, bool doppler, double cells)
     return sum;
 }
 
+void interval_compress(double complex *out, IntervalPlan *p, const Interval *in, int channel)
+{
+    const size_t count = (size_t)p->samples * (size_t)p->pulses;
+    compress(p, in->sample + (size_t)channel * count);
+    for (size_t i = 0; i < count; i++) out[i] = p->rows[2 * i] + I * p->rows[2 * i + 1];
+}
+
 void interval_pulse(double complex *out, IntervalPlan *p, const Interval *in, int channel, int pulse)
 {
     compress(p, in->sample + (size_t)channel * (size_t)p->samples * (size_t)p->pulses);

@@ -39,6 +39,8 @@ void   interval_process(RangeDoppler *out, IntervalPlan *plan, const Interval *i
 double interval_noise_share(const IntervalPlan *plan);
 /* Amplitude at an offset in cells of the response to a point, 1 at 0, over range or over Doppler. */
 double interval_lobe(const IntervalPlan *plan, bool doppler, double cells);
+/* Complex range profiles of all pulses: out[pulses][samples]. */
+void   interval_compress(double complex *out, IntervalPlan *plan, const Interval *in, int channel);
 /* Complex range profile of one pulse: out[samples]. */
 void   interval_pulse(double complex *out, IntervalPlan *plan, const Interval *in, int channel, int pulse);
 /* Of all pulses of a channel: [pulses][samples] complex; valid until the plan is used again. */

@@ -37,8 +37,8 @@ static void reflection_of(double p_enu[3], const Bounce *b, const Target *t)
     v3_add(p_enu, p_enu, t->p_enu);
 }
 
-/* The plane of the ground under an entity that is near it; else that at the reflection, found in a few steps. False: the
- * ground does not mirror this entity to the antenna. */
+/* The plane of the ground under an entity that is near it; else that at the reflection, found in a few steps. False:
+ * the ground does not mirror this entity to the antenna. */
 static bool find_ground(Bounce *b, double p_enu[3], const Making *m, const Target *t)
 {
     double extra_m = 0, right[3];
@@ -68,18 +68,20 @@ static bool reflection_is_seen(const Making *m, const Target *t, const Bounce *b
     VisibilityCounters        counters = {0};
     Sight                     to;
     making_sight(&to, m, p_enu, m->half_window_m);
-    if (!(v3_dot(to.d_enu, m->ahead) > 0) || hypot(to.cos_right, to.cos_down) > m->widest) return false;
+    if (!(v3_dot(to.d_enu, m->ahead) > 0) || making_off_axis(m, &to) > m->widest) return false;
     rays.count = 1;
     rays.columns = 0;
     rays.far_m[0] = to.range_m;
     for (int k = 0; k < 3; k++) {
-        rays.o_enu[k][0] = m->scene->view->p_enu[k];
+        rays.o_enu[k][0] = m->p_enu[k];
         rays.d_enu[k][0] = to.d_enu[k];
     }
     visibility_first_hit(&hits, m->visibility, &rays, NULL, -1, m->scene->hidden, &counters);
     const double own_m = fmax(slack_m, slack_height_m / -v3_dot(b->plane.n, b->image.u));
-    for (int i = 0; i < hits.count; i++)
-        if (hits.kind[i] != hit_sky && hits.range_m[i] < to.range_m - own_m && (int)hits.entity[i] != t->index + 1) return false;
+    for (int i = 0; i < hits.count; i++) {
+        const bool before = hits.kind[i] != hit_sky && hits.range_m[i] < to.range_m - own_m;
+        if (before && (int)hits.entity[i] != t->index + 1) return false;
+    }
     return true;
 }
 
@@ -96,7 +98,8 @@ static Way way_direct(const Making *m, const double p_enu[3], const double v_enu
 {
     Sight to;
     making_sight(&to, m, p_enu, 0);
-    return (Way){to.range_m, making_range_rate(m, &to, v_enu_mps), making_volume_np(m, &to), antenna_gain(&m->preset->antenna, to.cos_right, to.cos_down)};
+    return (Way){to.range_m, making_range_rate(m, &to, v_enu_mps), making_volume_np(m, &to),
+                 antenna_gain(&m->preset->antenna, to.cos_right, to.cos_down)};
 }
 
 static Way way_by_ground(const Making *m, const Bounce *b, const double p_enu[3], const double v_enu_mps[3])
@@ -109,16 +112,18 @@ static Way way_by_ground(const Making *m, const Bounce *b, const double p_enu[3]
     v3_scale(to, 1 / range_m, to);
     v3_sub(v, v_enu_mps, b->v_image_enu_mps);
     v3_add_scaled(d, to, -2 * v3_dot(to, b->n_enu), b->n_enu); /* as it leaves the antenna */
-    return (Way){range_m, v3_dot(to, v), making_volume_np(m, &direct), antenna_gain(&m->preset->antenna, v3_dot(d, m->right), v3_dot(d, m->down))};
+    return (Way){range_m, v3_dot(to, v), making_volume_np(m, &direct),
+                 antenna_gain(&m->preset->antenna, v3_dot(d, m->right), v3_dot(d, m->down))};
 }
 
 /* As making_amplitudes, out by one way and back by another. */
-static void add_amplitudes(double complex amplitude[interval_channels], const Making *m, const Way *out, const Way *back,
-                           const ScatterMatrix *s)
+static void add_amplitudes(double complex amplitude[interval_channels], const Making *m, const Way *out,
+                           const Way *back, const ScatterMatrix *s)
 {
     const RadarPreset   *p = m->preset;
     const RadarLink      link = {p->power_w, 1, 1, p->antenna.wavelength_m, sqrt(out->range_m * back->range_m), p->loss};
-    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-m->air_np_m * (out->range_m + back->range_m) - out->volume_np - back->volume_np));
+    const double         lost_np = m->air_np_m * (out->range_m + back->range_m) + out->volume_np + back->volume_np;
+    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-lost_np));
     const double complex same = unit * out->gain.sum * (p->transmits_h ? s->hh : s->vv);
     const double complex other = unit * out->gain.sum * (p->transmits_h ? s->vh : s->hv);
     amplitude[CHANNEL_SUM] += same * back->gain.sum;
@@ -142,14 +147,15 @@ static Status add_echoes(Making *m, const Target *t, const Bounce *b, const Rada
         m3_mul_v3(p_enu, t->r_enu_from_body, c->p);
         v3_add(p_enu, p_enu, t->p_enu);
         making_target_velocity(v_enu_mps, t, t->of->part[c->part].node, c->p);
-        const Way ground = way_by_ground(m, b, p_enu, v_enu_mps), other = once ? way_direct(m, p_enu, v_enu_mps) : ground;
+        const Way ground = way_by_ground(m, b, p_enu, v_enu_mps);
+        const Way other = once ? way_direct(m, p_enu, v_enu_mps) : ground;
         ground_through(&s, &c->s, &b->by_ground, once ? &b->direct : &b->by_ground);
-        echo[i] = (Echo){.path_m = t->antenna.range_m + b->image.range_m - 2 * m->frame->reference_m + c->path_m};
+        echo[i] = (Echo){.path_m = t->antenna.range_m + b->image.range_m - 2 * m->reference_m + c->path_m};
         if (!once) echo[i].path_m += b->by_ground.extra_m;
         add_amplitudes(echo[i].amplitude, m, &other, &ground, &s);
         if (once) add_amplitudes(echo[i].amplitude, m, &ground, &other, &(ScatterMatrix){s.hh, s.vh, s.hv, s.vv});
         for (int k = 0; k < interval_channels; k++) echo[i].amplitude[k] *= sqrt(truth->visible);
-        echo[i].path_per_pulse_m = (ground.rate_mps + other.rate_mps - 2 * m->frame->reference_rate_mps) * pulse_s;
+        echo[i].path_per_pulse_m = (ground.rate_mps + other.rate_mps - 2 * m->reference_rate_mps) * pulse_s;
     }
     echo_add(r->echoes, echo, count, m->pool);
     return STATUS_OK;
@@ -190,9 +196,11 @@ Status making_bounce(Making *m, const Target *t, const ScatterMatrix *direct, Ra
     v3_add(b.p_image_enu, b.p_image_enu, t->p_enu);
     v3_add_scaled(b.v_image_enu_mps, m->scene->v_enu_mps, -2 * v3_dot(m->scene->v_enu_mps, b.n_enu), b.n_enu);
     for (int twice = 0; twice < 2; twice++) {
-        const SignatureLook  look = {.tx = twice ? b.image : t->antenna, .rx = b.image, .image = {twice, true}, .plane = b.plane};
+        const SignatureLook  look = {.tx = twice ? b.image : t->antenna, .rx = b.image, .image = {twice, true},
+                                     .plane = b.plane};
         const Signature     *signature;
-        Status status = signatures_find(&signature, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &look, m->pool);
+        Status status = signatures_find(&signature, r->signatures, t->model, t->joint, snapshot_damage(t->entity),
+                                        &look, m->pool);
         if (status != STATUS_OK) return status;
         if (!signature) m->missing++;
         if (m->missing > 0) continue;

@@ -12,7 +12,7 @@ typedef struct Canopy {
     ClutterMotion motion[SURFACE_COUNT];
 } Canopy;
 
-static int make_crown(Echo *echo, const Making *m, void *user, int task)
+static int make_crown(RadarPoint *out, const Making *m, void *user, int task)
 {
     static _Thread_local VolumePoint point[most_each];
     const Canopy       *canopy = user;
@@ -34,7 +34,7 @@ static int make_crown(Echo *echo, const Making *m, void *user, int task)
         p[1] = origin[1] + (double)crown->centre_m[1] + across * radius * level * sin(turn);
         p[2] = origin[2] + (double)crown->centre_m[2] + up * radius * z;
         making_sight(&to->sight, m, p, 0);
-        if (!to->sight.within || hypot(to->sight.cos_right, to->sight.cos_down) > canopy->null) continue;
+        if (!to->sight.within || making_off_axis(m, &to->sight) > canopy->null) continue;
         ClutterScatterer leaf;
         clutter_draw_leaf(&leaf, row, r->seed, index, (uint32_t)i);
         clutter_see_leaf(&to->s, &leaf, &canopy->motion[crown->surface], sigma_m2, p, &look);
@@ -42,7 +42,7 @@ static int make_crown(Echo *echo, const Making *m, void *user, int task)
         memset(to->v_enu_mps, 0, sizeof to->v_enu_mps);
         count++;
     }
-    return count > 0 ? making_keep(echo, point, count, m, sight_slack_m) : 0;
+    return count > 0 ? making_keep(out, point, count, m, sight_slack_m, canopy->null) : 0;
 }
 
 /* So many points a crown that some four are in each step of range across the widest of them, fewer where there would be
@@ -65,14 +65,16 @@ Status making_canopy(Making *m)
         Sight               sight;
         for (int k = 0; k < 3; k++) p[k] = origin[k] + (double)c->centre_m[k];
         making_sight(&sight, m, p, room_m);
-        if (!sight.within || hypot(sight.cos_right, sight.cos_down) > canopy.null + room_m / fmax(sight.range_m, 1)) continue;
+        const double room = room_m / fmax(sight.range_m, 1);
+        if (!sight.within || making_off_axis(m, &sight) > canopy.null + room) continue;
         widest_m = fmax(widest_m, (double)c->across_m);
         crown[lit++] = crown[i];
     }
     if (lit == 0) return STATUS_OK;
     canopy.crown = crown;
     canopy.each = least_each;
-    const double want = fmin(4 * 2 * widest_m / (0.5 * light_mps / m->preset->wave.bandwidth_hz), (double)points_most / lit);
+    const double cell_m = 0.5 * light_mps / m->preset->wave.bandwidth_hz;
+    const double want = fmin(4 * 2 * widest_m / cell_m, (double)points_most / lit);
     while (canopy.each < want && canopy.each < most_each) canopy.each *= 2;
     for (int s = 0; s < SURFACE_COUNT; s++)
         canopy.motion[s] = clutter_motion(&r->clutter.row[s][r->band], m->preset->wave.centre_hz, r->wind_mps);

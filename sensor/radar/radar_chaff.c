@@ -42,7 +42,7 @@ double making_chaff_np(const Making *m, const Sight *sight)
     double       column = 0;
     for (int i = 0; i < m->chaff_count; i++) {
         double centre[3];
-        v3_sub(centre, m->chaff[i].p_enu, m->scene->view->p_enu);
+        v3_sub(centre, m->chaff[i].p_enu, m->p_enu);
         column += chaff_column_1_m2(m->chaff[i].dipoles, m->chaff[i].radius_m, centre, sight->d_enu, sight->range_m);
     }
     return column * chaff_taken * wavelength_m * wavelength_m;
@@ -54,7 +54,7 @@ typedef struct ChaffJob {
     uint32_t                 key;
 } ChaffJob;
 
-static int make_chaff(Echo *echo, const Making *m, void *user, int task)
+static int make_chaff(RadarPoint *out, const Making *m, void *user, int task)
 {
     static _Thread_local VolumePoint point[points_a_task];
     const ChaffJob          *job = user;
@@ -69,14 +69,14 @@ static int make_chaff(Echo *echo, const Making *m, void *user, int task)
         random_normals(n, 13, seed, stream_chaff, job->key ^ cloud->id, 13 * (uint64_t)i);
         v3_add_scaled(p, cloud->p_enu, cloud->radius_m, n);
         making_sight(&to->sight, m, p, 0);
-        if (!to->sight.within || hypot(to->sight.cos_right, to->sight.cos_down) > m->widest) continue;
+        if (!to->sight.within || making_off_axis(m, &to->sight) > m->widest) continue;
         chaff_scatter(&to->s, sigma_m2, n + 3);
         to->turns = false;
         v3_add_scaled(to->v_enu_mps, cloud->v_enu_mps, chaff_turbulence_mps, n + 9);
         to->v_enu_mps[2] += chaff_fall_spread_mps * n[12];
         count++;
     }
-    return count > 0 ? making_keep(echo, point, count, m, 0) : 0;
+    return count > 0 ? making_keep(out, point, count, m, 0, m->widest) : 0;
 }
 
 Status making_chaff(Making *m)
@@ -87,7 +87,8 @@ Status making_chaff(Making *m)
         const struct ChaffCloud *cloud = &m->chaff[i];
         Sight                    sight;
         making_sight(&sight, m, cloud->p_enu, 5 * cloud->radius_m);
-        if (!sight.within || hypot(sight.cos_right, sight.cos_down) > m->widest + 5 * cloud->radius_m / fmax(sight.range_m, 1)) continue;
+        const double room = 5 * cloud->radius_m / fmax(sight.range_m, 1);
+        if (!sight.within || making_off_axis(m, &sight) > m->widest + room) continue;
         /* some 32 points in a step of range, the cloud being six radii long */
         ChaffJob job = {cloud, (int)clamp(ceil(32 * 6 * cloud->radius_m / cell_m), 512, points_most), making_key(m)};
         status = making_points(m, (job.points + points_a_task - 1) / points_a_task, points_a_task, make_chaff, &job);

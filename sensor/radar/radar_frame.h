@@ -1,5 +1,5 @@
 /* sensor/radar/radar_frame.h: what a seeker's radar measured in one coherent interval about a frame's time, with its
- * truth.
+ * truth; and, if its beam scans, in those before and after.
  *
  * Immutable once made; all arrays are in the frame's arena. Ranges are in m from the antenna to the place, range
  * rates in m/s, above 0: receding. Directions are cosines along the sensor's right and down axes. */
@@ -8,6 +8,7 @@
 
 #include "sensor/radar/detect.h"
 #include "sensor/radar/radar_preset.h"
+#include "sensor/radar/radar_scan.h"
 
 /* What the ground near an entity adds by mirroring (render/radar/ground_bounce.h); hh, vv, hv, m^2, as if wholly visible. */
 typedef struct RadarBounceTruth {
@@ -62,6 +63,7 @@ typedef struct RadarFrame {
     int             targets;
     const RadarTruth *target;
     ReceiverReport  receiver;
+    const RadarScan *scan;             /* NULL: the beam stares */
     int             ground_cells, ground_hidden; /* scatterers of the ground; of them, hidden by relief or entities */
     double          rain_1_m;          /* backscatter of rain by its volume, m2/m3 */
     int             crowns, clouds;    /* plants, and clouds of chaff, within beam and window */

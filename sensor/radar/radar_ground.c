@@ -1,4 +1,4 @@
-/* sensor/radar/radar_ground.c: the echoes of the ground within the main lobe and the range window. */
+/* sensor/radar/radar_ground.c: the echoes of the ground within the main lobe, wherever it turns, and range window. */
 #include "sensor/radar/seeker_radar_private.h"
 
 enum { cells_most = 400000, block = hits_capacity };
@@ -10,7 +10,8 @@ void making_lit_rectangle(double low_m[2], double high_m[2], const Making *m)
     const double *p = m->scene->view->p_enu, reach = m->frame->reference_m, lobe_rad = asin(making_null(m));
     const double  below_m = p[2] - m->base_m;
     const double  level = hypot(m->ahead[0], m->ahead[1]), azimuth = atan2(m->ahead[1], m->ahead[0]);
-    const double  wide = fmin(lobe_rad / fmax(level - lobe_rad, 0.05), pi_rad), margin_m = 50 + 0.02 * reach;
+    const double  turn = atan2(tan(fmin(m->scan_half_rad, 1.5)), fmax(level, 0.05));
+    const double  wide = fmin(lobe_rad / fmax(level - lobe_rad, 0.05) + turn, pi_rad), margin_m = 50 + 0.02 * reach;
     const double  range_m[2] = {m->near_m, m->far_m};
     low_m[0] = low_m[1] = INFINITY;
     high_m[0] = high_m[1] = -INFINITY;
@@ -42,7 +43,7 @@ typedef struct GroundJob {
     int                cells;
     double             widest;     /* sine off the axis of the main lobe's null */
     Ground            *ground;     /* [blocks] */
-    Echo              *echo;       /* [cells]: those of block b from b * block on */
+    RadarPoint        *point;      /* [cells]: those of block b from b * block on */
     int               *hidden;     /* [blocks] */
 } GroundJob;
 
@@ -59,7 +60,7 @@ static void place_block(Ground *g, const GroundJob *job, int first, int end)
         p[2] = elevation_height(&land->elevation, p[0], p[1], n);
         if (!isfinite(p[2])) continue;
         making_sight(&sight, m, p, 0);
-        if (!sight.within || hypot(sight.cos_right, sight.cos_down) > job->widest) continue;
+        if (!sight.within || making_off_axis(m, &sight) > job->widest) continue;
         const int to = g->count++;
         g->cell[to] = job->cell[i];
         g->sight[to] = sight;
@@ -147,13 +148,18 @@ static void scatter_block(void *user, int worker, int task)
     clutter_see(matrix, &r->cells, &r->clutter, scatterer, &ground, &look);
     static const double still[3] = {0, 0, 0};
     for (int i = 0; i < g->count; i++) {
-        Echo  *e = &job->echo[first + i];
         double to_antenna[3], h[3], v[3];
         v3_scale(to_antenna, -1, g->sight[i].d_enu);
         scatter_basis(h, v, to_antenna);
         scatter_turn(&matrix[i], h, v, m->right);
-        making_amplitudes(e->amplitude, m, &g->sight[i], &matrix[i]);
-        making_echo(e, m, &g->sight[i], still);
+        job->point[first + i] = (RadarPoint){
+            .p_enu = {g->p_enu[0][i], g->p_enu[1][i], g->p_enu[2][i]},
+            .path_m = 2 * (g->sight[i].range_m - m->reference_m),
+            .path_per_pulse_m = 2 * (making_range_rate(m, &g->sight[i], still) - m->reference_rate_mps) /
+                                m->preset->wave.repeat_hz,
+            .same = m->preset->transmits_h ? matrix[i].hh : matrix[i].vv,
+            .other = m->preset->transmits_h ? matrix[i].vh : matrix[i].hv,
+            .share = 1, .widest = job->widest};
     }
 }
 
@@ -167,20 +173,23 @@ Status making_ground(Making *m)
     /* sides of 1/128 of the beam's width, less where the resolution asks for it near by; coarser where that is too
      * many */
     double share = lobe_rad / 128;
-    size_t count;
-    while ((count = clutter_cells_at(NULL, 0, &r->cells, low_m, high_m, p, share)) > cells_most) share *= sqrt(2);
+    const size_t most = m->scan_half_rad > 0 ? 2 * cells_most : cells_most;
+    size_t       count;
+    while ((count = clutter_cells_at(NULL, 0, &r->cells, low_m, high_m, p, share)) > most) share *= sqrt(2);
     const int    blocks = (int)((count + block - 1) / block);
     ClutterCell *cell = arena_alloc(m->arena, count + 1, sizeof *cell);
     GroundJob    job = {.making = m, .cell = cell, .cells = (int)count, .widest = widest,
                         .ground = arena_alloc(m->arena, (size_t)blocks + 1, sizeof *job.ground),
-                        .echo = arena_alloc(m->arena, (size_t)blocks * block + 1, sizeof *job.echo),
+                        .point = points_room(&r->points, blocks * block + 1),
                         .hidden = arena_alloc(m->arena, (size_t)blocks + 1, sizeof *job.hidden)};
-    if (!cell || !job.ground || !job.echo || !job.hidden) return STATUS_NO_MEMORY;
+    if (!cell || !job.ground || !job.point || !job.hidden) return STATUS_NO_MEMORY;
     clutter_cells_at(cell, count, &r->cells, low_m, high_m, p, share);
     if (m->pool) pool_run(m->pool, blocks, scatter_block, &job);
     else for (int b = 0; b < blocks; b++) scatter_block(&job, 0, b);
     for (int b = 0; b < blocks; b++) {
-        echo_add(r->echoes, job.echo + (size_t)b * block, job.ground[b].count, m->pool);
+        const size_t kept = (size_t)job.ground[b].count;
+        memmove(r->points.point + r->points.count, job.point + (size_t)b * block, kept * sizeof *job.point);
+        r->points.count += (int)kept;
         m->frame->ground_cells += job.ground[b].count + job.hidden[b];
         m->frame->ground_hidden += job.hidden[b];
     }

@@ -127,37 +127,41 @@ static Status find_centres(bool *found, Making *m, Target *t, RadarTruth *truth)
 
 enum { block_centres = 512 };
 
-typedef struct EchoJob {
+typedef struct PointJob {
     const Making  *making;
     const Target  *target;
     const Sight   *sight;              /* of the target's origin */
     ScatterCentre *centre;             /* [count]; turned to the antenna's axes */
-    Echo          *echo;               /* [count] */
+    RadarPoint    *point;              /* [count] */
     double         h_enu[3], v_enu[3];
     int            count;
-} EchoJob;
+} PointJob;
 
-static void echo_block(void *user, int worker, int task)
+static void point_block(void *user, int worker, int task)
 {
-    const EchoJob *job = user;
-    const Making  *m = job->making;
-    const Target  *t = job->target;
-    const double   pulse_s = 1 / m->preset->wave.repeat_hz;
-    const int      end = (task + 1) * block_centres < job->count ? (task + 1) * block_centres : job->count;
+    const PointJob *job = user;
+    const Making   *m = job->making;
+    const Target   *t = job->target;
+    const double    pulse_s = 1 / m->preset->wave.repeat_hz, room_m = 2 * t->of->radius_m;
+    const int       end = (task + 1) * block_centres < job->count ? (task + 1) * block_centres : job->count;
     (void)worker;
     for (int i = task * block_centres; i < end; i++) {
         ScatterCentre *c = &job->centre[i];
-        Echo          *e = &job->echo[i];
-        double         p_enu[3], moves[3];
+        RadarPoint    *q = &job->point[i];
         Sight          to;
-        m3_mul_v3(p_enu, t->r_enu_from_body, c->p);
-        v3_add(p_enu, p_enu, t->p_enu);
-        making_sight(&to, m, p_enu, 0);
-        making_target_velocity(moves, t, c->part < 0 ? -1 : t->of->part[c->part].node, c->p);
+        m3_mul_v3(q->p_enu, t->r_enu_from_body, c->p);
+        v3_add(q->p_enu, q->p_enu, t->p_enu);
+        making_sight(&to, m, q->p_enu, 0);
+        making_target_velocity(q->v_enu_mps, t, c->part < 0 ? -1 : t->of->part[c->part].node, c->p);
         scatter_turn(&c->s, job->h_enu, job->v_enu, m->right);
-        making_amplitudes(e->amplitude, m, &to, &c->s);
-        e->path_m = 2 * (job->sight->range_m - m->frame->reference_m) + c->path_m;
-        e->path_per_pulse_m = 2 * (making_range_rate(m, &to, moves) - m->frame->reference_rate_mps) * pulse_s;
+        q->same = m->preset->transmits_h ? c->s.hh : c->s.vv;
+        q->other = m->preset->transmits_h ? c->s.vh : c->s.hv;
+        q->share = 1;
+        q->path_m = 2 * (job->sight->range_m - m->reference_m) + c->path_m;
+        q->path_per_pulse_m = 2 * (making_range_rate(m, &to, q->v_enu_mps) - m->reference_rate_mps) * pulse_s;
+        q->widest = m->widest + room_m / job->sight->range_m;
+        q->room_m = room_m;
+        q->own = m->after_s != 0;
     }
 }
 
@@ -166,15 +170,14 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     SeekerRadar  *r = m->radar;
     ScatterMatrix field;
     bool          found;
-    radar_antenna(&t->antenna, m->scene->view->p_enu, t->p_enu, t->r_enu_from_body);
+    radar_antenna(&t->antenna, m->p_enu, t->p_enu, t->r_enu_from_body);
     *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right, .cos_down = sight->cos_down};
     Status status = find_centres(&found, m, t, truth);
     if (status != STATUS_OK) return status;
     if (!found) m->missing++;
     if (m->missing > 0) return truth->given ? STATUS_OK : making_bounce(m, t, NULL, truth); /* the rest is asked for alone */
     bool *seen = arena_alloc(m->arena, (size_t)r->centres.count + 1, sizeof *seen);
-    Echo *echo = arena_alloc(m->arena, (size_t)r->centres.count + 1, sizeof *echo);
-    if (!seen || !echo) return STATUS_NO_MEMORY;
+    if (!seen) return STATUS_NO_MEMORY;
     status = radar_sight_centres(seen, m, t->index, t->p_enu, t->r_enu_from_body, &r->centres);
     if (status != STATUS_OK) return status;
 
@@ -185,13 +188,14 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     centres_field(&field, &r->centres, m->preset->wave.centre_hz);
     for (int i = 0; i < r->centres.count; i++)
         if (seen[i]) r->centres.centre[count++] = r->centres.centre[i];
-    EchoJob job = {m, t, sight, r->centres.centre, echo, {0}, {0}, count};
+    PointJob job = {m, t, sight, r->centres.centre, points_room(&r->points, count + 1), {0}, {0}, count};
+    if (!job.point) return STATUS_NO_MEMORY;
     memcpy(job.h_enu, h_enu, sizeof h_enu);
     memcpy(job.v_enu, v_enu, sizeof v_enu);
     const int blocks = (count + block_centres - 1) / block_centres;
-    if (m->pool) pool_run(m->pool, blocks, echo_block, &job);
-    else for (int b = 0; b < blocks; b++) echo_block(&job, 0, b);
-    echo_add(r->echoes, echo, count, m->pool);
+    if (m->pool) pool_run(m->pool, blocks, point_block, &job);
+    else for (int b = 0; b < blocks; b++) point_block(&job, 0, b);
+    r->points.count += count;
     return truth->given || !(truth->visible > 0) ? STATUS_OK : making_bounce(m, t, &field, truth);
 }
 
@@ -206,12 +210,13 @@ static Status take_target(bool *taken, Making *m, Target *t, Sight *sight)
     const Model *shown = catalog_model(m->scene->world->catalog, e->model);
     if (!catalog_has_shape(m->scene->world->catalog, e->model)) return STATUS_OK;
     enu_from_ecef(t->p_enu, frame, e->p_ecef);
+    m3_tmul_v3(t->v_enu_mps, frame->r_ecef_from_enu, e->v_ecef_mps);
+    v3_add_scaled(t->p_enu, t->p_enu, m->after_s, t->v_enu_mps);
     making_sight(sight, m, t->p_enu, shown->radius_m);
-    const double sine = hypot(sight->cos_right, sight->cos_down), room = shown->radius_m / fmax(sight->range_m, 1);
+    const double sine = making_off_axis(m, sight), room = shown->radius_m / fmax(sight->range_m, 1);
     if (!sight->within || sine > m->widest + room || sight->range_m < 2 * shown->radius_m) return STATUS_OK;
     t->model = catalog_find(m->radar->catalog, e->type, &origin, NULL);
     t->of = catalog_model(m->radar->catalog, t->model);
-    m3_tmul_v3(t->v_enu_mps, frame->r_ecef_from_enu, e->v_ecef_mps);
     m3_tmul(t->r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
     NodePose *pose = arena_alloc(m->arena, (size_t)t->of->node_count + 1, sizeof *pose);
     t->joint = arena_alloc(m->arena, (size_t)t->of->node_count + 1, sizeof *t->joint);
@@ -222,18 +227,35 @@ static Status take_target(bool *taken, Making *m, Target *t, Sight *sight)
     return STATUS_OK;
 }
 
-Status making_targets(Making *m)
+static Status each_target(Making *m, RadarTruth **truth, int *count)
 {
     const Snapshot *snapshot = m->scene->snapshot;
-    RadarTruth     *truth = arena_alloc(m->arena, (size_t)snapshot->count + 1, sizeof *truth);
-    Status          status = truth ? STATUS_OK : STATUS_NO_MEMORY;
-    m->frame->target = truth;
+    Status          status = STATUS_OK;
+    *truth = arena_alloc(m->arena, (size_t)snapshot->count + 1, sizeof **truth);
+    *count = 0;
+    if (!*truth) return STATUS_NO_MEMORY;
     for (int i = 0; i < snapshot->count && status == STATUS_OK; i++) {
         Target t = {.entity = &snapshot->entity[i], .index = i};
         Sight  sight;
         bool   taken;
         status = take_target(&taken, m, &t, &sight);
-        if (status == STATUS_OK && taken) status = add_target(m, &t, &sight, &truth[m->frame->targets++]);
+        if (status == STATUS_OK && taken) status = add_target(m, &t, &sight, &(*truth)[(*count)++]);
     }
     return status;
+}
+
+Status making_targets(Making *m)
+{
+    RadarTruth  *truth;
+    const Status status = each_target(m, &truth, &m->frame->targets);
+    m->frame->target = truth;
+    m->radar->target_points = m->radar->points.count;
+    return status;
+}
+
+Status making_targets_anew(Making *beam)
+{
+    RadarTruth *truth;
+    int         count;
+    return each_target(beam, &truth, &count);
 }

@@ -31,7 +31,7 @@ double making_volume_np(const Making *m, const Sight *sight)
 {
     double np = 0;
     if (m->radar->foliage)
-        np = foliage_loss_db(NULL, m->radar->foliage, m->scene->view->p_enu, sight->d_enu, sight->range_m) * log(10) / 10;
+        np = foliage_loss_db(NULL, m->radar->foliage, m->p_enu, sight->d_enu, sight->range_m) * log(10) / 10;
     return m->chaff_count > 0 ? np + making_chaff_np(m, sight) : np;
 }
 
@@ -59,7 +59,22 @@ void making_wind(double v_enu_mps[3], const Making *m)
     v_enu_mps[2] = 0;
 }
 
-int making_keep(Echo *echo, VolumePoint *point, int count, const Making *m, double slack_m)
+static void place_point(RadarPoint *q, const Making *m, const VolumePoint *point, double widest)
+{
+    v3_add_scaled(q->p_enu, m->p_enu, point->sight.range_m, point->sight.d_enu);
+    memcpy(q->v_enu_mps, point->v_enu_mps, sizeof q->v_enu_mps);
+    q->path_m = 2 * (point->sight.range_m - m->reference_m);
+    const double off_mps = making_range_rate(m, &point->sight, q->v_enu_mps) - m->reference_rate_mps;
+    q->path_per_pulse_m = 2 * off_mps / m->preset->wave.repeat_hz;
+    q->same = m->preset->transmits_h ? point->s.hh : point->s.vv;
+    q->other = m->preset->transmits_h ? point->s.vh : point->s.hv;
+    q->share = 1;
+    q->widest = widest;
+    q->room_m = 0;
+    q->own = m->after_s != 0;
+}
+
+int making_keep(RadarPoint *out, VolumePoint *point, int count, const Making *m, double slack_m, double widest)
 {
     static _Thread_local Sight sight[hits_capacity];
     static _Thread_local bool  hidden[hits_capacity];
@@ -72,9 +87,7 @@ int making_keep(Echo *echo, VolumePoint *point, int count, const Making *m, doub
         v3_scale(to_antenna, -1, point[i].sight.d_enu);
         scatter_basis(h, v, to_antenna);
         if (point[i].turns) scatter_turn(&point[i].s, h, v, m->right);
-        making_amplitudes(echo[kept].amplitude, m, &point[i].sight, &point[i].s);
-        making_echo(&echo[kept], m, &point[i].sight, point[i].v_enu_mps);
-        kept++;
+        place_point(&out[kept++], m, &point[i], widest);
     }
     return kept;
 }
@@ -84,7 +97,7 @@ typedef struct VolumeJob {
     VolumeMake    make;
     void         *user;
     int           each;
-    Echo         *echo; /* [tasks * each] */
+    RadarPoint   *point; /* [tasks * each] */
     int          *kept; /* [tasks] */
 } VolumeJob;
 
@@ -92,19 +105,22 @@ static void volume_task(void *user, int worker, int task)
 {
     const VolumeJob *job = user;
     (void)worker;
-    job->kept[task] = job->make(job->echo + (size_t)task * (size_t)job->each, job->making, job->user, task);
+    job->kept[task] = job->make(job->point + (size_t)task * (size_t)job->each, job->making, job->user, task);
 }
 
 Status making_points(Making *m, int tasks, int each, VolumeMake make, void *user)
 {
     VolumeJob job = {.making = m, .each = each, .make = make, .user = user,
-                     .echo = arena_alloc(m->arena, (size_t)tasks * (size_t)each + 1, sizeof *job.echo),
+                     .point = points_room(&m->radar->points, tasks * each + 1),
                      .kept = arena_alloc(m->arena, (size_t)tasks + 1, sizeof *job.kept)};
-    if (!job.echo || !job.kept) return STATUS_NO_MEMORY;
+    if (!job.point || !job.kept) return STATUS_NO_MEMORY;
     if (m->pool) pool_run(m->pool, tasks, volume_task, &job);
     else for (int t = 0; t < tasks; t++) volume_task(&job, 0, t);
-    for (int t = 0; t < tasks; t++)
-        if (job.kept[t] > 0) echo_add(m->radar->echoes, job.echo + (size_t)t * (size_t)each, job.kept[t], m->pool);
+    RadarPoints *points = &m->radar->points;
+    for (int t = 0; t < tasks; t++) {
+        memmove(points->point + points->count, job.point + (size_t)t * (size_t)each, (size_t)job.kept[t] * sizeof *job.point);
+        points->count += job.kept[t];
+    }
     return STATUS_OK;
 }
 
@@ -131,8 +147,8 @@ static bool place_drop(VolumePoint *out, const Making *m, const Rain *rain, int 
     const double square = rain->null * rain->null * (stratum / sectors + u[1]) / rings;
     const double sine = sqrt(square), along = sqrt(1 - square), turn = 2 * pi_rad * (stratum % sectors + u[2]) / sectors;
     for (int k = 0; k < 3; k++) d[k] = along * m->ahead[k] + sine * (cos(turn) * m->right[k] + sin(turn) * m->down[k]);
-    const double p[3] = {m->scene->view->p_enu[0] + range_m * d[0], m->scene->view->p_enu[1] + range_m * d[1],
-                         m->scene->view->p_enu[2] + range_m * d[2]};
+    const double p[3] = {m->p_enu[0] + range_m * d[0], m->p_enu[1] + range_m * d[1],
+                         m->p_enu[2] + range_m * d[2]};
     making_sight(&out->sight, m, p, 0);
     if (!(p[2] < rain->top_enu_m)) return false;
     /* solid angle: d(sine^2) / 2 by d(turn) over the cosine */
@@ -146,21 +162,22 @@ static bool place_drop(VolumePoint *out, const Making *m, const Rain *rain, int 
     return true;
 }
 
-static int make_rain(Echo *echo, const Making *m, void *user, int task)
+static int make_rain(RadarPoint *out, const Making *m, void *user, int task)
 {
     static _Thread_local VolumePoint point[hits_capacity];
     const Rain                      *rain = user;
     int                              count = 0;
     for (int slice = task * slices_a_task; slice < (task + 1) * slices_a_task && slice < rain->slices; slice++)
         for (int s = 0; s < strata; s++) count += place_drop(&point[count], m, rain, slice, s);
-    return making_keep(echo, point, count, m, 0);
+    return making_keep(out, point, count, m, 0, 1.001 * rain->null);
 }
 
-static Status making_rain(Making *m)
+Status making_rain(Making *m)
 {
     const RadarAir *air = &m->radar->air;
     Rain           *rain = arena_alloc(m->arena, 1, sizeof *rain);
     GasState        state;
+    if (!m->scene->world->atmosphere || !(air->rain_mm_h > 0)) return STATUS_OK;
     if (!rain) return STATUS_NO_MEMORY;
     radar_air_at(&state, air, 0);
     const double f_ghz = 1e-9 * m->preset->wave.centre_hz;
@@ -179,8 +196,7 @@ static Status making_rain(Making *m)
 Status making_volume(Making *m)
 {
     Status status = STATUS_OK;
-    if (m->scene->world->atmosphere && m->radar->air.rain_mm_h > 0) status = making_rain(m);
-    if (status == STATUS_OK && m->radar->foliage && m->radar->ground) status = making_canopy(m);
+    if (m->radar->foliage && m->radar->ground) status = making_canopy(m);
     if (status == STATUS_OK && m->chaff_count > 0) status = making_chaff(m);
     return status;
 }

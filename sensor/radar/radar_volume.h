@@ -9,18 +9,19 @@
 #include "sensor/radar/seeker_radar_private.h"
 
 typedef struct VolumePoint {
-    Sight         sight;
+    Sight         sight;        /* from the antenna of the Making */
     ScatterMatrix s;            /* m */
     bool          turns;        /* s is in the horizontal's basis (scatter.h): to be turned to the antenna's */
     double        v_enu_mps[3];
 } VolumePoint;
 
-/* Echoes of the points that neither relief nor entities hide; returns how many. count: up to hits_capacity. */
-int making_keep(Echo *echo, VolumePoint *point, int count, const Making *making, double slack_m);
+/* Those that neither relief nor entities hide, for the positions of the beam less than `widest` off (RadarPoint); returns how
+ * many. count: up to hits_capacity. */
+int making_keep(RadarPoint *out, VolumePoint *point, int count, const Making *making, double slack_m, double widest);
 
-/* make(echo, ...) fills at most `each` echoes for each task, in any thread, and returns how many; they are added in
- * order of tasks. */
-typedef int (*VolumeMake)(Echo *echo, const Making *making, void *user, int task);
+/* make(out, ...) fills at most `each` points for each task, in any thread, and returns how many; they are added to the
+ * radar's in order of tasks. */
+typedef int (*VolumeMake)(RadarPoint *out, const Making *making, void *user, int task);
 Status making_points(Making *making, int tasks, int each, VolumeMake make, void *user);
 
 /* Of this interval and no other, for random_uniform's `frame`. */

@@ -69,6 +69,14 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
     if (status == STATUS_OK)
         status = interval_plan_create(&r->plan, wave, &r->preset.range_window, &r->preset.doppler_window);
+    if (status == STATUS_OK) status = scan_plan(&r->scan, &r->preset, config->scan_rad, config->scan_step);
+    if (status == STATUS_OK) {
+        const size_t samples = (size_t)r->scan.positions * (size_t)wave->pulses * (size_t)wave->samples;
+        r->batch = malloc(beam_batch * sizeof *r->batch);
+        if (config->scan_rad > 0) r->scan_pulse = malloc(samples * sizeof *r->scan_pulse);
+        if (config->scan_rad > 0) r->position = arena_create();
+        if (!r->batch || (config->scan_rad > 0 && (!r->scan_pulse || !r->position))) status = STATUS_NO_MEMORY;
+    }
     r->cells = (ClutterGrid){.side_m = 0.25 * light_mps / wave->bandwidth_hz, .seed = config->seed};
     if (status == STATUS_OK) *out = r;
     else seeker_radar_destroy(r);
@@ -82,6 +90,10 @@ void seeker_radar_destroy(SeekerRadar *r)
     echo_grid_destroy(r->echoes);
     centres_free(&r->centres);
     clutter_cache_destroy(r->drawn);
+    points_free(&r->points);
+    free(r->batch);
+    free(r->scan_pulse);
+    if (r->position) arena_destroy(r->position);
     signatures_destroy(r->signatures);
     signature_library_close(r->library);
     given_list_close(r->given);
@@ -96,15 +108,23 @@ void seeker_radar_destroy(SeekerRadar *r)
 void making_sight(Sight *out, const Making *m, const double p_enu[3], double more_m)
 {
     double to[3];
-    v3_sub(to, p_enu, m->scene->view->p_enu);
+    v3_sub(to, p_enu, m->p_enu);
     out->range_m = v3_length(to);
     v3_scale(out->d_enu, 1 / fmax(out->range_m, 1e-3), to);
     out->cos_right = v3_dot(out->d_enu, m->right);
     out->cos_down = v3_dot(out->d_enu, m->down);
     const double fold_m = waveform_fold_m(&m->preset->wave);
-    double       off_m = out->range_m - m->frame->reference_m;
+    double       off_m = out->range_m - m->reference_m;
     if (m->preset->far_m > 0 && out->range_m < m->preset->far_m + more_m) off_m -= fold_m * nearbyint(off_m / fold_m);
-    out->within = v3_dot(out->d_enu, m->ahead) > 0 && fabs(off_m) < m->half_window_m + more_m;
+    out->within = v3_dot(out->d_enu, m->ahead) > 0 && fabs(off_m) < m->half_window_m + (m->sweep_m + more_m);
+}
+
+double making_off_axis(const Making *m, const Sight *sight)
+{
+    if (!(m->scan_half_rad > 0)) return hypot(sight->cos_right, sight->cos_down);
+    const double ahead = v3_dot(sight->d_enu, m->ahead), azimuth = atan2(sight->cos_right, ahead);
+    const double off = azimuth - clamp(azimuth, -m->scan_half_rad, m->scan_half_rad);
+    return hypot(sin(off) * hypot(sight->cos_right, ahead), sight->cos_down);
 }
 
 double making_range_rate(const Making *m, const Sight *sight, const double v_enu_mps[3])
@@ -114,7 +134,7 @@ double making_range_rate(const Making *m, const Sight *sight, const double v_enu
 
 double making_appears_m(const Making *m, const Sight *sight, double range_rate_mps)
 {
-    const double followed_mps = m->preset->wave.uncompensated ? 0 : m->frame->reference_rate_mps, middle_m = m->frame->reference_m;
+    const double followed_mps = m->preset->wave.uncompensated ? 0 : m->reference_rate_mps, middle_m = m->reference_m;
     return middle_m + waveform_appears_m(&m->preset->wave, sight->range_m - middle_m, range_rate_mps - followed_mps);
 }
 
@@ -131,12 +151,6 @@ void making_amplitudes(double complex amplitude[interval_channels], const Making
     amplitude[CHANNEL_RIGHT] = same * gain.right;
     amplitude[CHANNEL_DOWN] = same * gain.down;
     amplitude[CHANNEL_CROSS] = other * gain.sum;
-}
-
-void making_echo(Echo *out, const Making *m, const Sight *sight, const double v_enu_mps[3])
-{
-    out->path_m = 2 * (sight->range_m - m->frame->reference_m);
-    out->path_per_pulse_m = 2 * (making_range_rate(m, sight, v_enu_mps) - m->frame->reference_rate_mps) / m->preset->wave.repeat_hz;
 }
 
 double making_null(const Making *m)
@@ -175,18 +189,34 @@ static void aim_window(Making *m)
     v3_add_scaled(end, m->scene->view->p_enu, f->reference_m, m->ahead);
     if (m->scene->world->landscape) ground_m = elevation_height(&m->scene->world->landscape->elevation, end[0], end[1], NULL);
     m->base_m = isfinite(ground_m) ? ground_m : 0;
+    m->aim_m = f->reference_m;
+    m->reference_rate_mps = f->reference_rate_mps;
+    /* to be kept for positions of the beam before and after */
+    const ScanPlan *scan = &m->radar->scan;
+    const double    half_s = scan->positions / 2 * scan->interval_s;
+    m->scan_half_rad = scan->positions / 2 * scan->step_rad;
+    m->sweep_m = half_s * (v3_length(v) + v3_length(m->scene->v_enu_mps));
+}
+
+void making_reach(Making *m)
+{
+    const double far_m = m->preset->far_m;
+    m->near_m = far_m > 0 ? 0 : fmax(m->reference_m - m->half_window_m, 0);
+    m->far_m = fmax(far_m, m->reference_m + m->half_window_m);
 }
 
 /* The window, and what the receiver follows. */
 static void follow(Making *m)
 {
     RadarFrame   *f = m->frame;
-    const double  row_s = 1 / m->preset->wave.repeat_hz, far_m = m->preset->far_m;
+    const double  row_s = 1 / m->preset->wave.repeat_hz;
+    const bool    fmcw = m->preset->wave.kind == WAVEFORM_FMCW;
     const double *right = m->right, *down = m->down, *v = m->scene->v_enu_mps;
-    if (m->preset->wave.kind == WAVEFORM_FMCW) f->reference_m = m->half_window_m;
-    m->near_m = far_m > 0 ? 0 : fmax(f->reference_m - m->half_window_m, 0);
-    m->far_m = fmax(far_m, f->reference_m + m->half_window_m);
-    echo_unfollowed(m->radar->echoes, m->preset->wave.uncompensated ? 2 * f->reference_rate_mps * row_s : 0);
+    if (fmcw) f->reference_m = m->half_window_m;
+    m->reference_m = f->reference_m;
+    m->window_rate_mps = fmcw ? 0 : m->reference_rate_mps;
+    making_reach(m);
+    echo_unfollowed(m->radar->echoes, m->preset->wave.uncompensated ? 2 * m->reference_rate_mps * row_s : 0);
     f->ground_rate_mps = -v3_dot(v, m->ahead);
     /* the ground's rates over the beam: within its width either way, and two cells of Doppler for the window */
     f->notch_mps = hypot(v3_dot(v, right), v3_dot(v, down)) * antenna_width_rad(&m->preset->antenna) +
@@ -278,6 +308,7 @@ static Status make(Making *m)
     if (status != STATUS_OK) return status;
     visibility_materials(visibility, &scene->world->materials);
     m->visibility = visibility;
+    m->radar->points.count = 0;
     interval.sample = arena_alloc(m->arena, interval_channels * (size_t)wave->pulses * (size_t)wave->samples, sizeof *interval.sample);
     if (!interval.sample) return STATUS_NO_MEMORY;
     aim_window(m);
@@ -289,12 +320,16 @@ static Status make(Making *m)
     if (status == STATUS_OK && m->radar->ground && scene->world->landscape) status = making_ground(m);
     if (status == STATUS_OK) status = making_volume(m);
     if (status == STATUS_OK) status = visibility_status(visibility);
-    if (status == STATUS_OK) status = echo_status(m->radar->echoes);
+    if (status != STATUS_OK) return status;
+    Making beam;
+    beam_at(&beam, m, 0, 0);
+    status = beam_echoes(&beam, false);
     if (status != STATUS_OK) return status;
     echo_sum(interval.sample, m->radar->echoes);
     if (wave->uncompensated) m->frame->reference_rate_mps = 0; /* it is in every echo */
     receiver_apply(&m->frame->receiver, &interval, &m->preset->receiver, m->radar->seed, stream_noise, scene->number);
-    return process(m, &interval);
+    status = process(m, &interval);
+    return status == STATUS_OK && m->radar->scan_pulse ? making_scan(m, &interval) : status;
 }
 
 Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool, Arena *arena)
@@ -312,6 +347,7 @@ Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const Ra
     waveform_timing(&frame->timing, &p->wave);
     const double *r = scene->view->r_enu_from_cam;
     for (int k = 0; k < 3; k++) {
+        m.p_enu[k] = scene->view->p_enu[k];
         m.right[k] = r[3 * k];
         m.down[k] = r[3 * k + 1];
         m.ahead[k] = r[3 * k + 2];

@@ -13,7 +13,8 @@
  *     chaff      likewise (render/radar/chaff.h); it weakens what is behind it
  *
  * go through the radar equation, the antenna's pattern at their own direction, and the air (radar_path.h) into the
- * samples of four channels; then receiver and processing. Phases are those of double ranges.
+ * samples of four channels; then receiver and processing. Phases are those of double ranges. A beam that scans
+ * (radar_scan.h) has further intervals before and after.
  *
  * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main
  * lobe's null; what one entity mirrors to another; range rates that change within the interval; what FMCW's transmitter
@@ -34,6 +35,8 @@ typedef struct SeekerRadarConfig {
     const char *isa;
     bool        ground;          /* scatterers of the ground and of plants */
     bool        ground_bounce;   /* the ground mirrors entities */
+    double      scan_rad;        /* sector that the beam scans, about the boresight; 0: it stares */
+    double      scan_step;       /* between its positions, over the beamwidth */
     double      warp_m;          /* unevenness of surfaces, rms (render/radar/warp.h) */
     const char *given;           /* a list of given signatures (render/radar/given_list.h); empty: none */
     double      wind_mps;
@@ -60,6 +63,8 @@ typedef struct RadarScene {
     double          t_s;         /* exercise time */
     const Weather  *weather;     /* at the ground */
     uint32_t        number;      /* of the frame: for its noise */
+    const float    *range_m;     /* [view height][width]: of what each pixel shows, INFINITY: sky. NULL: no pixels */
+    const uint32_t *entity;      /* likewise: snapshot index + 1, 0: none */
 } RadarScene;
 
 /* What a radar of this configuration makes signatures with, now or beforehand. */

@@ -10,8 +10,11 @@
 #include "render/radar/radar_path.h"
 #include "render/radar/signatures.h"
 #include "sensor/radar/echo.h"
+#include "sensor/radar/radar_points.h"
 #include "sensor/radar/seeker_radar.h"
 #include "sensor/radar/signature_library.h"
+
+enum { beam_batch = 1 << 16 }; /* echoes of a round */
 
 struct SeekerRadar {
     RadarPreset    preset;
@@ -36,6 +39,12 @@ struct SeekerRadar {
     RadarAir       air;
     EchoGrid      *echoes;
     IntervalPlan  *plan;
+    RadarPoints    points;       /* of the frame at work */
+    int            target_points;/* of them, of entities: the first */
+    Arena         *position;     /* what one position of a scan needs; NULL: it stares */
+    Echo          *batch;        /* [beam_batch] */
+    ScanPlan       scan;         /* positions 1: the beam stares */
+    double complex *scan_pulse;  /* [positions][pulses][samples]: compressed in range, sum channel; NULL: it stares */
 };
 
 typedef struct Making {
@@ -44,7 +53,15 @@ typedef struct Making {
     const RadarPreset *preset;
     const Visibility *visibility;
     RadarFrame       *frame;
-    double            right[3], down[3], ahead[3]; /* of the antenna, ENU */
+    double            p_enu[3];                    /* of the antenna */
+    double            right[3], down[3], ahead[3]; /* its axes, ENU */
+    double            aim_m;                       /* range that the window is asked to be about */
+    double            reference_m;                 /* middle of the range window now */
+    double            reference_rate_mps;          /* of the aim: rates of echoes are against it */
+    double            window_rate_mps;             /* at which the window's middle moves: that, or 0 */
+    double            after_s;                     /* since the frame's time */
+    double            scan_half_rad;               /* the beam will turn so far to both sides */
+    double            sweep_m;                     /* and ranges will change by up to this */
     double            half_window_m;               /* of range */
     double            near_m, far_m;               /* ranges between which echoes can be in it, fold by fold */
     double            widest;                      /* sine off the axis beyond which entities are left out */
@@ -64,6 +81,8 @@ typedef struct Sight {
     bool   within;
 } Sight;
 void making_sight(Sight *out, const Making *making, const double p_enu[3], double more_m);
+/* Sine of the angle off the beam's axis, off the nearest of its axes if it will turn. */
+double making_off_axis(const Making *making, const Sight *sight);
 
 /* Range rate of a place that moves, relative to the antenna; and over the reference's as growth of the two-way path
  * a pulse. */
@@ -100,22 +119,34 @@ Status radar_sight_centres(bool *seen, const Making *making, int entity, const d
                            const Centres *centres);
 /* Where relief or an entity is met more than slack_m before the place that a sight leads to. count: up to hits_capacity. */
 void making_hidden(bool *hidden, const Making *making, const Sight *sight, int count, double slack_m);
-/* An echo that moves at v_enu_mps, without its amplitudes. */
-void making_echo(Echo *out, const Making *making, const Sight *sight, const double v_enu_mps[3]);
+/* Sets near_m and far_m about reference_m. */
+void making_reach(Making *making);
 /* Rectangle in plan about what the main lobe lights within the window. */
 void making_lit_rectangle(double low_m[2], double high_m[2], const Making *making);
 /* Sine off the axis of the main lobe's null. */
 double making_null(const Making *making);
 
-/* Adds the echoes of entities, and their truth to the frame. */
+/* Adds the echoes of entities to the radar's points, and their truth to the frame. */
 Status making_targets(Making *making);
+/* Those of entities in one position of a scan. */
+Status making_targets_anew(Making *beam);
 /* Adds those of the ground. */
 Status making_ground(Making *making);
 /* Before any echo: what weakens all of them on their way, foliage and chaff; its loss to a sight's place in nepers of
  * power, one way. */
 Status making_volume_open(Making *making);
 double making_volume_np(const Making *making, const Sight *sight);
-/* Adds the echoes of rain, foliage and chaff. */
+/* Adds the echoes of foliage and chaff to the radar's points. */
 Status making_volume(Making *making);
+/* Those of the rain in one position of the beam. */
+Status making_rain(Making *beam);
+
+/* A position of the beam: turned about the antenna's down axis to the right, after_s from the frame's time. */
+void   beam_at(Making *out, const Making *making, double azimuth_rad, double after_s);
+/* Adds the echoes of all points, and of the rain in this position, to the radar's grid; sum_alone: to its sum channel
+ * only. In the order of the points, for any number of threads. */
+Status beam_echoes(Making *beam, bool sum_alone);
+/* All positions but the middle one, whose interval is given, measured anew; then the pictures of the frame. */
+Status making_scan(Making *making, Interval *middle);
 
 #endif

@@ -205,7 +205,7 @@ const Reference reference_radar = {
     .field = REFERENCE_FIELDS(radar_fields),
     .python =
         "import csv, glob, math\n"
-        "for path in sorted(glob.glob('radar/*.csv')):\n"
+        "for path in sorted(glob.glob('radar/??????.csv')):\n"
         "    rows = list(csv.DictReader(line for line in open(path) if not line.startswith('#')))\n"
         "    peak = max(rows, key=lambda row: float(row['power_w']))\n"
         "    print(path, peak['range_m'], 'm', 10 * math.log10(float(peak['power_w'])), 'dBW')\n",
@@ -243,8 +243,75 @@ const Reference reference_radar_map = {
     .field = REFERENCE_FIELDS(radar_map_fields),
     .python =
         "import glob, math, numpy, OpenEXR\n"
-        "for path in sorted(glob.glob('radar/*.exr')):\n"
+        "for path in sorted(glob.glob('radar/??????.exr')):\n"
         "    file = OpenEXR.File(path, separate_channels=True)\n"
         "    power = file.channels()['sum_re'].pixels ** 2 + file.channels()['sum_im'].pixels ** 2\n"
         "    print(path, power.shape, 10 * math.log10(power.max() / numpy.ravel(file.header()['noise_w'])[0]), 'dB over the noise')\n",
+};
+
+static const ReferenceField radar_scan_fields[] = {
+    {"channel scan/Y", "float", "W", "", "",
+     "real beam: mean power of the pulses of a position, sum beam, noise included; a column a "
+     "position, left to right, a row a range cell, the farthest on top"},
+    {"channel dbs/Y", "float", "W", "", "out of the window",
+     "sharpened by Doppler where that is finer, else the real beam; finer columns, the same rows"},
+    {"channel dbs/resolution_m", "float", "m", "across, at half power", "out of the window", "of what stands there"},
+    {"channel dbs/sharpened", "float", "", "1, 0", "", "1: by Doppler; 0: the real beam"},
+    {"channel view/scan", "float", "W", "", "sky, out of sector or window",
+     "real beam at range and azimuth of what the frame's pixel shows"},
+    {"channel view/dbs", "float", "W", "", "likewise", "the same, sharpened, for the pixel's own direction"},
+    {"header radar", "string", "", "", "", "row of etc/radars.csv"},
+    {"header frame", "int", "", "from 0", "", "number of the frame"},
+    {"header time_s", "double", "s", "exercise time", "", "middle of the middle position's interval"},
+    {"header host", "string", "", "site:application:entity", "", "the entity that carries the radar"},
+    {"header interval_s", "double", "s", "", "", "from one position to the next"},
+    {"header positions", "int", "", "odd", "", "of the beam"},
+    {"header beam_deg", "double", "deg", "", "", "width of the two-way beam at half power"},
+    {"header noise_w", "double", "W", "", "", "thermal noise in the real beam"},
+    {"header sharp_noise_w", "double", "W", "", "", "thermal noise where it is sharpened, on the axis of a position"},
+    {"header reference_m", "double", "m", "from the sensor", "in _view",
+     "range of row height / 2 - 1; followed over the positions"},
+    {"header metre_per_row", "double", "m", "", "in _view", "range"},
+    {"header first_azimuth_deg", "double", "deg", "right positive", "in _view",
+     "of the first column, off the camera's axis"},
+    {"header azimuth_step_deg", "double", "deg", "", "in _view", "between columns"},
+    {"header capDate", "string", "", "UTC, YYYY:MM:DD HH:MM:SS", "", "instant of the frame; DateTime in OpenImageIO"},
+};
+
+const Reference reference_radar_scan = {
+    .topic = "radar-scan",
+    .file  = "radar/NNNNNN_scan.exr, NNNNNN_dbs.exr, NNNNNN_view.exr",
+    .title = "scan of radar.preset: real beam, sharpened, on pixels",
+    .about = "With radar.scan_deg. An echo's peak is its received power. The PNGs of the same names\n"
+             "(NNNNNN_view_scan, NNNNNN_view_dbs) show decibels from 5 dB below the noise to the greatest, 45 dB at\n"
+             "least; black: no value. _view has the pixels of the band images.",
+    .notation = "Field: `channel` FILE/NAME, or `header`: attribute of each file.",
+    .field = REFERENCE_FIELDS(radar_scan_fields),
+    .python =
+        "import glob, math, numpy, OpenEXR\n"
+        "for path in sorted(glob.glob('radar/*_dbs.exr')):\n"
+        "    file = OpenEXR.File(path, separate_channels=True)\n"
+        "    power, fine = file.channels()['Y'].pixels, file.channels()['sharpened'].pixels\n"
+        "    print(path, power.shape, 10 * math.log10(numpy.nanmax(power)), 'dBW;', fine.mean(), 'sharpened')\n",
+};
+
+static const ReferenceField radar_azimuth_fields[] = {
+    {"az_deg", "number", "deg", "right positive", "", "off the camera's axis; a row a column of NNNNNN_dbs.exr"},
+    {"time_s", "number", "s", "from the frame's time", "", "middle of the interval of the position nearest to it"},
+    {"resolution_m", "number", "m", "across, at half power", "", "at the reference range"},
+    {"sharpened", "number", "", "1, 0", "", "1: by Doppler; 0: the real beam"},
+};
+
+const Reference reference_radar_azimuths = {
+    .topic = "radar-azimuths",
+    .file  = "radar/NNNNNN_dbs.csv",
+    .title = "resolution of the sharpened scan over azimuth",
+    .about = "CSV: lines that begin with # are comments, then a header, then a row an azimuth, left to right.",
+    .notation = "Field: column.",
+    .field = REFERENCE_FIELDS(radar_azimuth_fields),
+    .python =
+        "import csv, glob\n"
+        "for path in sorted(glob.glob('radar/*_dbs.csv')):\n"
+        "    rows = list(csv.DictReader(line for line in open(path) if not line.startswith('#')))\n"
+        "    print(path, min(float(row['resolution_m']) for row in rows), 'm at best')\n",
 };

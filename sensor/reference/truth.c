@@ -21,6 +21,7 @@ const Reference reference_products = {
         "    profiles/radar/NNNNNN.csv        help profile   pseudo-radar power over range\n"
         "    radar/NNNNNN.csv                 help radar     range profile of a radar with phase; radar.preset\n"
         "    radar/NNNNNN.exr, .png           help radar-map its map of range and Doppler\n"
+        "    radar/NNNNNN_scan.*, _dbs.*, _view.* help radar-scan its scan; radar.scan_deg\n"
         "    pairs.jsonl, pairs/              help pairs     each frame without its target, without noise; --pairs\n"
         "    coco.json                        help coco      boxes and masks; --coco\n"
         "    manifest.jsonl, V/variant.json   help manifest  of --sweep: a line per variant; V/ is a folder of "
@@ -195,6 +196,17 @@ static const ReferenceField fields[] = {
     {"radar.chaff", "integer", "", "", "", "clouds of chaff within beam and window"},
     {"radar.rain_1_m", "number", "m2/m3", "", "", "backscatter of the rain by its volume; 0: none falls"},
     {"radar.map_sha256", "string", "", "", "", "SHA-256 of the map of all channels, before it is rounded for a file"},
+    {"radar.scan", "object", "", "", "with radar.scan_deg 0", "how the beam scanned"},
+    {"radar.scan.positions", "integer", "", "", "",
+     "of the beam, an odd number; the middle one is the frame's interval"},
+    {"radar.scan.step_deg", "number", "deg", "", "", "between positions, left to right, about the camera's rows axis"},
+    {"radar.scan.interval_s", "number", "s", "", "", "from one position to the next"},
+    {"radar.scan.beam_deg", "number", "deg", "", "", "width of the two-way beam at half power"},
+    {"radar.scan.noise_dbw", "number", "dB over 1 W", "", "", "thermal noise in a cell of the real-beam image"},
+    {"radar.scan.sharpened_share", "number", "", "0 .. 1", "",
+     "of the sharpened image's cells where Doppler is finer than the beam"},
+    {"radar.scan.sha256", "string", "", "", "",
+     "SHA-256 of both images over range and azimuth, before they are rounded for a file"},
     {"radar.detections", "list of objects", "", "strongest first, at most 256", "", "peaks over the threshold of constant false "
      "alarms"},
     {"radar.detections[].range_m", "number", "m", "from the sensor", "", "between cells"},

@@ -131,6 +131,10 @@ static const Setting keys[] = {
      "CSV file of signatures for that radar, measured or from another program, that stand in for models; empty: none"},
     {"radar.library", SETTING_PATH, AT(radar.library), 0, 0, NULL, "",
      "folder of targets' signatures for that radar (`pitviper rcs MODEL --library`), read and added to; it changes times, not bits"},
+    {"radar.scan_deg", SETTING_DOUBLE, AT(radar.scan_deg), 0, 160, NULL, "deg",
+     "sector that that radar's beam scans about the sensor's axis; 0: it stares"},
+    {"radar.scan_step", SETTING_DOUBLE, AT(radar.scan_step), 0.05, 1, NULL, "",
+     "between positions of the scanning beam, over its width at half power, one way"},
     {"exercise.port", SETTING_INT, AT(exercise.port), -1, 65535, NULL, "",
      "UDP port of the exercise; 0: any; -1: 3000, or any if nothing was sent to it"},
     {"exercise.exercise", SETTING_INT, AT(exercise.exercise), -2, 255, NULL, "",
@@ -378,6 +382,7 @@ Config config_default(void)
     c.radar.ground_bounce           = true;
     c.radar.warp_mm                 = 1;
     c.radar.chaff_dipoles           = 1e6; /* of 5.1 million fibres in a cartridge, cut for several bands */
+    c.radar.scan_step               = 0.5;
     c.exercise.port                 = -1;
     c.exercise.exercise             = -1;
     c.exercise.listen_s             = 2;

@@ -58,6 +58,7 @@ typedef struct Config {
         char   given[256];         /* likewise: list of signatures that are given; empty: none */
         char   library[1024];      /* likewise: a folder of targets' signatures; empty: none */
         double chaff_dipoles;      /* likewise: resonant ones in a cloud */
+        double scan_deg, scan_step;/* likewise: sector of its scan, 0: it stares; step over the beamwidth */
     } radar;
     struct {
         int    port, exercise;     /* exercise -1: the one with the most PDUs, -2: all */

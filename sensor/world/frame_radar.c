@@ -12,6 +12,8 @@ Status frame_radar_open(SeekerRadar **out, const Config *config, const char *isa
                                                          .warp_m = 1e-3 * config->radar.warp_mm,
                                                          .given = config->radar.given, .wind_mps = config->weather.wind_mps,
                                                          .chaff_dipoles = config->radar.chaff_dipoles,
+                                                         .scan_rad = config->radar.scan_deg * rad_per_deg,
+                                                         .scan_step = config->radar.scan_step,
                                                          .seed = (uint64_t)config->seed,
                                                          .library = config->radar.library, .background = live});
 }

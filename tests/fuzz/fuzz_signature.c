@@ -24,7 +24,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 static void try_octets(const uint8_t *data, size_t size)
 {
     const ScatterAntenna at = {{1, 0, 0}, 1000}, moved = {{0.8, 0.6, 0}, 900};
-    const SignatureCells cells = signature_default_cells(94e9, 5e8, 5e-3);
+    const SignatureCells cells = signature_default_cells(94e9, 5e8, 5e-3, 3e-3);
     Signature            s = {.tx = at, .rx = at};
     Centres              centres = {0};
     if (signature_from_octets(&s, data, size, name, parts) != STATUS_OK) return;

@@ -47,7 +47,7 @@ static bool within(const Plant *p, const double at_m[3])
 
 static double march(double *db, const double o[3], const double d[3], double range_m)
 {
-    static const double step_m = 0.005;
+    static const double step_m = 0.02;
     double              depth = 0, weighted = 0;
     static int          near[plants];
     int                 count = 0;
@@ -55,7 +55,7 @@ static double march(double *db, const double o[3], const double d[3], double ran
         double to[3], off[3];
         for (int k = 0; k < 3; k++) to[k] = origin[k] + (double)plant[i].p_m[k] + (k == 2 ? 6 : 0) - o[k];
         v3_cross(off, to, d);
-        if (v3_length(off) < 20) near[count++] = i;
+        if (v3_length(off) < 16) near[count++] = i; /* 6 m and more of its own height */
     }
     for (double s = 0.5 * step_m; s < range_m; s += step_m) {
         double p[3];

@@ -32,7 +32,8 @@ static void an_image_is_as_far_from_the_plane(void **state)
     (void)state;
     for (uint64_t i = 0; i < 200; i++) {
         const GroundPlane    plane = tilted(i);
-        const ScatterAntenna a = antenna_at(360 * random_uniform(2, i, 0, 0), 60 * random_uniform(2, i, 0, 1) + 12, pow(10, 2 + 3 * random_uniform(2, i, 0, 2)));
+        const ScatterAntenna a = antenna_at(360 * random_uniform(2, i, 0, 0), 60 * random_uniform(2, i, 0, 1) + 12,
+                                                pow(10, 2 + 3 * random_uniform(2, i, 0, 2)));
         ScatterAntenna       image;
         double               at[3], u[3], p[3], to[3], from_image[3];
         const double         extra_m = ground_image(&image, &a, &plane);
@@ -65,7 +66,8 @@ static void a_mirror_has_no_field_along_it(void **state)
     double worst = 0;
     for (uint64_t i = 0; i < 500; i++) {
         const GroundPlane plane = tilted(i);
-        double            right[3] = {random_uniform(5, i, 0, 0) - 0.5, random_uniform(5, i, 0, 1) - 0.5, random_uniform(5, i, 0, 2) - 0.5};
+        double            right[3] = {random_uniform(5, i, 0, 0) - 0.5, random_uniform(5, i, 0, 1) - 0.5,
+                                      random_uniform(5, i, 0, 2) - 0.5};
         ScatterAntenna    a = antenna_at(360 * random_uniform(4, i, 0, 0), 75 * random_uniform(4, i, 0, 1) + 14, INFINITY), image;
         GroundLeg         leg, direct;
         double            h[3], v[3], axis[2][3];
@@ -149,14 +151,16 @@ static void every_surface_has_a_ground(void **state)
     const GroundSurface water = ground_surface(&table.row[SURFACE_WATER], 10e9);
     CHECK(fabs(creal(water.eps) - 60.8) < 4 && fabs(-cimag(water.eps) - 32.7) < 4 && water.waves);
     const GroundSurface between = ground_surface(&table.row[SURFACE_BARE_SOIL], sqrt(10e9 * 35e9)),
-                        low = ground_surface(&table.row[SURFACE_BARE_SOIL], 10e9), high = ground_surface(&table.row[SURFACE_BARE_SOIL], 35e9);
+                        low = ground_surface(&table.row[SURFACE_BARE_SOIL], 10e9),
+                        high = ground_surface(&table.row[SURFACE_BARE_SOIL], 35e9);
     CHECK(cabs(between.eps - 0.5 * (low.eps + high.eps)) < 1e-12);
 
     static GroundTable kept;
     kept.row[1].points = 77;
     static const char *const bad[] = {
         "surface,f_ghz,eps_re,eps_im,rms_mm,heights\n", "surface,f_ghz,eps_re\ngrass,10,5\n",
-        "surface,f_ghz,eps_re,eps_im,rms_mm,heights\nlawn,10,5,1,5,gaussian\n", "surface,f_ghz,eps_re,eps_im,rms_mm,heights\ngrass,10,0.5,1,5,gaussian\n",
+        "surface,f_ghz,eps_re,eps_im,rms_mm,heights\nlawn,10,5,1,5,gaussian\n",
+        "surface,f_ghz,eps_re,eps_im,rms_mm,heights\ngrass,10,0.5,1,5,gaussian\n",
         "surface,f_ghz,eps_re,eps_im,rms_mm,heights\ngrass,10,5,1,5,fractal\n",
         "surface,f_ghz,eps_re,eps_im,rms_mm,heights\ngrass,10,5,1,5,gaussian\ngrass,10,5,1,5,gaussian\n",
         "surface,f_ghz,eps_re,eps_im,rms_mm,heights\ngrass,10,5,1,5,gaussian\ngrass,20,5,1,6,gaussian\n"};
@@ -266,7 +270,8 @@ static double complex plate_optics(const ScatterAntenna *tx, const ScatterAntenn
     v3_cross(h, d, p[transmitted]);
     v3_cross(j, n, h);
     const double y = 0.5 * k * a_m * (tx->u[1] + rx->u[1]), z = 0.5 * k * b_m * (tx->u[2] + rx->u[2]);
-    return -I * k / (2 * pi_rad) * a_m * b_m * v3_dot(q[received], j) * (fabs(y) < 1e-9 ? 1 : sin(y) / y) * (fabs(z) < 1e-9 ? 1 : sin(z) / z);
+    const double share = (fabs(y) < 1e-9 ? 1 : sin(y) / y) * (fabs(z) < 1e-9 ? 1 : sin(z) / z);
+    return -I * k / (2 * pi_rad) * a_m * b_m * v3_dot(q[received], j) * share;
 }
 
 /* A plate that stands on a mirror: the sum over antenna and image, each way, of the plate's own closed form; its peak that
@@ -299,7 +304,8 @@ static void a_standing_plate_is_a_dihedral(void **state)
         if (i >= 4) continue;
         worst_peak_db = fmax(worst_peak_db, fabs(2 * decibels(2 * cabs(p.s.once.hh) / peak)));
         trace_paths(&p, &s, &a, &plane, &mirror, true);
-        worst_edge_db = fmax(worst_edge_db, fmax(fabs(2 * decibels(2 * cabs(p.s.once.hh) / peak)), fabs(2 * decibels(2 * cabs(p.s.once.vv) / peak))));
+        worst_edge_db = fmax(worst_edge_db, fabs(2 * decibels(2 * cabs(p.s.once.hh) / peak)));
+        worst_edge_db = fmax(worst_edge_db, fabs(2 * decibels(2 * cabs(p.s.once.vv) / peak)));
     }
     printf("a plate on a mirror: %.4f of its peak from image theory; dihedral %.3f dB, with edges %.3f dB\n", worst, worst_peak_db,
            worst_edge_db);
@@ -444,7 +450,8 @@ static void open_truck(RadarStage *s, Catalog **catalog, RadarMaterials *materia
     *s = (RadarStage){0};
     CHECK(etc_path(path, sizeof path, "catalog.csv") && catalog_open(catalog, path, radar_sag_m(5e9)) == STATUS_OK);
     CHECK(radar_materials_load(materials) == STATUS_OK);
-    CHECK(radar_target_create(&s->target, catalog_model(*catalog, catalog_find(*catalog, truck, &origin, NULL)), materials, "avx2") == STATUS_OK);
+    const Model *model = catalog_model(*catalog, catalog_find(*catalog, truck, &origin, NULL));
+    CHECK(radar_target_create(&s->target, model, materials, "avx2") == STATUS_OK);
     CHECK(pool_create(&s->pool, 2) == STATUS_OK);
     s->config = tubes_default_config(5e9);
 }

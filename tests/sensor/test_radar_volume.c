@@ -178,7 +178,7 @@ static void rain_has_the_power_of_its_integral(void **state)
     enum { seeds = 4, every = 2 };
     static double sample[seeds * 512 / every];
     Weather       weather = weather_default();
-    double        got_w = 0, want_w = 0, mean, variance, row = 0, row2 = 0, power = 0, cross = 0;
+    double        got_w = 0, want_w = 0, mean, variance, row = 0, row2 = 0, power = 0, cross = 0, phase = 0;
     int           samples = 0;
     weather.rain_mm_h = 10;
     weather.wind_mps = 8;
@@ -217,6 +217,7 @@ static void rain_has_the_power_of_its_integral(void **state)
             power += w, row += w * at, row2 += w * at * at;
             cross += creal(x * conj(x)) - floor_w;
         }
+        phase = pow(frame->preset->receiver.phase_noise_rad, 2) * frame->map.rows * frame->map.rows / 12;
         seeker_radar_destroy(radar);
     }
     printf("rain: %.3f dB over its integral, cross-polarised %.1f dB\n", db(got_w / want_w), db(cross / power));
@@ -225,7 +226,6 @@ static void rain_has_the_power_of_its_integral(void **state)
     /* the wind carries it away, falling drops come nearer: both by the cosine to the axis */
     const double rate = row / power * frame->map.mps_per_row, want = 8 * cos(elevation) - mean * sin(elevation);
     /* Hann's window spreads by 1/3 of a row squared, the oscillator's phase noise its small share over all rows */
-    const double phase = pow(frame->preset->receiver.phase_noise_rad, 2) * frame->map.rows * frame->map.rows / 12;
     const double width2 = (row2 / power - row * row / power / power - 1.0 / 3 - phase) * pow(frame->map.mps_per_row, 2);
     const double want2 = 1 + variance * sin(elevation) * sin(elevation);
     printf("Doppler of rain: %.2f m/s (%.2f), rms width %.2f m/s (%.2f)\n", rate, want, sqrt(width2), sqrt(want2));
@@ -328,7 +328,7 @@ static void rain_behind_the_ground_is_hidden(void **state)
 /* Loss from a place towards the antenna by a march through all crowns, dB one way. */
 static double march_db(const double p_enu[3])
 {
-    static const double step_m = 0.1;
+    static const double step_m = 0.2;
     double              d[3], depth = 0, weighted = 0;
     int                 near[plants], count = 0;
     v3_sub(d, stage.view.p_enu, p_enu);
@@ -361,7 +361,7 @@ static double march_db(const double p_enu[3])
 /* Crowns by points of the test's own in each; and the ground below them. */
 static double canopy_by_integral(const RadarFrame *frame)
 {
-    enum { points = 40 };
+    enum { points = 20 };
     double sum_w = 0;
     for (int i = 0; i < plants; i++) {
         double axis[3][3], scale[2], middle[3];
@@ -388,7 +388,7 @@ static double canopy_by_integral(const RadarFrame *frame)
 
 static double ground_by_integral(const RadarFrame *frame)
 {
-    const double step_m = 2, *o = stage.woods.origin_enu;
+    const double step_m = 4, *o = stage.woods.origin_enu;
     double       sum_w = 0;
     for (double x = o[0] - 100; x < o[0] + 420; x += step_m)
         for (double y = o[1] - 100; y < o[1] + 420; y += step_m) {

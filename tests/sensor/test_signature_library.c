@@ -200,7 +200,7 @@ static void numbers_are_checked(void **state)
         default: break;
         }
         const size_t count = signature_to_octets(octets, &to, key);
-        CHECK(count == 80 + 2 * 84 + 64);
+        CHECK(count == 96 + 2 * 84 + 64);
         const Status status = signature_from_octets(&from, octets, count, key, 2);
         CHECK(status == (i == 0 || i == 11 ? STATUS_OK : STATUS_BAD_VALUE));
         if (status == STATUS_OK) CHECK(from.count == 2 && memcmp(from.centre, good, sizeof good) == 0);

@@ -41,7 +41,7 @@ exercise demo "$tmp/demo.pcap"
 small=(--size 32x24 --rate 1 --threads 1)
 run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --from 1366 --to 1366 --pairs target --coco \
     --set sensor.preset=staring_lwir,staring_mwir,tv --set sensor.lens_k1=-0.1 --set sensor.lateral_r=0.001 \
-    --set radar.preset=search_ku
+    --set radar.preset=search_ku --set radar.scan_deg=4
 check "all products" [ $code = 0 ] || cat "$tmp/stderr"
 run replay "$tmp/demo.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 --bands optical --host observer \
     --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png \
