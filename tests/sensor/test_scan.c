@@ -129,9 +129,9 @@ static void pixels_are_looked_up_where_echoes_appear(void **state)
     (void)state;
     static const double still[3] = {0, 0, 0};
     static const char   head[] =
-        "name,waveform,centre_ghz,bandwidth_mhz,samples,pulses,repeat_khz,pulse_us,power_w,loss_db,dish_m,taper,transmit,"
-        "noise_figure_db,phase_noise_deg,iq_gain_db,iq_phase_deg,bits,range_window,doppler_window,pfa,compensated,far_km,"
-        "mti,source\n";
+        "name,waveform,centre_ghz,bandwidth_mhz,samples,pulses,repeat_khz,pulse_us,power_w,loss_db,dish_m,taper,"
+        "transmit,noise_figure_db,phase_noise_deg,iq_gain_db,iq_phase_deg,bits,range_window,doppler_window,pfa,"
+        "compensated,far_km,mti,source\n";
     const Weather weather = weather_default();
     const double  azimuth = atan(88.0 / 500);
     place_sphere(0, azimuth, still);
@@ -155,7 +155,8 @@ static void pixels_are_looked_up_where_echoes_appear(void **state)
         /* the antenna has come nearer by the time that the beam is there */
         const double    after_s = azimuth / frame->scan->plan.step_rad * frame->scan->plan.interval_s;
         const double    then_m = range_m - 250 * cos(azimuth) * after_s;
-        const RadarLink link = {preset->power_w, gain * gain, gain * gain, preset->antenna.wavelength_m, then_m, preset->loss};
+        const RadarLink link = {preset->power_w, gain * gain, gain * gain, preset->antenna.wavelength_m, then_m,
+                                preset->loss};
         const double       want_w = radar_received_w(&link, frame->target[0].rcs_m2[0]) * pow(10, -0.2 * frame->air_db);
         const size_t       at = rows_px / 2 * columns_px + 288;
         const double       beam_db = 10 * log10((double)frame->scan->view_w[at] / want_w);
