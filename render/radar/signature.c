@@ -174,7 +174,7 @@ static int32_t cell_number(double x_m, double side_m) { return (int32_t)clamp(fl
 /* Sides of cells by node: half a cell from the middle, half the bin away, both ways; and half its turning. */
 static double *sides_of(const Model *model, const SignatureCells *cells, double k)
 {
-    static const double rolls_mps = 20, most_m = 0.2; /* so that what hides part of a target hides whole cells */
+    static const double rolls_mps = 20, most_m = 0.1; /* so that what hides part of a target hides whole cells */
     const int           count = model ? model->node_count : 0;
     double             *side = malloc((size_t)(count + 1) * sizeof *side);
     if (!side) return NULL;

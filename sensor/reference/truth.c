@@ -229,9 +229,9 @@ static const ReferenceField fields[] = {
     {"radar.targets[].visible_fraction", "number", "", "0 .. 1", "", "share of its scattering centres' power in sight: those centres "
      "alone return"},
     {"radar.targets[].rcs_dbsm", "object", "", "", "", "cross section at the centre frequency, as if wholly in sight, without the ground"},
-    {"radar.targets[].rcs_dbsm.hh", "number", "dB over 1 m2", "received, transmitted", "", "h along the camera's columns"},
-    {"radar.targets[].rcs_dbsm.vv", "number", "dB over 1 m2", "", "", "v along its rows"},
-    {"radar.targets[].rcs_dbsm.hv", "number", "dB over 1 m2", "", "", "received h, transmitted v"},
+    {"radar.targets[].rcs_dbsm.hh", "number", "dB over 1 m2", "received, transmitted", "when it is 0", "h along the camera's columns"},
+    {"radar.targets[].rcs_dbsm.vv", "number", "dB over 1 m2", "", "when it is 0", "v along its rows"},
+    {"radar.targets[].rcs_dbsm.hv", "number", "dB over 1 m2", "", "when it is 0", "received h, transmitted v"},
     {"radar.targets[].rcs_error_db", "object", "", "", "of a given signature", "estimated standard deviation of these, by the grid of ray "
      "tubes alone: not by the model or physical optics"},
     {"radar.targets[].rcs_error_db.hh", "number", "dB", "", "when it scatters nothing back", "of HH"},

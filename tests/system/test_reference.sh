@@ -24,11 +24,14 @@ command -v python3 >/dev/null || { echo "skipped in part: no python3"; finish; }
 
 free_port
 with_stream udp://127.0.0.1:$port
-# two live nodes, each with an exercise of its own, which send what they see; one has a radar
+printf 'x_m,y_m,z_m,hh_dbsm,vv_dbsm\n0,0,-1,20,20\n' >"$tmp/point.csv"
+printf 'entity,signature\n*,point.csv\n' >"$tmp/given.csv"
+# two live nodes, each with an exercise of its own, which send what they see; one radar waits for its signatures, the other
+# has a point for every entity
 for kind in truth sensor; do
     free_port
-    radar=()
-    [ $kind = truth ] || radar=(--set radar.preset=search_ku --set radar.ground=false)
+    radar=(--set radar.preset=search_ku --set radar.ground=false)
+    [ $kind = truth ] || radar+=(--set radar.given="$tmp/given.csv")
     node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 2 --for 30 --no-png --bands lwir,radar --threads 1 \
         "${stream[@]}" "${radar[@]}" --latest \
         --set publish.files=false --set publish.dis=$kind --set exercise.listen_s=1 --record "$tmp/$kind.pcapng"

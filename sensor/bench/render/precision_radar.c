@@ -51,6 +51,7 @@ static TankSet tank_set(const RadarModel *model, Pool *pool, double more_rays)
     TankSet t = {.target = model->target, .pool = pool, .looks = looks, .tubes = tubes_default_config(tank_hz)};
     t.tubes.rays_per_wavelength *= more_rays;
     t.tubes.rays_per_radius *= more_rays;
+    t.tubes.splits = 0; /* as signatures are made */
     return t;
 }
 
@@ -107,7 +108,7 @@ static Status knob_splits(Bench *bench, const RadarModel *model, Pool *pool)
     }
     return knob(bench, set, &fine, name, count, 2,
                 &(BenchTunable){"divisions of ray tubes at edges", "render/radar/tubes.h", "a look at a tank at 10 GHz",
-                                "%", "field, rms of the looks; another grid, one division more", 8});
+                                "%", "field, rms of the looks; another grid, one division more", 12});
 }
 
 static Status knob_mirrors(Bench *bench, const RadarModel *model, Pool *pool)
