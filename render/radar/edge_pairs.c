@@ -320,7 +320,7 @@ Status edge_pair_segments(EdgeSegments *out, const EdgePair *pair, int count, co
             if (config->clear && !config->clear(config->edge.user, p, q, face.n)) continue;
             const double *const from[4] = {p, q, p, q}, *const to[4] = {q, p, p, q};
             for (int w = 0; w < 4 && good; w++) {
-                EdgeSegment s;
+                EdgeSegment s = {0};
                 if (piece(&s, &way[w], from[w], to[w], length_m / n, tx, rx, config->k_per_m) &&
                     seen(&way[w], from[w], to[w], config))
                     good = add_segment(out, &s);

@@ -32,9 +32,10 @@ typedef struct EdgeConfig {
 
 typedef struct EdgeSegment {
     int    wedge, part;     /* whose it is; of the model */
+    int    order;           /* 0: first order; n: of n waves along a face, and its amplitude goes with k^(-n / 2) */
+    int    zero;            /* no gaps: segments are compared as octets */
     double p[3], length_m;  /* middle */
     double complex amplitude[2][2]; /* m; [received][transmitted], 0: h, 1: v; first order: real */
-    int    order;           /* 0: first order; n: of n waves along a face, and its amplitude goes with k^(-n / 2) */
     double order_k;         /* the k, 1/m, that this amplitude is of */
     double path_m, slope;   /* as in scatter.h, the mean along the segment; its change per length of edge */
     double u[2][3];         /* unit directions to transmitter and receiver: d path = -dp . (u[0] + u[1]) */

@@ -404,7 +404,7 @@ static void a_sphere_above_a_mirror(void **state)
         printf("a sphere above a mirror, %2.0f degrees: %.2f %.2f dBsm, exact %.2f %.2f; %.4f of the lobe\n", el, rcs_dbsm(sum.hh),
                rcs_dbsm(sum.vv), rcs_dbsm(hh), rcs_dbsm(vv), error);
     }
-    CHECK(worst[0] < 0.02 && worst[1] < 0.04); /* to 15 and to 30 degrees: physical optics 30 and 60 degrees off backscatter */
+    CHECK(worst[0] < 0.03 && worst[1] < 0.04); /* to 15 and to 30 degrees: physical optics 30 and 60 degrees off backscatter */
     stage_close(&s);
 }
 
