@@ -1,4 +1,5 @@
-/* sensor/radar/radar_points.h: the point echoes of a frame: entities and ground, once for all positions of the beam.
+/* sensor/radar/radar_points.h: the point echoes of a frame: ground and plants once for all positions of the beam, entities and
+ * rain anew for each.
  *
  * Left out of a position (beam.c): points farther off its axis than their own `widest` (entities: u = 16, ground: the
  * main lobe's null), and beyond its range window. tests/sensor/test_scan.c: what that leaves out. */
