@@ -5,7 +5,7 @@
 
 _Static_assert(sizeof(SignatureCentre) == 84, "written to files as it is");
 
-static const double path_phase_rad = 0.2, across_phase_rad = 0.2, spin_phase_rad = 0.5;
+static const double path_phase_rad = 0.2, across_phase_rad = 0.2, spin_phase_rad = 1;
 
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s)
 {

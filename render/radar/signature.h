@@ -24,7 +24,7 @@ typedef struct SignatureCells {
     double interval_s;                   /* that centres are to stand for; 0: what spins and rolls stands still */
     double spin_phase_rad;               /* of what spins as its model says, or rolls at 20 m/s, over the interval */
 } SignatureCells;
-/* Phases of 0.2, 0.2 and 0.5 rad. */
+/* Phases of 0.2, 0.2 and 1 rad. */
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s);
 
 /* Power of the error that those cells leave, at most, over the power of their centres. */

@@ -172,7 +172,7 @@ static Status add_target_rows(RadarSpeed *r)
     BenchRow row = bench_row("radar, 94 GHz: a tank at 2 km, list and signature of a new bin, 1 thread");
     row.median = row.best = made_s, row.unit = "s";
     row.rate = 1e-6 * (double)r->signature.count * sizeof *r->signature.centre, row.rate_unit = "MB";
-    row.error = error_db, row.error_unit = "dB", row.against = "four times the tubes, over the band";
+    row.error = 100 * pow(10, error_db / 20), row.error_unit = "% of the field", row.against = "four times the tubes, over the band";
     if (isnan(error_db)) row.error_unit = row.against = NULL;
     if (status == STATUS_OK) bench_add(r->bench, &row);
 
@@ -199,7 +199,7 @@ static Status add_target_rows(RadarSpeed *r)
     row = bench_row_of("radar, 94 GHz: the tank's centres from a bin at hand", &time[0], "M centres/s", 1e6 / r->signature.count);
     snprintf(against, sizeof against, "its %zu hits and %d edges, at the bin's edge and the band's ends", r->field.hits.count,
              r->field.edges.count);
-    row.error = 10 * log10(error / power), row.error_limit = -25, row.error_unit = "dB", row.against = against;
+    row.error = 100 * sqrt(error / power), row.error_limit = 5, row.error_unit = "% of the field", row.against = against;
     bench_add(r->bench, &row);
 
     /* an interval's samples of them; all pulses are alike, so the middle one is the sweep itself */
@@ -216,7 +216,7 @@ static Status add_target_rows(RadarSpeed *r)
     }
     snprintf(what, sizeof what, "radar, 94 GHz: the tank's echo over %d pulses of %d samples, 4 channels", wave->pulses, wave->samples);
     row = bench_row_of(what, &time[1], "profiles/s", 1.0 / wave->pulses);
-    row.error = 10 * log10(error / power), row.error_limit = -25, row.error_unit = "dB", row.against = "a sweep of its hits and edges";
+    row.error = 100 * sqrt(error / power), row.error_limit = 5, row.error_unit = "% of the field", row.against = "a sweep of its hits and edges";
     if (status == STATUS_OK) bench_add(r->bench, &row);
     row = bench_row("radar, 94 GHz: the same, a pulse");
     row.median = time[1].median_s / wave->pulses, row.best = time[1].best_s / wave->pulses, row.unit = "s";
