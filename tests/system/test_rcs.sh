@@ -24,10 +24,13 @@ plate:1x1,10,0,0,,20,
 ROWS
 "$pitviper" probe rcs <"$tmp/rows" >"$tmp/rcs" 2>"$tmp/stderr"
 near "square trihedral" "$(cell "$tmp/rcs" 1 hh_dbsm)" 25.308 0.1
-near "plate" "$(cell "$tmp/rcs" 2 vv_dbsm)" 17.019 0.01
+# physical optics is the closed form; waves between the edges add 0.05 dB to it
+near "plate" "$(cell "$tmp/rcs" 2 vv_dbsm)" 17.019 0.07
+"$pitviper" rcs plate:0.3x0.2 --frequency 10 --elevation 0 --azimuth 0:0:1 --no-edges --image none -o "$tmp/flat" -q
+near "plate without edges" "$(cell "$tmp/flat/rcs.csv" 1 vv_dbsm)" 17.019 0.001
 near "sphere" "$(cell "$tmp/rcs" 3 hh_dbsm)" -1.049 0.1
 near "sphere, bistatic" "$(cell "$tmp/rcs" 4 hh_dbsm)" -1.049 0.3
-near "plate at 2 km" "$(cell "$tmp/rcs" 5 vv_dbsm)" 17.019 0.02
+near "plate at 2 km" "$(cell "$tmp/rcs" 5 vv_dbsm)" "$(cell "$tmp/rcs" 2 vv_dbsm)" 0.01
 for row in 6 7 8 9 10; do check "row $row has an error" [ -n "$(cell "$tmp/rcs" $row error)" ]; done
 
 run rcs tank -o "$tmp/tank" --frequency 3,4 --azimuth -30:30:15 --elevation 10 --image 20 --cell 1

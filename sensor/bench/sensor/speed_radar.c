@@ -36,6 +36,7 @@ static TubeConfig tubes_of(const RadarSpeed *r, double rays)
 {
     TubeConfig tubes = tubes_default_config(r->preset.wave.centre_hz);
     tubes.rays_per_wavelength = rays;
+    tubes.splits = r->config.splits;
     tubes.warp_m = r->config.warp_m;
     tubes.warp_seed = signature_warp_seed(r->model);
     return tubes;
