@@ -58,6 +58,8 @@ static inline void scatter_turn(ScatterMatrix *s, const double h[3], const doubl
     s->vh = -c * w * hh - w * w * hv + c * c * vh + c * w * vv;
 }
 
+static inline double scatter_power(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
+
 /* Share of the field that is left where its phase varies evenly over a stretch, by x from the middle to an end. */
 static inline double scatter_sinc(double x) { return fabs(x) < 1e-4 ? 1 - x * x / 6 : sin(x) / x; }
 

@@ -283,8 +283,6 @@ static bool keep(SignatureCentre *out, const Making *m, const Cell *c)
     return isfinite(out->scale) && isfinite(out->moment_scale) && isfinite(out->weight);
 }
 
-static double square(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
-
 Status signature_make(Signature *out, const TotalField *field, const Model *model, const SignatureCells *cells)
 {
     const TubeHits *h = &field->hits;
@@ -301,8 +299,8 @@ Status signature_make(Signature *out, const TotalField *field, const Model *mode
     m.across_m = side;
     for (size_t i = 0; i < h->count && status == STATUS_OK; i++) {
         share_of_hit(&share, h, i, m.k);
-        out->tubes_same_m2 += 0.5 * (square(share.s[0]) + square(share.s[3]));
-        out->tubes_cross_m2 += 0.5 * (square(share.s[1]) + square(share.s[2]));
+        out->tubes_same_m2 += 0.5 * (scatter_power(share.s[0]) + scatter_power(share.s[3]));
+        out->tubes_cross_m2 += 0.5 * (scatter_power(share.s[1]) + scatter_power(share.s[2]));
         status = add(&m, &share);
     }
     for (int i = 0; i < field->edges.count && status == STATUS_OK; i++) {

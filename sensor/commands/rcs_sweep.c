@@ -125,8 +125,6 @@ static Status look_at(ScatterMatrix *s, RcsSweep *sweep, int look, uint64_t seed
     return status;
 }
 
-static double power(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
-
 /* Some looks again with another grid of tubes: the difference is the error of both. */
 static Status check_grid(RcsSweep *sweep)
 {
@@ -139,8 +137,8 @@ static Status check_grid(RcsSweep *sweep)
         const Status         status = look_at(again, sweep, look, 1);
         if (status != STATUS_OK) return status;
         for (int f = 0; f < sweep->config.frequencies; f++) {
-            off += power(again[f].hh - s[f].hh) + power(again[f].vv - s[f].vv);
-            whole += power(s[f].hh) + power(s[f].vv);
+            off += scatter_power(again[f].hh - s[f].hh) + scatter_power(again[f].vv - s[f].vv);
+            whole += scatter_power(s[f].hh) + scatter_power(s[f].vv);
         }
     }
     sweep->grid_db = whole > 0 ? 10 * log10(off / whole / 2) : NAN; /* half of it is each grid's own */

@@ -43,8 +43,6 @@ void making_target_velocity(double v_enu[3], const Target *t, int node, const do
 
 /* ---- one entity ------------------------------------------------------------------------------------- */
 
-static double square(double complex v) { return creal(v) * creal(v) + cimag(v) * cimag(v); }
-
 /* Keeps it if it is among the strongest, which are in order. */
 static void note_strongest(RadarTruth *truth, const RadarScatterer *of)
 {
@@ -84,7 +82,7 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
         add_turned(&whole, &s, phase);
         if (seen[i]) add_turned(&in_sight, &s, phase);
         scatter_turn(&s, h_enu, v_enu, m->right);
-        const RadarScatterer one = {4 * pi_rad * square(s.hh), 4 * pi_rad * square(s.vv), {c->p[0], c->p[1], c->p[2]}, c->bounce,
+        const RadarScatterer one = {4 * pi_rad * scatter_power(s.hh), 4 * pi_rad * scatter_power(s.vv), {c->p[0], c->p[1], c->p[2]}, c->bounce,
                                     c->part, seen[i]};
         power += one.hh_m2 + one.vv_m2;
         if (seen[i]) seen_power += one.hh_m2 + one.vv_m2;
@@ -93,7 +91,7 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
     scatter_turn(&whole, h_enu, v_enu, m->right);
     scatter_turn(&in_sight, h_enu, v_enu, m->right);
     const double complex of[3] = {whole.hh, whole.vv, whole.hv};
-    for (int p = 0; p < 3; p++) truth->rcs_m2[p] = 4 * pi_rad * square(of[p]);
+    for (int p = 0; p < 3; p++) truth->rcs_m2[p] = 4 * pi_rad * scatter_power(of[p]);
     truth->centres = centres->count;
     add_error(truth, centres, of, power);
     truth->visible = power > 0 ? seen_power / power : 0;
@@ -101,7 +99,7 @@ static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const
     const RadarPreset *preset = m->preset;
     double complex     amplitude[interval_channels];
     making_amplitudes(amplitude, m, sight, &in_sight);
-    truth->snr = square(amplitude[CHANNEL_SUM]) /
+    truth->snr = scatter_power(amplitude[CHANNEL_SUM]) /
                  (receiver_noise_w(&preset->receiver, &preset->wave) * interval_noise_share(m->radar->plan));
     truth->range_rate_mps = making_range_rate(m, sight, t->v_enu_mps);
     truth->appears_m = making_appears_m(m, sight, truth->range_rate_mps);

@@ -145,7 +145,7 @@ static double unit_w(const RadarFrame *frame, const double p_enu[3])
     double             d[3];
     v3_sub(d, p_enu, stage.view.p_enu);
     const double range_m = v3_length(d), window_m = 0.5 * p->wave.samples * frame->map.metre_per_column;
-    if (fabs(range_m - reference_m) > window_m) return 0;
+    if (!(fabs(range_m - reference_m) <= window_m)) return 0;
     v3_scale(d, 1 / range_m, d);
     const double right = d[0] * r[0] + d[1] * r[3] + d[2] * r[6], down = d[0] * r[1] + d[1] * r[4] + d[2] * r[7];
     const double gain = antenna_gain(&p->antenna, right, down).sum, air_db = frame->air_db * range_m / reference_m;

@@ -33,15 +33,13 @@ static void look_at_tank(void *user)
     bench_keep(t);
 }
 
-static double power(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
-
 /* Root of the power of the difference over the power, co-polarised, %. */
 static double field_error(const TankSet *got, const TankSet *want)
 {
     double off = 0, whole = 0;
     for (int i = 0; i < got->looks; i++) {
-        off += power(got->s[i].hh - want->s[i].hh) + power(got->s[i].vv - want->s[i].vv);
-        whole += power(want->s[i].hh) + power(want->s[i].vv);
+        off += scatter_power(got->s[i].hh - want->s[i].hh) + scatter_power(got->s[i].vv - want->s[i].vv);
+        whole += scatter_power(want->s[i].hh) + scatter_power(want->s[i].vv);
     }
     return 100 * sqrt(off / whole);
 }

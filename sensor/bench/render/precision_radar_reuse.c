@@ -45,15 +45,13 @@ static void gather(void *user)
     bench_keep(r);
 }
 
-static double power(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
-
 /* Root of the power of the difference over the power, over the band, co-polarised, %. */
 static double off(const ScatterMatrix *got, const ScatterMatrix *want)
 {
     double apart = 0, whole = 0;
     for (int f = 0; f < frequencies; f++) {
-        apart += power(got[f].hh - want[f].hh) + power(got[f].vv - want[f].vv);
-        whole += power(want[f].hh) + power(want[f].vv);
+        apart += scatter_power(got[f].hh - want[f].hh) + scatter_power(got[f].vv - want[f].vv);
+        whole += scatter_power(want[f].hh) + scatter_power(want[f].vv);
     }
     return 100 * sqrt(apart / whole);
 }

@@ -5,8 +5,6 @@
 #include "render/radar/shapes.h"
 #include "render/radar/total_field.h"
 
-static double power(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
-
 typedef struct Stand {
     Model        model;
     RadarTarget *target;
@@ -50,9 +48,9 @@ static double ranges(void *user, bool quick)
     for (int n = 0; n <= (quick ? 4 : 12) && good; n++) {
         a.range_m = pow(10, 6.0 * n / (quick ? 4 : 12));
         good = look(&near, &s, &a, 94e9);
-        if (!isfinite(power(near.hh))) worst = INFINITY;
+        if (!isfinite(scatter_power(near.hh))) worst = INFINITY;
         const double blur = 0.1 * 0.1 * 94e9 / light_mps / a.range_m; /* a^2 / lambda range */
-        if (blur < 0.3) worst = fmax(worst, sqrt(power(near.hh - far.hh) / power(far.hh)) - 8 * blur);
+        if (blur < 0.3) worst = fmax(worst, sqrt(scatter_power(near.hh - far.hh) / scatter_power(far.hh)) - 8 * blur);
     }
     stand_close(&s);
     return good ? worst : INFINITY;
@@ -80,7 +78,7 @@ static double offsets(void *user, bool quick)
         v3_add(p_antenna, p_antenna, p_target);
         radar_antenna(&seen, p_antenna, p_target, r);
         good = look(&got, &s, &seen, 94e9);
-        worst = fmax(worst, sqrt(power(got.hh - want.hh) / power(want.hh)));
+        worst = fmax(worst, sqrt(scatter_power(got.hh - want.hh) / scatter_power(want.hh)));
     }
     stand_close(&s);
     return good ? worst : INFINITY;
@@ -115,7 +113,7 @@ static double needles(void *user, bool quick)
         else dice_direction(a.u, &dice);
         good = total_field_trace(&field, target, &a, &a, &config, true, NULL) == STATUS_OK &&
                total_field_sweep(&s, 1, 10e9, 0, &field, NULL, NULL, NULL) == STATUS_OK;
-        wrong += good && !isfinite(power(s.hh) + power(s.hv) + power(s.vh) + power(s.vv));
+        wrong += good && !isfinite(scatter_power(s.hh) + scatter_power(s.hv) + scatter_power(s.vh) + scatter_power(s.vv));
     }
     total_field_free(&field);
     radar_target_destroy(target);
@@ -143,7 +141,7 @@ static double wavelengths(void *user, bool quick)
         worst = fmax(worst, fabs(cabs(m.hh) / (k * 0.06 / (2 * pi_rad)) - 1));
         radar_look(&a, 0.5 * pi_rad - 1e-9, 0, INFINITY);
         good = good && look(&m, &s, &a, f_hz);
-        if (!isfinite(power(m.hh) + power(m.vv))) worst = INFINITY;
+        if (!isfinite(scatter_power(m.hh) + scatter_power(m.vv))) worst = INFINITY;
     }
     stand_close(&s);
     return good ? worst : INFINITY;
@@ -164,7 +162,7 @@ static double inside(void *user, bool quick)
         ScatterAntenna a = {.range_m = dice_log(&dice, 1e-6, 1)};
         ScatterMatrix  m;
         dice_direction(a.u, &dice);
-        if (look(&m, &s, &a, 10e9)) wrong += !isfinite(power(m.hh) + power(m.vv));
+        if (look(&m, &s, &a, 10e9)) wrong += !isfinite(scatter_power(m.hh) + scatter_power(m.vv));
     }
     log_set_sink(NULL, NULL);
     stand_close(&s);
