@@ -5,21 +5,29 @@
 
 _Static_assert(sizeof(SignatureCentre) == 84, "written to files as it is");
 
-static const double path_phase_rad = 0.2, across_phase_rad = 0.2, spin_phase_rad = 1;
+static const double path_phase_rad = 0.2, across_phase_rad = 0.2, spin_phase_rad = 1, weak_share = 0.01;
+enum { weak_times = 4 };
 
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s)
 {
     return (SignatureCells){.frequency_hz = frequency_hz, .bandwidth_hz = bandwidth_hz, .turn_rad = turn_rad,
                             .path_phase_rad = path_phase_rad, .across_phase_rad = across_phase_rad,
-                            .interval_s = interval_s, .spin_phase_rad = spin_phase_rad};
+                            .interval_s = interval_s, .spin_phase_rad = spin_phase_rad, .weak_share = weak_share,
+                            .weak_times = weak_times};
+}
+
+/* Along the path phases are even up to path_rad at the ends of the band: a third of its square, over the band a third
+ * of that; across, what first moments leave at the bin's edge. */
+static double error_of(double path_rad, double across_rad)
+{
+    const double across = 0.4 * across_rad * across_rad;
+    return path_rad * path_rad / 9 + across * across;
 }
 
 double signature_cells_error(void)
 {
-    /* along the path phases are even up to path_phase_rad at the ends of the band: a third of its square, over the band half
-     * of that; across, what first moments leave at the bin's edge */
-    const double across = 0.4 * across_phase_rad * across_phase_rad;
-    return path_phase_rad * path_phase_rad / 6 + across * across;
+    return (1 - weak_share) * error_of(path_phase_rad, across_phase_rad) +
+           weak_share * error_of(weak_times * path_phase_rad, weak_times * across_phase_rad);
 }
 
 void signature_axes(Signature *out, const SignatureCells *cells)
@@ -43,9 +51,10 @@ void signature_free(Signature *s)
 
 /* ---- cells ------------------------------------------------------------------------------------------ */
 
-/* Number of a cell along each axis; of half of the way from first to last point where antennas differ; and the node. */
+/* Number of a cell along each axis; of half of the way from first to last point where antennas differ; of range rate; the
+ * node; and how many times it is as wide as others. */
 typedef struct Key {
-    int32_t path, right, up, half_right, half_up, node;
+    int32_t path, right, up, half_right, half_up, rate, node, times;
 } Key;
 
 typedef struct Cell {
@@ -53,7 +62,9 @@ typedef struct Cell {
     double complex s[4], moment[2][4]; /* hh hv vh vv; moments about the cell's middle, right and up */
     double complex along[4];           /* and along the path */
     double         p[3], half[3], weight, strongest;
+    double         square;             /* sum of squares of amplitudes */
     int            bounce, part;
+    bool           weak;               /* left empty: what it held is in a wider one */
 } Cell;
 
 typedef struct CellTable {
@@ -76,7 +87,7 @@ static uint64_t hash_of(const Key *key)
     const uint64_t a = (uint64_t)(uint32_t)key->path << 32 | (uint32_t)key->right;
     const uint64_t b = (uint64_t)(uint32_t)key->up << 32 | (uint32_t)key->node;
     const uint64_t c = (uint64_t)(uint32_t)key->half_right << 32 | (uint32_t)key->half_up;
-    return mix(a ^ mix(b + 1 + mix(c + 2)));
+    return mix(a ^ mix(b + 1 + mix(c + 2 + mix((uint64_t)(uint32_t)key->rate << 32 | (uint32_t)key->times))));
 }
 
 static Status rehash(CellTable *t)
@@ -95,7 +106,7 @@ static Status rehash(CellTable *t)
     return STATUS_OK;
 }
 
-/* A new one, all zero, where there is none. NULL: no memory. */
+/* A new one, all zero, where there is none. NULL: no memory. Valid until the next. */
 static Cell *find(CellTable *t, const Key *key)
 {
     if (2 * (t->count + 1) > t->slots && rehash(t) != STATUS_OK) return NULL;
@@ -163,61 +174,101 @@ static void share_of_edge(Share *out, const EdgeSegment *e, double k)
 typedef struct Making {
     const Signature *signature;
     const Model     *model;
-    double           k;
-    const double    *across_m;         /* [node_count]: side of a cell */
+    double           k, across_m;      /* side of a cell */
+    double         (*rate)[3];         /* [node_count]: how many cells of range rate it is per metre, body axes; 0: none */
+    int              times;            /* SignatureCells.weak_times */
     bool             monostatic;
     CellTable        table;
 } Making;
 
 static int32_t cell_number(double x_m, double side_m) { return (int32_t)clamp(floor(x_m / side_m), -1e9, 1e9); }
 
-/* Sides of cells by node: half a cell from the middle, half the bin away, both ways; and half its turning. */
-static double *sides_of(const Model *model, const SignatureCells *cells, double k)
+/* Half a cell from the middle, half the bin away, both ways; of range rate, half the interval away. */
+static Status measure_cells(Making *m, const RadarTarget *target, const SignatureCells *cells)
 {
     static const double rolls_mps = 20, most_m = 0.1; /* so that what hides part of a target hides whole cells */
-    const int           count = model ? model->node_count : 0;
-    double             *side = malloc((size_t)(count + 1) * sizeof *side);
-    if (!side) return NULL;
-    side[0] = fmin(2 / fmax(k * cells->turn_rad / cells->across_phase_rad, 1e-9), most_m);
+    const int           count = m->model ? m->model->node_count : 0;
+    m->across_m = fmin(2 * cells->across_phase_rad / fmax(m->k * cells->turn_rad, 1e-9), most_m);
+    m->rate = calloc((size_t)count + 1, sizeof *m->rate);
+    if (!m->rate) return STATUS_NO_MEMORY;
+    double ahead[3];
+    v3_add(ahead, m->signature->tx.u, m->signature->rx.u);
     for (int n = 0; n < count; n++) {
-        double spin_rps = 0;
-        for (int at = n; at >= 0; at = model->node[at].parent)
-            spin_rps += model->node[at].roll_radius_m > 0 ? rolls_mps / model->node[at].roll_radius_m : fabs(model->node[at].spin_rps_moving);
-        const double radians = cells->turn_rad / cells->across_phase_rad + spin_rps * cells->interval_s / cells->spin_phase_rad;
-        side[n] = fmin(2 / fmax(k * radians, 1e-9), most_m);
+        double turning[3] = {0}, axis[3];
+        for (int at = n; at >= 0; at = m->model->node[at].parent) {
+            const ModelNode *of = &m->model->node[at];
+            m3_mul_v3(axis, target->pose[at].r_body_from_node, of->axis);
+            v3_add_scaled(turning, turning, of->roll_radius_m > 0 ? rolls_mps / of->roll_radius_m : of->spin_rps_moving, axis);
+        }
+        v3_cross(m->rate[n], turning, ahead); /* -(u_t + u_r) . (w x p), to within what is the same for all p */
+        v3_scale(m->rate[n], m->k * cells->interval_s / (4 * cells->spin_phase_rad), m->rate[n]);
     }
-    return side;
+    return STATUS_OK;
+}
+
+/* Place of a share along the axes of cells, m. */
+typedef struct Place {
+    double middle[3], half[3], right_m, up_m;
+} Place;
+
+static void place_of(Place *out, const Making *m, const Share *share)
+{
+    for (int x = 0; x < 3; x++) {
+        out->middle[x] = 0.5 * (share->first[x] + share->last[x]);
+        out->half[x] = 0.5 * (share->last[x] - share->first[x]);
+    }
+    out->right_m = v3_dot(out->middle, m->signature->right);
+    out->up_m = v3_dot(out->middle, m->signature->up);
+}
+
+static Key key_of(const Making *m, const Share *share, const Place *at, int times)
+{
+    const Signature *s = m->signature;
+    const int        node = m->model ? m->model->part[share->part].node : 0;
+    const double     across_m = times * m->across_m;
+    return (Key){.path = cell_number(share->path_m, times * s->path_step_m), .right = cell_number(at->right_m, across_m),
+                 .up = cell_number(at->up_m, across_m),
+                 .half_right = m->monostatic ? 0 : cell_number(v3_dot(at->half, s->right), across_m),
+                 .half_up = m->monostatic ? 0 : cell_number(v3_dot(at->half, s->up), across_m),
+                 .rate = cell_number(v3_dot(at->middle, m->rate[node]), 1), .node = node, .times = times};
+}
+
+/* Before anything is added: how much there will be in each cell. */
+static Status weigh(Making *m, const Share *share)
+{
+    Place at;
+    place_of(&at, m, share);
+    const Key key = key_of(m, share, &at, 1);
+    Cell     *c = find(&m->table, &key);
+    if (c) c->square += share->amplitude * share->amplitude;
+    return c ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 static Status add(Making *m, const Share *share)
 {
     const Signature *s = m->signature;
-    double           middle[3], half[3];
-    for (int x = 0; x < 3; x++) {
-        middle[x] = 0.5 * (share->first[x] + share->last[x]);
-        half[x] = 0.5 * (share->last[x] - share->first[x]);
-    }
-    const int    node = m->model ? m->model->part[share->part].node : 0;
-    const double right_m = v3_dot(middle, s->right), up_m = v3_dot(middle, s->up), across_m = m->across_m[node];
-    const Key    key = {.path = cell_number(share->path_m, s->path_step_m), .right = cell_number(right_m, across_m),
-                        .up = cell_number(up_m, across_m),
-                        .half_right = m->monostatic ? 0 : cell_number(v3_dot(half, s->right), across_m),
-                        .half_up = m->monostatic ? 0 : cell_number(v3_dot(half, s->up), across_m),
-                        .node = node};
+    Place            at;
+    place_of(&at, m, share);
+    Key   key = key_of(m, share, &at, 1);
     Cell *c = find(&m->table, &key);
+    if (c && c->weak) {
+        key = key_of(m, share, &at, m->times);
+        c = find(&m->table, &key);
+    }
     if (!c) return STATUS_NO_MEMORY;
-    const double         phase = -m->k * (share->path_m - (key.path + 0.5) * s->path_step_m);
+    const double         across_m = key.times * m->across_m;
+    const double         along_m = share->path_m - (key.path + 0.5) * key.times * s->path_step_m, phase = -m->k * along_m;
     const double complex turn = CMPLX(cos(phase), sin(phase));
-    const double         arm_m[2] = {right_m - (key.right + 0.5) * across_m, up_m - (key.up + 0.5) * across_m};
+    const double         arm_m[2] = {at.right_m - (key.right + 0.5) * across_m, at.up_m - (key.up + 0.5) * across_m};
     for (int p = 0; p < 4; p++) {
         const double complex v = share->s[p] * turn;
         c->s[p] += v;
-        c->along[p] += (share->path_m - (key.path + 0.5) * s->path_step_m) * v;
+        c->along[p] += along_m * v;
         for (int x = 0; x < 2; x++) c->moment[x][p] += arm_m[x] * v;
     }
     for (int x = 0; x < 3; x++) {
-        c->p[x] += share->amplitude * middle[x];
-        c->half[x] += share->amplitude * half[x];
+        c->p[x] += share->amplitude * at.middle[x];
+        c->half[x] += share->amplitude * at.half[x];
     }
     c->weight += share->amplitude;
     if (share->amplitude > c->strongest) {
@@ -242,7 +293,7 @@ static bool keep(SignatureCentre *out, const Making *m, const Cell *c)
 {
     const Signature *s = m->signature;
     if (!(c->weight > 0)) return false;
-    *out = (SignatureCentre){.path = c->key.path, .weight = (float)c->weight, .strongest = (float)c->strongest,
+    *out = (SignatureCentre){.weight = (float)c->weight, .strongest = (float)c->strongest,
                              .part = (uint16_t)c->part, .bounce = (uint8_t)c->bounce};
     double p[3];
     for (int x = 0; x < 3; x++) {
@@ -256,13 +307,16 @@ static bool keep(SignatureCentre *out, const Making *m, const Cell *c)
         turning += creal(conj(c->s[q]) * c->along[q]);
         power += creal(conj(c->s[q]) * c->s[q]);
     }
-    out->path_share = (float)clamp(0.5 + (power > 0 ? turning / power / s->path_step_m : 0), 0, 1);
-    const double         back = m->k * ((double)out->path_share - 0.5) * s->path_step_m;
+    const double wide = c->key.times, middle = wide * (c->key.path + 0.5); /* steps */
+    const double mean = clamp(middle + (power > 0 ? turning / power / s->path_step_m : 0), middle - 0.5 * wide, middle + 0.5 * wide);
+    out->path = (int32_t)floor(mean);
+    out->path_share = (float)(mean - out->path);
+    const double         back = m->k * (out->path + (double)out->path_share - middle) * s->path_step_m;
     const double complex turn = CMPLX(cos(back), sin(back));
     double complex       sum[4];
     for (int q = 0; q < 4; q++) sum[q] = turn * c->s[q];
     /* moments about the mean point, as it is kept */
-    const double   across_m = m->across_m[c->key.node];
+    const double   across_m = wide * m->across_m;
     const double   arm_m[2] = {v3_dot(p, s->right) - (c->key.right + 0.5) * across_m,
                                v3_dot(p, s->up) - (c->key.up + 0.5) * across_m};
     double complex moment[2][4];
@@ -283,36 +337,70 @@ static bool keep(SignatureCentre *out, const Making *m, const Cell *c)
     return isfinite(out->scale) && isfinite(out->moment_scale) && isfinite(out->weight);
 }
 
-Status signature_make(Signature *out, const TotalField *field, const Model *model, const SignatureCells *cells)
+static int by_square(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Marks the weakest cells, which have `part` of all squares; of some that are alike, all or none. */
+static Status mark_weak(Making *m, double part)
+{
+    const int count = m->table.count;
+    double   *square = malloc((size_t)(count + 1) * sizeof *square), sum = 0, least = 0, below = 0;
+    if (!square) return STATUS_NO_MEMORY;
+    for (int i = 0; i < count; i++) sum += square[i] = m->table.cell[i].square;
+    qsort(square, (size_t)count, sizeof *square, by_square);
+    for (int i = 0; i < count && (below += square[i]) <= part * sum; i++) least = square[i];
+    for (int i = 0; i < count; i++) {
+        Cell *c = &m->table.cell[i];
+        c->weak = c->square <= least;
+    }
+    free(square);
+    return STATUS_OK;
+}
+
+/* All hits, then all edges. */
+static Status each_share(Making *m, const TotalField *field, Status (*take)(Making *, const Share *))
+{
+    Share  share;
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < field->hits.count && status == STATUS_OK; i++) {
+        share_of_hit(&share, &field->hits, i, m->k);
+        status = take(m, &share);
+    }
+    for (int i = 0; i < field->edges.count && status == STATUS_OK; i++) {
+        share_of_edge(&share, &field->edges.segment[i], m->k);
+        status = take(m, &share);
+    }
+    return status;
+}
+
+Status signature_make(Signature *out, const TotalField *field, const RadarTarget *target, const SignatureCells *cells)
 {
     const TubeHits *h = &field->hits;
-    Share           share;
-    Status          status = STATUS_OK;
     signature_free(out);
     out->tx = h->tx;
     out->rx = h->rx;
     signature_axes(out, cells);
-    Making m = {.signature = out, .model = model, .k = 2 * pi_rad * cells->frequency_hz / light_mps,
+    Making m = {.signature = out, .model = target ? target->model : NULL, .k = 2 * pi_rad * cells->frequency_hz / light_mps, .times = cells->weak_times,
                 .monostatic = memcmp(&h->tx, &h->rx, sizeof h->tx) == 0};
-    double *side = sides_of(model, cells, m.k);
-    if (!side) return STATUS_NO_MEMORY;
-    m.across_m = side;
+    Status status = measure_cells(&m, target, cells);
+    if (status == STATUS_OK && cells->weak_share > 0) status = each_share(&m, field, weigh);
+    if (status == STATUS_OK && cells->weak_share > 0) status = mark_weak(&m, cells->weak_share);
+    if (status == STATUS_OK) status = each_share(&m, field, add);
     for (size_t i = 0; i < h->count && status == STATUS_OK; i++) {
+        Share share;
         share_of_hit(&share, h, i, m.k);
         out->tubes_same_m2 += 0.5 * (scatter_power(share.s[0]) + scatter_power(share.s[3]));
         out->tubes_cross_m2 += 0.5 * (scatter_power(share.s[1]) + scatter_power(share.s[2]));
-        status = add(&m, &share);
-    }
-    for (int i = 0; i < field->edges.count && status == STATUS_OK; i++) {
-        share_of_edge(&share, &field->edges.segment[i], m.k);
-        status = add(&m, &share);
     }
     out->centre = status == STATUS_OK ? malloc((size_t)(m.table.count + 1) * sizeof *out->centre) : NULL;
     if (!out->centre) status = STATUS_NO_MEMORY;
     for (int i = 0; i < m.table.count && status == STATUS_OK; i++) out->count += keep(&out->centre[out->count], &m, &m.table.cell[i]);
     free(m.table.cell);
     free(m.table.slot);
-    free(side);
+    free(m.rate);
     if (status != STATUS_OK) signature_free(out);
     return status;
 }

@@ -2,19 +2,21 @@
  * antenna in the bin and every frequency of a band.
  *
  * Hits and edges of a field are summed over cells: along the path as long as phases part by path_phase_rad at the
- * ends of the band, across the line of sight as wide as they part by across_phase_rad at the edge of the bin, and
- * apart for each node that moves by itself, and finer on nodes that spin or roll, whose points part in range rate. A
- * cell keeps, beside the sum of its paths, their first moments across the
+ * ends of the band, across the line of sight as wide as they part by across_phase_rad at the edge of the bin, apart
+ * for each node that moves by itself, and on nodes that spin or roll as long as they part by spin_phase_rad by their
+ * range rates. A cell keeps, beside the sum of its paths, their first moments across the
  * line of sight: what it scatters towards an antenna elsewhere in the bin follows to first order, so that the error
  * is 0.4 across_phase_rad^2 of a cell of random phases, where sums alone leave across_phase_rad / 6^0.5. It is of the
  * amplitudes that cancel in it: on large curved faces, more of what is left.
+ *
+ * Most cells hold next to nothing: the weakest, which have weak_share of all squares of amplitudes, are summed over
+ * cells weak_times as wide instead, but of no more range rates.
  *
  * Numbers are as they are written to files: sums as 16 bits of the largest of a cell, moments as 8. What is made on
  * the spot goes through the same rounding, so a field has the same bits wherever it comes from. */
 #ifndef RENDER_RADAR_SIGNATURE_H
 #define RENDER_RADAR_SIGNATURE_H
 
-#include "entities/models/model.h"
 #include "render/radar/total_field.h"
 
 typedef struct SignatureCells {
@@ -23,8 +25,10 @@ typedef struct SignatureCells {
     double path_phase_rad, across_phase_rad;
     double interval_s;                   /* that centres are to stand for; 0: what spins and rolls stands still */
     double spin_phase_rad;               /* of what spins as its model says, or rolls at 20 m/s, over the interval */
+    double weak_share;                   /* 0: all cells are of one size */
+    int    weak_times;
 } SignatureCells;
-/* Phases of 0.2, 0.2 and 1 rad. */
+/* Phases of 0.2, 0.2 and 1 rad; a hundredth over cells four times as wide. */
 SignatureCells signature_default_cells(double frequency_hz, double bandwidth_hz, double turn_rad, double interval_s);
 
 /* Power of the error that those cells leave, at most, over the power of their centres. */
@@ -55,8 +59,8 @@ typedef struct Signature {
     SignatureCentre *centre;             /* in the order in which hits, then edges meet their cells */
 } Signature;
 
-/* out: zeroed. model: whose parts the field's are; NULL: all parts move as one. */
-Status signature_make(Signature *out, const TotalField *field, const Model *model, const SignatureCells *cells);
+/* out: zeroed. target: whose field it is, as posed; NULL: all parts move as one. */
+Status signature_make(Signature *out, const TotalField *field, const RadarTarget *target, const SignatureCells *cells);
 void   signature_free(Signature *signature); /* frees and zeroes; accepts zeroes */
 /* What follows from its antennas and cells. */
 void   signature_axes(Signature *out, const SignatureCells *cells);

@@ -187,7 +187,7 @@ static Status make(Kept *out, SignatureCounters *counters, const Signatures *s, 
     }
     if (status == STATUS_OK && (look->image[0] || look->image[1]))
         status = ground_hide(&maker->field, *target, &look->plane, look->image, pool);
-    if (status == STATUS_OK) status = signature_make(&out->signature, &maker->field, of, &cells);
+    if (status == STATUS_OK) status = signature_make(&out->signature, &maker->field, *target, &cells);
     free(pose);
     if (status != STATUS_OK) return status;
     counters->made++;

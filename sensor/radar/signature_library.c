@@ -84,7 +84,8 @@ static Status hash_settings(char out[sha256_text_size], const SignaturesConfig *
 {
     const SignatureCells cells = signature_default_cells(c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->interval_s);
     const double numbers[] = {computation, c->splits, c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->rays_per_wavelength, c->warp_m,
-                              cells.turn_rad, cells.path_phase_rad, cells.across_phase_rad, cells.interval_s, cells.spin_phase_rad};
+                              cells.turn_rad, cells.path_phase_rad, cells.across_phase_rad, cells.interval_s, cells.spin_phase_rad,
+                              cells.weak_share, cells.weak_times};
     Sha256 *d = sha256_begin();
     bool    ok = d && sha256_add(d, numbers, sizeof numbers);
     for (int i = 0; i < materials->count && ok; i++) {

@@ -107,7 +107,7 @@ static Status new_bin(RadarSpeed *r, Pool *pool, double *spent_s)
     const TubeConfig tubes = tubes_of(r, r->config.rays_per_wavelength);
     const double     begun_s = wall_clock_s();
     Status status = total_field_trace(&r->field, r->target, &r->middle, &r->middle, &tubes, true, pool);
-    if (status == STATUS_OK) status = signature_make(&r->signature, &r->field, r->model, &r->cells);
+    if (status == STATUS_OK) status = signature_make(&r->signature, &r->field, r->target, &r->cells);
     *spent_s = wall_clock_s() - begun_s;
     return status;
 }
