@@ -1,10 +1,19 @@
 /* sensor/radar/antenna.c: see antenna.h. */
 #include "sensor/radar/antenna.h"
 
-/* 2^m m! J_m(u) / u^m */
+/* 2^m m! J_m(u) / u^m, m up to 4: sum of (-u^2 / 4)^k m! / (k! (m + k)!), whose terms are small about the main lobe. */
 static double lambda(int m, double u)
 {
-    if (fabs(u) < 0.02) return 1 - u * u / (4.0 * (m + 1)) * (1 - u * u / (8.0 * (m + 2)));
+    enum { terms = 20 };
+    static const double over[terms + 5] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,  1.0 / 7,  1.0 / 8,
+                                           1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16,
+                                           1.0 / 17, 1.0 / 18, 1.0 / 19, 1.0 / 20, 1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24};
+    if (fabs(u) < 5) { /* the last term: below 1e-19 */
+        const double x = -0.25 * u * u;
+        double       sum = 1;
+        for (int k = terms; k > 0; k--) sum = 1 + x * over[k] * over[m + k] * sum;
+        return sum;
+    }
     double scale = 1;
     for (int k = 1; k <= m; k++) scale *= 2 * k / u;
     return scale * jn(m, u);

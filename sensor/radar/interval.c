@@ -6,13 +6,43 @@
 
 #include <stdlib.h>
 
+enum { lobe_steps = 64, lobe_points = 3 * lobe_steps / 2 + 4 }; /* a cell; from one step before 0 to two beyond 1.5 */
+
 struct IntervalPlan {
     int        samples, pulses;
-    double    *range, *doppler;       /* weights, each over its sum */
+    double    *range, *doppler;            /* weights, each over its sum */
     double     noise_share;
-    double    *rows, *columns;        /* scratch, complex: [pulses][samples], [samples][pulses] */
-    Transform *over_samples, *over_pulses;
+    double     lobe[2][lobe_points];       /* over range, over Doppler */
+    double    *rows[interval_channels];    /* complex: [pulses][samples], compressed */
+    double    *columns[interval_channels]; /* scratch: [samples][pulses] */
+    Transform *over_samples[interval_channels], *over_pulses[interval_channels];
 };
+
+static double lobe_at(const double *weight, int count, double cells)
+{
+    const double middle = 0.5 * (count - 1), turn = 2 * pi_rad * cells / count;
+    double       sum = 0;
+    for (int i = 0; i < count; i++) sum += weight[i] * cos(turn * (i - middle));
+    return sum;
+}
+
+static Status make_weights(IntervalPlan *p, const Window *range, const Window *doppler)
+{
+    Status status = window_weights(p->range, p->samples, range);
+    if (status == STATUS_OK) status = window_weights(p->doppler, p->pulses, doppler);
+    if (status != STATUS_OK) return status;
+    p->noise_share = 1;
+    double *const weights[] = {p->range, p->doppler};
+    const int     counts[] = {p->samples, p->pulses};
+    for (int k = 0; k < 2; k++) {
+        double sum = 0, squares = 0;
+        for (int i = 0; i < counts[k]; i++) sum += weights[k][i], squares += weights[k][i] * weights[k][i];
+        p->noise_share *= squares / (sum * sum);
+        for (int i = 0; i < counts[k]; i++) weights[k][i] /= sum;
+        for (int i = 0; i < lobe_points; i++) p->lobe[k][i] = lobe_at(weights[k], counts[k], (i - 1.0) / lobe_steps);
+    }
+    return STATUS_OK;
+}
 
 Status interval_plan_create(IntervalPlan **out, const Waveform *wave, const Window *range, const Window *doppler)
 {
@@ -24,123 +54,126 @@ Status interval_plan_create(IntervalPlan **out, const Waveform *wave, const Wind
     p->samples = m, p->pulses = n;
     p->range = malloc((size_t)m * sizeof *p->range);
     p->doppler = malloc((size_t)n * sizeof *p->doppler);
-    p->rows = transform_alloc(count);
-    p->columns = transform_alloc(count);
-    Status status = p->range && p->doppler && p->rows && p->columns ? STATUS_OK : STATUS_NO_MEMORY;
-    /* a longer path turns samples backwards: exp(-j): undone forwards */
-    if (status == STATUS_OK) status = transform_create(&p->over_samples, TRANSFORM_ROWS_BACK, n, m, p->rows, p->rows);
-    if (status == STATUS_OK) status = transform_create(&p->over_pulses, TRANSFORM_ROWS_BACK, m, n, p->columns, p->columns);
-    if (status == STATUS_OK) status = window_weights(p->range, m, range);
-    if (status == STATUS_OK) status = window_weights(p->doppler, n, doppler);
-    if (status != STATUS_OK) {
-        interval_plan_destroy(p);
-        return status;
+    Status status = p->range && p->doppler ? make_weights(p, range, doppler) : STATUS_NO_MEMORY;
+    for (int c = 0; c < interval_channels && status == STATUS_OK; c++) {
+        double *rows = p->rows[c] = transform_alloc(count), *columns = p->columns[c] = transform_alloc(count);
+        if (!rows || !columns) status = STATUS_NO_MEMORY;
+        /* a longer path turns samples backwards: exp(-j): undone forwards */
+        if (status == STATUS_OK) status = transform_create(&p->over_samples[c], TRANSFORM_ROWS_BACK, n, m, rows, rows);
+        if (status == STATUS_OK) status = transform_create(&p->over_pulses[c], TRANSFORM_ROWS_BACK, m, n, columns, columns);
     }
-    p->noise_share = 1;
-    double *const weights[] = {p->range, p->doppler};
-    const int     counts[] = {m, n};
-    for (int k = 0; k < 2; k++) {
-        double sum = 0, squares = 0;
-        for (int i = 0; i < counts[k]; i++) sum += weights[k][i], squares += weights[k][i] * weights[k][i];
-        p->noise_share *= squares / (sum * sum);
-        for (int i = 0; i < counts[k]; i++) weights[k][i] /= sum;
-    }
-    *out = p;
-    return STATUS_OK;
+    if (status == STATUS_OK) *out = p;
+    else interval_plan_destroy(p);
+    return status;
 }
 
 void interval_plan_destroy(IntervalPlan *p)
 {
     if (!p) return;
-    transform_destroy(p->over_samples);
-    transform_destroy(p->over_pulses);
-    transform_free(p->rows);
-    transform_free(p->columns);
+    for (int c = 0; c < interval_channels; c++) {
+        transform_destroy(p->over_samples[c]);
+        transform_destroy(p->over_pulses[c]);
+        transform_free(p->rows[c]);
+        transform_free(p->columns[c]);
+    }
     free(p->range);
     free(p->doppler);
     free(p);
 }
 
-/* Compressed in range, in p->rows; zero range is in the middle: every second sample turns its sign. */
-static void compress(IntervalPlan *p, const double complex *sample)
+typedef struct Job {
+    IntervalPlan   *plan;
+    const Interval *in;
+    double complex *cell;   /* NULL: compressed only */
+} Job;
+
+/* Zero range is in the middle: every second sample turns its sign. */
+static void compress(IntervalPlan *p, const double complex *sample, int channel)
 {
+    double *rows = p->rows[channel];
     for (int n = 0; n < p->pulses; n++)
         for (int m = 0; m < p->samples; m++) {
             const size_t         at = (size_t)n * (size_t)p->samples + (size_t)m;
             const double complex v = sample[at] * (m % 2 ? -p->range[m] : p->range[m]);
-            p->rows[2 * at] = creal(v);
-            p->rows[2 * at + 1] = cimag(v);
+            rows[2 * at] = creal(v);
+            rows[2 * at + 1] = cimag(v);
         }
-    transform_run(p->over_samples);
+    transform_run(p->over_samples[channel]);
 }
 
-void interval_process(RangeDoppler *out, IntervalPlan *p, const Interval *in)
+static void over_pulses(double complex *cell, IntervalPlan *p, int channel)
 {
-    const int m = p->samples, n = p->pulses;
-    out->rows = n, out->columns = m;
-    out->metre_per_column = light_mps / (2 * in->wave.bandwidth_hz);
-    out->mps_per_row = light_mps / in->wave.centre_hz / 2 * in->wave.repeat_hz / n;
-    out->noise_share = p->noise_share;
-    for (int channel = 0; channel < interval_channels; channel++) {
-        const size_t   plane = (size_t)channel * (size_t)m * (size_t)n;
-        double complex *cell = out->cell + plane;
-        compress(p, in->sample + plane);
+    enum { tile = 8 };
+    const int     m = p->samples, n = p->pulses;
+    const double *rows = p->rows[channel];
+    double       *columns = p->columns[channel];
+    for (int i0 = 0; i0 < m; i0 += tile)
         for (int k = 0; k < n; k++)
-            for (int i = 0; i < m; i++) {
+            for (int i = i0; i < i0 + tile && i < m; i++) {
                 const size_t from = (size_t)k * (size_t)m + (size_t)i, to = (size_t)i * (size_t)n + (size_t)k;
                 const double w = k % 2 ? -p->doppler[k] : p->doppler[k];
-                p->columns[2 * to] = p->rows[2 * from] * w;
-                p->columns[2 * to + 1] = p->rows[2 * from + 1] * w;
+                columns[2 * to] = rows[2 * from] * w;
+                columns[2 * to + 1] = rows[2 * from + 1] * w;
             }
-        transform_run(p->over_pulses);
-        for (int i = 0; i < m; i++)
-            for (int k = 0; k < n; k++) {
+    transform_run(p->over_pulses[channel]);
+    for (int i0 = 0; i0 < m; i0 += tile)
+        for (int k = 0; k < n; k++)
+            for (int i = i0; i < i0 + tile && i < m; i++) {
                 const size_t from = (size_t)i * (size_t)n + (size_t)k;
-                cell[(size_t)k * (size_t)m + (size_t)i] = p->columns[2 * from] + I * p->columns[2 * from + 1];
+                cell[(size_t)k * (size_t)m + (size_t)i] = CMPLX(columns[2 * from], columns[2 * from + 1]);
             }
-    }
+}
+
+static void process_channel(void *user, int worker, int channel)
+{
+    const Job   *job = user;
+    const size_t plane = (size_t)channel * (size_t)job->plan->samples * (size_t)job->plan->pulses;
+    (void)worker;
+    compress(job->plan, job->in->sample + plane, channel);
+    if (job->cell) over_pulses(job->cell + plane, job->plan, channel);
+}
+
+static void run(Job *job, int channels, Pool *pool)
+{
+    if (pool) pool_run(pool, channels, process_channel, job);
+    else for (int c = 0; c < channels; c++) process_channel(job, 0, c);
+}
+
+void interval_compress(IntervalPlan *p, const Interval *in, int channels, Pool *pool) { run(&(Job){p, in, NULL}, channels, pool); }
+
+void interval_process(RangeDoppler *out, IntervalPlan *p, const Interval *in, Pool *pool)
+{
+    out->rows = p->pulses, out->columns = p->samples;
+    out->metre_per_column = light_mps / (2 * in->wave.bandwidth_hz);
+    out->mps_per_row = light_mps / in->wave.centre_hz / 2 * in->wave.repeat_hz / p->pulses;
+    out->noise_share = p->noise_share;
+    run(&(Job){p, in, out->cell}, interval_channels, pool);
 }
 
 double interval_noise_share(const IntervalPlan *p) { return p->noise_share; }
 
+/* By the cubic through four neighbours. */
 double interval_lobe(const IntervalPlan *p, bool doppler, double cells)
 {
-    const int     count = doppler ? p->pulses : p->samples;
-    const double *weight = doppler ? p->doppler : p->range, middle = 0.5 * (count - 1), turn = 2 * pi_rad * cells / count;
-    double        sum = 0;
-    for (int i = 0; i < count; i++) sum += weight[i] * cos(turn * (i - middle));
-    return sum;
+    const double  at = fmin(fabs(cells), 1.5) * lobe_steps;
+    const int     first = (int)at;
+    const double *of = p->lobe[doppler] + first, t = at - first; /* of[1] lies at first */
+    return of[0] * t * (t - 1) * (2 - t) / 6 + of[1] * (t + 1) * (t - 1) * (t - 2) / 2 + of[2] * (t + 1) * t * (2 - t) / 2 +
+           of[3] * (t + 1) * t * (t - 1) / 6;
 }
 
-void interval_compress(double complex *out, IntervalPlan *p, const Interval *in, int channel)
+const double *interval_pulses(const IntervalPlan *p, int channel) { return p->rows[channel]; }
+
+void interval_pulse(double complex *out, const IntervalPlan *p, int channel, int pulse)
 {
-    const size_t count = (size_t)p->samples * (size_t)p->pulses;
-    compress(p, in->sample + (size_t)channel * count);
-    for (size_t i = 0; i < count; i++) out[i] = p->rows[2 * i] + I * p->rows[2 * i + 1];
+    const double *row = p->rows[channel] + 2 * (size_t)pulse * (size_t)p->samples;
+    for (int m = 0; m < p->samples; m++) out[m] = CMPLX(row[2 * m], row[2 * m + 1]);
 }
 
-void interval_pulse(double complex *out, IntervalPlan *p, const Interval *in, int channel, int pulse)
+void interval_profile(double *profile, const IntervalPlan *p, int channel)
 {
-    compress(p, in->sample + (size_t)channel * (size_t)p->samples * (size_t)p->pulses);
-    const double *row = p->rows + 2 * (size_t)pulse * (size_t)p->samples;
-    for (int m = 0; m < p->samples; m++) out[m] = row[2 * m] + I * row[2 * m + 1];
-}
-
-const double *interval_pulses(IntervalPlan *p, const Interval *in, int channel)
-{
-    compress(p, in->sample + (size_t)channel * (size_t)p->samples * (size_t)p->pulses);
-    return p->rows;
-}
-
-void interval_profile(double *profile, IntervalPlan *p, const Interval *in, int channel)
-{
-    compress(p, in->sample + (size_t)channel * (size_t)p->samples * (size_t)p->pulses);
-    for (int m = 0; m < p->samples; m++) {
-        double power = 0;
-        for (int n = 0; n < p->pulses; n++) {
-            const size_t at = (size_t)n * (size_t)p->samples + (size_t)m;
-            power += p->rows[2 * at] * p->rows[2 * at] + p->rows[2 * at + 1] * p->rows[2 * at + 1];
-        }
-        profile[m] = power / p->pulses;
-    }
+    const double *row = p->rows[channel];
+    for (int m = 0; m < p->samples; m++) profile[m] = 0;
+    for (int n = 0; n < p->pulses; n++, row += 2 * (size_t)p->samples)
+        for (int m = 0; m < p->samples; m++) profile[m] += (row[2 * m] * row[2 * m] + row[2 * m + 1] * row[2 * m + 1]) / p->pulses;
 }

@@ -29,23 +29,24 @@ typedef struct RangeDoppler {
     double complex *cell;           /* [channels][rows][columns] */
 } RangeDoppler;
 
-/* The two maps for processing; in: scratch of the same size as the samples. */
+/* The two maps for processing; holds the compressed pulses of one interval at a time. */
 typedef struct IntervalPlan IntervalPlan;
 Status interval_plan_create(IntervalPlan **out, const Waveform *wave, const Window *range, const Window *doppler);
 void   interval_plan_destroy(IntervalPlan *plan); /* accepts NULL */
-/* out->cell: [channels][pulses][samples]; the rest is filled. */
-void   interval_process(RangeDoppler *out, IntervalPlan *plan, const Interval *in);
+/* Compresses the pulses of the first so many channels in range. pool may be NULL. */
+void   interval_compress(IntervalPlan *plan, const Interval *in, int channels, Pool *pool);
+/* Compresses all channels, and transforms them over the pulses. out->cell: [channels][pulses][samples]; the rest is
+ * filled. */
+void   interval_process(RangeDoppler *out, IntervalPlan *plan, const Interval *in, Pool *pool);
 /* Of a map: RangeDoppler.noise_share. */
 double interval_noise_share(const IntervalPlan *plan);
-/* Amplitude at an offset in cells of the response to a point, 1 at 0, over range or over Doppler. */
+/* Amplitude at an offset of up to 1.5 cells of the response to a point, 1 at 0, over range or over Doppler; to 1e-7. */
 double interval_lobe(const IntervalPlan *plan, bool doppler, double cells);
-/* Complex range profiles of all pulses: out[pulses][samples]. */
-void   interval_compress(double complex *out, IntervalPlan *plan, const Interval *in, int channel);
+/* Of a channel that was compressed: all pulses, [pulses][samples] complex. */
+const double *interval_pulses(const IntervalPlan *plan, int channel);
 /* Complex range profile of one pulse: out[samples]. */
-void   interval_pulse(double complex *out, IntervalPlan *plan, const Interval *in, int channel, int pulse);
-/* Of all pulses of a channel: [pulses][samples] complex; valid until the plan is used again. */
-const double *interval_pulses(IntervalPlan *plan, const Interval *in, int channel);
-/* Range profile of one channel over all pulses, without Doppler: profile[samples], mean power over pulses. */
-void   interval_profile(double *profile, IntervalPlan *plan, const Interval *in, int channel);
+void   interval_pulse(double complex *out, const IntervalPlan *plan, int channel, int pulse);
+/* Range profile over all pulses, without Doppler: profile[samples], mean power over pulses. */
+void   interval_profile(double *profile, const IntervalPlan *plan, int channel);
 
 #endif

@@ -8,10 +8,11 @@
 
 enum { width = gridding_width, rows_least = 16, chunk = 4096, block = 256 };
 
-/* Where a point goes: the first row and column of its patch, and their weights. */
+/* Where a point goes: the first row and column of its patch, their weights, and what its phase turns by between the
+ * middle of the interval and pulse pulses / 2. */
 typedef struct Spread {
     int    row, column;
-    double down[width], along[width];
+    double down[width], along[width], turn[2];
 } Spread;
 
 struct PulseGrid {
@@ -112,6 +113,9 @@ static void spread_block(void *user, int worker, int task)
     (void)worker;
     for (int i = task * block; i < end; i++) {
         if (job->point[i].terms == 0) continue;
+        /* of an even number of pulses the middle is half a one before */
+        const double half = g->pulses % 2 ? 0 : -pi_rad * job->point[i].per_pulse;
+        g->spread[i].turn[0] = cos(half), g->spread[i].turn[1] = sin(half);
         g->spread[i].row = gridding_spread(g->spread[i].down, job->point[i].per_pulse, g->rows);
         g->spread[i].column = gridding_spread(g->spread[i].along, job->point[i].per_sample, g->columns);
     }
@@ -129,8 +133,7 @@ static void add_channel(void *user, int worker, int task)
         const PulsePoint *p = &job->point[i];
         const Spread     *s = &g->spread[i];
         if (term >= p->terms || p->amplitude[channel] == 0) continue;
-        /* of an even number of pulses the middle is half a one before pulse pulses / 2 */
-        const double   half = g->pulses % 2 ? 0 : -pi_rad * p->per_pulse, re = cos(half), im = sin(half);
+        const double   re = s->turn[0], im = s->turn[1];
         double         a = creal(p->amplitude[channel]), b = cimag(p->amplitude[channel]);
         for (int r = 1; r <= term; r++) { /* times -j growth / r */
             const double by = p->growth_rad / r, was = a;

@@ -9,13 +9,9 @@ static void keep_position(ScanWork *w, const Interval *interval, int i)
     SeekerRadar    *r = w->making->radar;
     const size_t    row = (size_t)interval->wave.samples, plane = row * (size_t)interval->wave.pulses;
     double complex *pulse = r->scan_pulse + (size_t)i * plane;
-    interval_compress(pulse, r->plan, interval, CHANNEL_SUM);
-    for (size_t x = 0; x < row; x++) {
-        double power = 0;
-        for (size_t at = x; at < plane; at += row)
-            power += creal(pulse[at]) * creal(pulse[at]) + cimag(pulse[at]) * cimag(pulse[at]);
-        w->scan->power_w[(size_t)i * row + x] = power / interval->wave.pulses;
-    }
+    interval_compress(r->plan, interval, 1, NULL);
+    for (int n = 0; n < interval->wave.pulses; n++) interval_pulse(pulse + (size_t)n * row, r->plan, CHANNEL_SUM, n);
+    interval_profile(w->scan->power_w + (size_t)i * row, r->plan, CHANNEL_SUM);
 }
 
 static Status measure_positions(ScanWork *w, Interval *middle)

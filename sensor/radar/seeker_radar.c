@@ -248,13 +248,13 @@ static Status air_between(Making *m)
 
 /* ---- moving targets --------------------------------------------------------------------------------- */
 
-static Status indicate_moving(Making *m, const Interval *interval, Detection *detection)
+static Status indicate_moving(Making *m, Detection *detection)
 {
     RadarFrame     *f = m->frame;
     const Waveform *wave = &m->preset->wave;
     f->mti_w = arena_alloc(m->arena, (size_t)wave->samples, sizeof *f->mti_w);
     if (!f->mti_w) return STATUS_NO_MEMORY;
-    mti_profile(f->mti_w, interval_pulses(m->radar->plan, interval, CHANNEL_SUM), wave, m->preset->mti_rows,
+    mti_profile(f->mti_w, interval_pulses(m->radar->plan, CHANNEL_SUM), wave, m->preset->mti_rows,
                 2 * (f->ground_rate_mps - f->reference_rate_mps) / wave->repeat_hz);
     for (int i = 0; i < f->detections; i++) {
         Detection   *d = &detection[i];
@@ -268,7 +268,7 @@ static Status indicate_moving(Making *m, const Interval *interval, Detection *de
 
 /* ---- one interval --------------------------------------------------------------------------------- */
 
-static Status process(Making *m, Interval *interval)
+static Status process(Making *m, const Interval *interval)
 {
     RadarFrame      *f = m->frame;
     const RadarPreset *p = m->preset;
@@ -278,10 +278,10 @@ static Status process(Making *m, Interval *interval)
     f->profile = arena_alloc(m->arena, 2 * (size_t)p->wave.samples, sizeof *f->profile);
     f->profile_w = arena_alloc(m->arena, (size_t)p->wave.samples, sizeof *f->profile_w);
     if (!detection || !f->map.cell || !f->profile || !f->profile_w) return STATUS_NO_MEMORY;
-    interval_process(&f->map, m->radar->plan, interval);
-    interval_profile(f->profile_w, m->radar->plan, interval, CHANNEL_SUM);
-    interval_pulse(f->profile, m->radar->plan, interval, CHANNEL_SUM, p->wave.pulses / 2);
-    interval_pulse(f->profile + p->wave.samples, m->radar->plan, interval, CHANNEL_CROSS, p->wave.pulses / 2);
+    interval_process(&f->map, m->radar->plan, interval, m->pool);
+    interval_profile(f->profile_w, m->radar->plan, CHANNEL_SUM);
+    interval_pulse(f->profile, m->radar->plan, CHANNEL_SUM, p->wave.pulses / 2);
+    interval_pulse(f->profile + p->wave.samples, m->radar->plan, CHANNEL_CROSS, p->wave.pulses / 2);
 
     const RadarLink   link = {p->power_w, 1, 1, p->antenna.wavelength_m, 1, p->loss};
     const DetectScale scale = {.range_m = f->reference_m, .range_rate_mps = f->reference_rate_mps,
@@ -294,7 +294,7 @@ static Status process(Making *m, Interval *interval)
     if (f->detections_in_all < 0) return STATUS_NO_MEMORY;
     f->detections = f->detections_in_all < detections_most ? f->detections_in_all : detections_most;
     f->detection = detection;
-    return indicate_moving(m, interval, detection);
+    return indicate_moving(m, detection);
 }
 
 static Status make(Making *m)

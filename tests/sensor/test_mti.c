@@ -19,9 +19,10 @@ static void powers(double out[4], double clutter_path_m)
     double        profile[samples];
     const Interval interval = {.wave = wave, .sample = sample};
     CHECK(!window_parse(&rect, "rect") && interval_plan_create(&plan, &wave, &rect, &rect) == STATUS_OK);
+    interval_compress(plan, &interval, 1, NULL);
     for (int rows = 1; rows <= mti_rows_most; rows++) {
-        if (rows == 1) interval_profile(profile, plan, &interval, CHANNEL_SUM);
-        else mti_profile(profile, interval_pulses(plan, &interval, CHANNEL_SUM), &wave, rows, clutter_path_m);
+        if (rows == 1) interval_profile(profile, plan, CHANNEL_SUM);
+        else mti_profile(profile, interval_pulses(plan, CHANNEL_SUM), &wave, rows, clutter_path_m);
         out[rows] = 0;
         for (int m = 0; m < samples; m++) out[rows] += profile[m] / samples;
     }

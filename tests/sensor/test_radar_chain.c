@@ -46,7 +46,7 @@ static RangeDoppler process(const Interval *interval, const char *range_window, 
     CHECK(!window_parse(&range, range_window) && !window_parse(&doppler, doppler_window));
     interval_plan_destroy(plan);
     CHECK(interval_plan_create(&plan, &wave, &range, &doppler) == STATUS_OK);
-    interval_process(&map, plan, interval);
+    interval_process(&map, plan, interval, NULL);
     return map;
 }
 

@@ -47,7 +47,7 @@ static const double complex *map_of(Chain *chain, double range_m, double rate_mp
 {
     echo_add(chain->grid, &(Echo){2 * range_m, 2 * rate_mps / chain->preset.wave.repeat_hz, {1, 0, 0, 0}}, 1, NULL);
     echo_sum(chain->interval.sample, chain->grid);
-    interval_process(&chain->map, chain->plan, &chain->interval);
+    interval_process(&chain->map, chain->plan, &chain->interval, NULL);
     return chain->map.cell;
 }
 
@@ -257,7 +257,7 @@ static void signal_to_noise_is_the_radar_equations(void **state)
         const double       gain = 0.75 * pow(pi_rad * p->antenna.diameter_m / wave_m, 2); /* of a dish tapered to 0.75 */
         ReceiverReport     report;
         receiver_apply(&report, &chain.interval, &receiver, 5, 0, 0);
-        interval_process(&chain.map, chain.plan, &chain.interval);
+        interval_process(&chain.map, chain.plan, &chain.interval, NULL);
         double floor_w = 0;
         for (size_t i = 0; i < interval_channels * plane; i++) floor_w += power_of(chain.map.cell[i]) / (double)(interval_channels * plane);
         const AntennaGain at = antenna_gain(&p->antenna, 0, 0);
@@ -287,7 +287,7 @@ static void phase_noise_is_of_each_pulse(void **state)
         const int samples = chain.preset.wave.samples, rows = chain.preset.wave.pulses;
         (void)map_of(&chain, 0, 0);
         receiver_apply(&report, &chain.interval, &receiver, 9, 0, 0);
-        interval_process(&chain.map, chain.plan, &chain.interval);
+        interval_process(&chain.map, chain.plan, &chain.interval, NULL);
         double column = 0, others = 0;
         for (int y = 0; y < rows; y++)
             for (int x = 0; x < samples; x++) {
