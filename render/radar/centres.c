@@ -31,7 +31,25 @@ static void see(ScatterCentre *out, const Signature *s, const SignatureCentre *c
     out->part = c->part;
 }
 
-Status centres_make(Centres *out, const Signature *s, const ScatterAntenna *tx, const ScatterAntenna *rx)
+enum { block = 1024 };
+
+typedef struct Job {
+    Centres              *out;
+    const Signature      *signature;
+    const ScatterAntenna *tx, *rx;
+    double                k;
+} Job;
+
+static void see_block(void *user, int worker, int task)
+{
+    const Job *job = user;
+    const int  end = (task + 1) * block < job->out->count ? (task + 1) * block : job->out->count;
+    (void)worker;
+    for (int i = task * block; i < end; i++)
+        see(&job->out->centre[i], job->signature, &job->signature->centre[i], job->k, job->tx, job->rx);
+}
+
+Status centres_make(Centres *out, const Signature *s, const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool)
 {
     const double k = 2 * pi_rad * s->frequency_hz / light_mps;
     if (s->count > out->capacity) {
@@ -43,7 +61,10 @@ Status centres_make(Centres *out, const Signature *s, const ScatterAntenna *tx, 
     out->count = s->count;
     out->tubes_same_m2 = s->tubes_same_m2;
     out->tubes_cross_m2 = s->tubes_cross_m2;
-    for (int i = 0; i < s->count; i++) see(&out->centre[i], s, &s->centre[i], k, tx, rx);
+    Job       job = {out, s, tx, rx, k};
+    const int blocks = (s->count + block - 1) / block;
+    if (pool) pool_run(pool, blocks, see_block, &job);
+    else for (int b = 0; b < blocks; b++) see_block(&job, 0, b);
     return STATUS_OK;
 }
 

@@ -36,6 +36,8 @@ typedef struct Split {
     double             share;
 } Split;
 
+static double outside(double x, double low, double high) { return x < low ? low - x : x > high ? x - high : 0; }
+
 static void split(Split *s, ClutterCell cell)
 {
     const double side_m = clutter_side(s->grid, cell.level);
@@ -44,9 +46,8 @@ static void split(Split *s, ClutterCell cell)
     if (west_m >= s->high_m[0] || south_m >= s->high_m[1] || west_m + side_m <= s->low_m[0] ||
         south_m + side_m <= s->low_m[1])
         return;
-    const double away_m = hypot(s->from_m[0] - clamp(s->from_m[0], west_m, west_m + side_m),
-                                s->from_m[1] - clamp(s->from_m[1], south_m, south_m + side_m));
-    if (cell.level > 0 && side_m > s->share * away_m) {
+    const double x_m = outside(s->from_m[0], west_m, west_m + side_m), y_m = outside(s->from_m[1], south_m, south_m + side_m);
+    if (cell.level > 0 && side_m * side_m > s->share * s->share * (x_m * x_m + y_m * y_m)) {
         for (int k = 0; k < 4; k++)
             split(s, (ClutterCell){2 * cell.x + k % 2, 2 * cell.y + k / 2, cell.level - 1});
         return;

@@ -33,7 +33,7 @@ typedef struct ClutterCell {
     int32_t level; /* 0 .. clutter_levels - 1 */
 } ClutterCell;
 
-static inline double clutter_side(const ClutterGrid *grid, int level) { return ldexp(grid->side_m, level); }
+static inline double clutter_side(const ClutterGrid *grid, int level) { return grid->side_m * (double)(1 << level); }
 
 /* Cells whose centres are in low <= x, y < high (m), so that neighbouring rectangles share none. Returns how many
  * there are; writes the first `capacity`. Corners within 2^30 sides of the origin.

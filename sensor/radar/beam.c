@@ -30,7 +30,7 @@ static bool echo_of(Echo *e, const Making *beam, const RadarPoint *q)
     Sight  sight;
     v3_add_scaled(p, q->p_enu, q->own ? 0 : beam->after_s, q->v_enu_mps);
     making_sight(&sight, beam, p, q->room_m);
-    if (!sight.within || hypot(sight.cos_right, sight.cos_down) > q->widest) return false;
+    if (!sight.within || making_off_axis(beam, &sight) > q->widest) return false;
     const ScatterMatrix s = {.hh = q->same, .vv = q->same, .hv = q->other, .vh = q->other};
     making_amplitudes(e->amplitude, beam, &sight, &s);
     for (int k = 0; k < interval_channels; k++) e->amplitude[k] *= q->share;

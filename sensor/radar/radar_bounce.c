@@ -204,7 +204,7 @@ Status making_bounce(Making *m, const Target *t, const ScatterMatrix *direct, Ra
         if (status != STATUS_OK) return status;
         if (!signature) m->missing++;
         if (m->missing > 0) continue;
-        status = centres_make(&r->centres, signature, &look.tx, &look.rx);
+        status = centres_make(&r->centres, signature, &look.tx, &look.rx, m->pool);
         if (status != STATUS_OK) return status;
         centres_field(twice ? &s.twice : &s.once, &r->centres, m->preset->wave.centre_hz);
         status = add_echoes(m, t, &b, truth, !twice);

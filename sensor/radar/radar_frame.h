@@ -66,6 +66,7 @@ typedef struct RadarFrame {
     const RadarScan *scan;             /* NULL: the beam stares */
     int             ground_cells, ground_hidden; /* scatterers of the ground; of them, hidden by relief or entities */
     double          rain_1_m;          /* backscatter of rain by its volume, m2/m3 */
+    int             echoes;            /* of entities, before any goes by way of the ground */
     int             crowns, clouds;    /* plants, and clouds of chaff, within beam and window */
     double          spent_s;           /* wall clock */
 } RadarFrame;

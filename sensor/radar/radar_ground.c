@@ -172,18 +172,18 @@ Status making_ground(Making *m)
 
     /* sides of 1/128 of the beam's width, less where the resolution asks for it near by; coarser where that is too
      * many */
-    double share = lobe_rad / 128;
+    double       share = lobe_rad / 128;
     const size_t most = m->scan_half_rad > 0 ? 2 * cells_most : cells_most;
+    ClutterCell *cell = arena_alloc(m->arena, most, sizeof *cell);
     size_t       count;
-    while ((count = clutter_cells_at(NULL, 0, &r->cells, low_m, high_m, p, share)) > most) share *= sqrt(2);
+    if (!cell) return STATUS_NO_MEMORY;
+    while ((count = clutter_cells_at(cell, most, &r->cells, low_m, high_m, p, share)) > most) share *= sqrt(2);
     const int    blocks = (int)((count + block - 1) / block);
-    ClutterCell *cell = arena_alloc(m->arena, count + 1, sizeof *cell);
     GroundJob    job = {.making = m, .cell = cell, .cells = (int)count, .widest = widest,
                         .ground = arena_alloc(m->arena, (size_t)blocks + 1, sizeof *job.ground),
                         .point = points_room(&r->points, blocks * block + 1),
                         .hidden = arena_alloc(m->arena, (size_t)blocks + 1, sizeof *job.hidden)};
-    if (!cell || !job.ground || !job.point || !job.hidden) return STATUS_NO_MEMORY;
-    clutter_cells_at(cell, count, &r->cells, low_m, high_m, p, share);
+    if (!job.ground || !job.point || !job.hidden) return STATUS_NO_MEMORY;
     if (m->pool) pool_run(m->pool, blocks, scatter_block, &job);
     else for (int b = 0; b < blocks; b++) scatter_block(&job, 0, b);
     for (int b = 0; b < blocks; b++) {

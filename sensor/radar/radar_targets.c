@@ -21,6 +21,14 @@ static double spin_of(const Target *t, int node, double forward_mps)
     return of->roll_radius_m > 0 ? forward_mps / of->roll_radius_m : t->entity->drives.engine > 0 ? of->spin_rps_moving : 0;
 }
 
+/* It, or what it is on. */
+static bool spins(const Target *t, int node, double forward_mps)
+{
+    for (int n = node; n >= 0; n = t->of->node[n].parent)
+        if (spin_of(t, n, forward_mps) != 0) return true;
+    return false;
+}
+
 void making_target_velocity(double v_enu[3], const Target *t, int node, const double p_body[3])
 {
     const SnapshotEntity *e = t->entity;
@@ -42,6 +50,13 @@ void making_target_velocity(double v_enu[3], const Target *t, int node, const do
 }
 
 /* ---- one entity ------------------------------------------------------------------------------------- */
+
+/* A centre as the antenna sees it, turned to its axes. */
+typedef struct CentreView {
+    double complex same, other;  /* received as transmitted, and in the other polarisation */
+    double complex wave;         /* exp(-j k path) */
+    double         hh_m2, vv_m2;
+} CentreView;
 
 /* Keeps it if it is among the strongest, which are in order. */
 static void note_strongest(RadarTruth *truth, const RadarScatterer *of)
@@ -69,25 +84,24 @@ static void add_error(RadarTruth *truth, const Centres *centres, const double co
     truth->map_error = truth->given ? NAN : 8 * pi_rad * error.same_m2 / power_m2 + signature_cells_error();
 }
 
-static void add_truth(RadarTruth *truth, const Making *m, const Target *t, const Sight *sight, const Centres *centres,
-                      const bool *seen, const double h_enu[3], const double v_enu[3])
+/* field: of the target, in the body's bases. */
+static void add_truth(RadarTruth *truth, ScatterMatrix *field, const Making *m, const Target *t, const Sight *sight,
+                      const Centres *centres, const CentreView *view, const bool *seen, const double h_enu[3],
+                      const double v_enu[3])
 {
-    const double  k = 2 * pi_rad / m->preset->antenna.wavelength_m;
-    ScatterMatrix whole = {0}, in_sight = {0};
+    ScatterMatrix in_sight = {0};
     double        power = 0, seen_power = 0;
+    *field = (ScatterMatrix){0};
     for (int i = 0; i < centres->count; i++) {
         const ScatterCentre *c = &centres->centre[i];
-        const double complex phase = CMPLX(cos(k * c->path_m), -sin(k * c->path_m));
-        ScatterMatrix        s = c->s;
-        add_turned(&whole, &s, phase);
-        if (seen[i]) add_turned(&in_sight, &s, phase);
-        scatter_turn(&s, h_enu, v_enu, m->right);
-        const RadarScatterer one = {4 * pi_rad * scatter_power(s.hh), 4 * pi_rad * scatter_power(s.vv), {c->p[0], c->p[1], c->p[2]}, c->bounce,
-                                    c->part, seen[i]};
+        add_turned(field, &c->s, view[i].wave);
+        if (seen[i]) add_turned(&in_sight, &c->s, view[i].wave);
+        const RadarScatterer one = {view[i].hh_m2, view[i].vv_m2, {c->p[0], c->p[1], c->p[2]}, c->bounce, c->part, seen[i]};
         power += one.hh_m2 + one.vv_m2;
         if (seen[i]) seen_power += one.hh_m2 + one.vv_m2;
         note_strongest(truth, &one);
     }
+    ScatterMatrix whole = *field;
     scatter_turn(&whole, h_enu, v_enu, m->right);
     scatter_turn(&in_sight, h_enu, v_enu, m->right);
     const double complex of[3] = {whole.hh, whole.vv, whole.hv};
@@ -120,40 +134,63 @@ static Status find_centres(bool *found, Making *m, Target *t, RadarTruth *truth)
     if (status != STATUS_OK) return status;
     *found = signature != NULL;
     t->pose = signatures_pose(r->signatures);
-    return signature ? centres_make(&r->centres, signature, &t->antenna, &t->antenna) : STATUS_OK;
+    return signature ? centres_make(&r->centres, signature, &t->antenna, &t->antenna, m->pool) : STATUS_OK;
 }
 
 enum { block_centres = 512 };
 
-typedef struct PointJob {
-    const Making  *making;
-    const Target  *target;
-    const Sight   *sight;              /* of the target's origin */
-    ScatterCentre *centre;             /* [count]; turned to the antenna's axes */
-    RadarPoint    *point;              /* [count] */
-    double         h_enu[3], v_enu[3];
-    int            count;
-} PointJob;
+typedef struct CentreJob {
+    const Making        *making;
+    const Target        *target;
+    const Sight         *sight;        /* of the target's origin */
+    const ScatterCentre *centre;       /* [count] */
+    CentreView          *view;         /* [count] */
+    const int           *shown;        /* [points]: the centres in sight */
+    RadarPoint          *point;        /* [points] */
+    bool                *spins;        /* [points] */
+    double               h_enu[3], v_enu[3];
+    int                  count, points;
+} CentreJob;
+
+static void view_block(void *user, int worker, int task)
+{
+    const CentreJob *job = user;
+    const Making    *m = job->making;
+    const double     k = 2 * pi_rad / m->preset->antenna.wavelength_m;
+    const int        end = (task + 1) * block_centres < job->count ? (task + 1) * block_centres : job->count;
+    (void)worker;
+    for (int i = task * block_centres; i < end; i++) {
+        const ScatterCentre *c = &job->centre[i];
+        ScatterMatrix        s = c->s;
+        scatter_turn(&s, job->h_enu, job->v_enu, m->right);
+        job->view[i] = (CentreView){m->preset->transmits_h ? s.hh : s.vv, m->preset->transmits_h ? s.vh : s.hv,
+                                    CMPLX(cos(k * c->path_m), -sin(k * c->path_m)), 4 * pi_rad * scatter_power(s.hh),
+                                    4 * pi_rad * scatter_power(s.vv)};
+    }
+}
 
 static void point_block(void *user, int worker, int task)
 {
-    const PointJob *job = user;
-    const Making   *m = job->making;
-    const Target   *t = job->target;
-    const double    pulse_s = 1 / m->preset->wave.repeat_hz, room_m = 2 * t->of->radius_m;
-    const int       end = (task + 1) * block_centres < job->count ? (task + 1) * block_centres : job->count;
+    const CentreJob *job = user;
+    const Making    *m = job->making;
+    const Target    *t = job->target;
+    const double     pulse_s = 1 / m->preset->wave.repeat_hz, room_m = 2 * t->of->radius_m;
+    double           ahead_mps[3];
+    m3_tmul_v3(ahead_mps, t->r_enu_from_body, t->v_enu_mps);
+    const int        end = (task + 1) * block_centres < job->points ? (task + 1) * block_centres : job->points;
     (void)worker;
     for (int i = task * block_centres; i < end; i++) {
-        ScatterCentre *c = &job->centre[i];
-        RadarPoint    *q = &job->point[i];
-        Sight          to;
+        const ScatterCentre *c = &job->centre[job->shown[i]];
+        RadarPoint          *q = &job->point[i];
+        Sight                to;
         m3_mul_v3(q->p_enu, t->r_enu_from_body, c->p);
         v3_add(q->p_enu, q->p_enu, t->p_enu);
         making_sight(&to, m, q->p_enu, 0);
-        making_target_velocity(q->v_enu_mps, t, c->part < 0 ? -1 : t->of->part[c->part].node, c->p);
-        scatter_turn(&c->s, job->h_enu, job->v_enu, m->right);
-        q->same = m->preset->transmits_h ? c->s.hh : c->s.vv;
-        q->other = m->preset->transmits_h ? c->s.vh : c->s.hv;
+        const int node = c->part < 0 ? -1 : t->of->part[c->part].node;
+        making_target_velocity(q->v_enu_mps, t, node, c->p);
+        job->spins[i] = spins(t, node, ahead_mps[0]);
+        q->same = job->view[job->shown[i]].same;
+        q->other = job->view[job->shown[i]].other;
         q->share = 1;
         q->path_m = 2 * (job->sight->range_m - m->reference_m) + c->path_m;
         q->path_per_pulse_m = 2 * (making_range_rate(m, &to, q->v_enu_mps) - m->reference_rate_mps) * pulse_s;
@@ -161,6 +198,13 @@ static void point_block(void *user, int worker, int task)
         q->room_m = room_m;
         q->own = m->after_s != 0;
     }
+}
+
+static void in_blocks(CentreJob *job, int count, void (*block)(void *user, int worker, int task))
+{
+    const int blocks = (count + block_centres - 1) / block_centres;
+    if (job->making->pool) pool_run(job->making->pool, blocks, block, job);
+    else for (int b = 0; b < blocks; b++) block(job, 0, b);
 }
 
 static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *truth)
@@ -174,26 +218,22 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     if (status != STATUS_OK) return status;
     if (!found) m->missing++;
     if (m->missing > 0) return truth->given ? STATUS_OK : making_bounce(m, t, NULL, truth); /* the rest is asked for alone */
-    bool *seen = arena_alloc(m->arena, (size_t)r->centres.count + 1, sizeof *seen);
-    if (!seen) return STATUS_NO_MEMORY;
+    const size_t n = (size_t)r->centres.count + 1;
+    bool        *seen = arena_alloc(m->arena, n, sizeof *seen);
+    int         *shown = arena_alloc(m->arena, n, sizeof *shown);
+    CentreJob    job = {.making = m, .target = t, .sight = sight, .centre = r->centres.centre, .count = r->centres.count,
+                        .view = arena_alloc(m->arena, n, sizeof *job.view), .shown = shown, .point = points_room(&r->points, (int)n),
+                        .spins = arena_alloc(m->arena, n, sizeof *job.spins)};
+    if (!seen || !shown || !job.view || !job.point || !job.spins) return STATUS_NO_MEMORY;
     status = radar_sight_centres(seen, m, t->index, t->p_enu, t->r_enu_from_body, &r->centres);
     if (status != STATUS_OK) return status;
-
-    double h_enu[3], v_enu[3];
-    int    count = 0;
-    basis_of(h_enu, v_enu, t);
-    add_truth(truth, m, t, sight, &r->centres, seen, h_enu, v_enu);
-    centres_field(&field, &r->centres, m->preset->wave.centre_hz);
-    for (int i = 0; i < r->centres.count; i++)
-        if (seen[i]) r->centres.centre[count++] = r->centres.centre[i];
-    PointJob job = {m, t, sight, r->centres.centre, points_room(&r->points, count + 1), {0}, {0}, count};
-    if (!job.point) return STATUS_NO_MEMORY;
-    memcpy(job.h_enu, h_enu, sizeof h_enu);
-    memcpy(job.v_enu, v_enu, sizeof v_enu);
-    const int blocks = (count + block_centres - 1) / block_centres;
-    if (m->pool) pool_run(m->pool, blocks, point_block, &job);
-    else for (int b = 0; b < blocks; b++) point_block(&job, 0, b);
-    r->points.count += count;
+    basis_of(job.h_enu, job.v_enu, t);
+    in_blocks(&job, job.count, view_block);
+    add_truth(truth, &field, m, t, sight, &r->centres, job.view, seen, job.h_enu, job.v_enu);
+    for (int i = 0; i < job.count; i++)
+        if (seen[i]) shown[job.points++] = i;
+    in_blocks(&job, job.points, point_block);
+    r->points.count += m->scene->apart ? job.points : making_merge(job.point, job.spins, job.points, m);
     return truth->given || !(truth->visible > 0) ? STATUS_OK : making_bounce(m, t, &field, truth);
 }
 
@@ -247,7 +287,7 @@ Status making_targets(Making *m)
     RadarTruth  *truth;
     const Status status = each_target(m, &truth, &m->frame->targets);
     m->frame->target = truth;
-    m->radar->target_points = m->radar->points.count;
+    m->frame->echoes = m->radar->target_points = m->radar->points.count;
     return status;
 }
 

@@ -121,7 +121,7 @@ void making_sight(Sight *out, const Making *m, const double p_enu[3], double mor
 
 double making_off_axis(const Making *m, const Sight *sight)
 {
-    if (!(m->scan_half_rad > 0)) return hypot(sight->cos_right, sight->cos_down);
+    if (!(m->scan_half_rad > 0)) return sqrt(sight->cos_right * sight->cos_right + sight->cos_down * sight->cos_down);
     const double ahead = v3_dot(sight->d_enu, m->ahead), azimuth = atan2(sight->cos_right, ahead);
     const double off = azimuth - clamp(azimuth, -m->scan_half_rad, m->scan_half_rad);
     return hypot(sin(off) * hypot(sight->cos_right, ahead), sight->cos_down);

@@ -5,7 +5,8 @@
  * the reference: the range to the aim, else to the ground along the boresight; of FMCW it begins at 0. Within beam and
  * window, and beyond it where echoes fold over (RadarPreset.far_m),
  *
- *     entities   by their scattering centres (render/radar), each with its own range rate from the motion of its part
+ *     entities   by their scattering centres (render/radar), each with its own range rate from the motion of its part;
+ *                as fewer echoes where the radar tells few of them apart (radar_merge.c)
  *     and the same by way of the ground near them, once and twice (render/radar/ground_bounce.h)
  *     ground     by scatterers fixed to it (render/radar/clutter.h), where relief and entities leave it in sight
  *     plants     by scatterers in their crowns (render/radar/foliage.h); what is behind or below is weakened, not hidden
@@ -63,6 +64,7 @@ typedef struct RadarScene {
     double          t_s;         /* exercise time */
     const Weather  *weather;     /* at the ground */
     uint32_t        number;      /* of the frame: for its noise */
+    bool            apart;       /* each scattering centre is an echo of its own (slower, exact) */
     const float    *range_m;     /* [view height][width]: of what each pixel shows, INFINITY: sky. NULL: no pixels */
     const uint32_t *entity;      /* likewise: snapshot index + 1, 0: none */
 } RadarScene;

@@ -109,6 +109,10 @@ typedef struct Target {
 /* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. node -1: of none. */
 void making_target_velocity(double v_enu_mps[3], const Target *target, int node, const double p_body[3]);
 
+/* Makes fewer echoes of a target's, where the radar tells few of them apart; returns how many are left. spins: those whose
+ * part does. */
+int making_merge(RadarPoint *point, const bool *spins, int count, const Making *making);
+
 /* Adds the echoes of an entity by way of the ground, whose field is direct without it (body bases), and their truth. With
  * signatures missing: asks for its own alone. */
 Status making_bounce(Making *making, const Target *target, const ScatterMatrix *direct, RadarTruth *truth);

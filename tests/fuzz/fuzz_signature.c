@@ -29,7 +29,7 @@ static void try_octets(const uint8_t *data, size_t size)
     Centres              centres = {0};
     if (signature_from_octets(&s, data, size, name, parts) != STATUS_OK) return;
     signature_axes(&s, &cells);
-    if (centres_make(&centres, &s, &moved, &moved) != STATUS_OK) abort();
+    if (centres_make(&centres, &s, &moved, &moved, NULL) != STATUS_OK) abort();
     for (int i = 0; i < centres.count; i++) {
         const ScatterCentre *c = &centres.centre[i];
         if (!isfinite(c->path_m + c->p[0] + c->p[1] + c->p[2] + creal(c->s.vv) + cimag(c->s.hh)) || c->part >= parts) abort();

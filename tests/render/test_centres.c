@@ -80,7 +80,7 @@ static void error_at(double phase_rad, double *of_band, double *of_bin, int *cou
     CHECK(signature_is_sound(&signature, 7) && !signature_is_sound(&signature, 3));
     double error = 0, power = 0;
     CHECK(field_sweep(want, frequencies, centre_hz - 0.5 * band_hz, step_hz, &h, NULL, NULL, NULL) == STATUS_OK);
-    CHECK(centres_make(&centres, &signature, &antenna, &antenna) == STATUS_OK);
+    CHECK(centres_make(&centres, &signature, &antenna, &antenna, NULL) == STATUS_OK);
     for (int f = 0; f < frequencies; f++) {
         centres_field(&got, &centres, centre_hz - 0.5 * band_hz + f * step_hz);
         add(&error, &power, &got, &want[f]);
@@ -91,7 +91,7 @@ static void error_at(double phase_rad, double *of_band, double *of_bin, int *cou
         const ScatterAntenna now = moved(i % 3 - 1, i / 3 % 3 - 1, i < 9 ? 1.09 : 0.917);
         ScatterMatrix        exact;
         CHECK(field_sweep(&exact, 1, centre_hz, 0, &h, &now, &now, NULL) == STATUS_OK);
-        CHECK(centres_make(&centres, &signature, &now, &now) == STATUS_OK);
+        CHECK(centres_make(&centres, &signature, &now, &now, NULL) == STATUS_OK);
         centres_field(&got, &centres, centre_hz);
         add(&error, &power, &got, &exact);
     }
@@ -131,7 +131,7 @@ static void middle_is_exact(void **state)
     Centres              centres = {0};
     ScatterMatrix        want, got;
     CHECK(signature_make(&signature, &(TotalField){.hits = h}, NULL, &cells) == STATUS_OK);
-    CHECK(centres_make(&centres, &signature, &antenna, &antenna) == STATUS_OK);
+    CHECK(centres_make(&centres, &signature, &antenna, &antenna, NULL) == STATUS_OK);
     CHECK(field_at(&want, centre_hz, &h, NULL) == STATUS_OK);
     centres_field(&got, &centres, centre_hz);
     CHECK(centres.count < hits / 100);
@@ -168,7 +168,7 @@ static void edges_are_centres_too(void **state)
     CHECK(total_field_sweep(&want, 1, centre_hz, 0, &field, &now, &now, NULL) == STATUS_OK);
     const SignatureCells cells = cells_of(0.05);
     CHECK(signature_make(&signature, &field, NULL, &cells) == STATUS_OK);
-    CHECK(centres_make(&centres, &signature, &now, &now) == STATUS_OK);
+    CHECK(centres_make(&centres, &signature, &now, &now, NULL) == STATUS_OK);
     centres_field(&got, &centres, centre_hz);
     int of_edges = 0;
     for (int i = 0; i < centres.count; i++) of_edges += centres.centre[i].bounce == 0 && centres.centre[i].part == 3;

@@ -42,7 +42,7 @@ static double normalised_error(const Case *c, double *rms_db, double *said_db, d
         CHECK(total_field_sweep(&got, 1, hz, 0, &used, &antenna, &antenna, pool) == STATUS_OK);
         const SignatureCells cells = signature_default_cells(hz, 1, 0.3 * rad_per_deg, 0);
         CHECK(signature_make(&signature, &used, NULL, &cells) == STATUS_OK);
-        CHECK(centres_make(&centres, &signature, &antenna, &antenna) == STATUS_OK);
+        CHECK(centres_make(&centres, &signature, &antenna, &antenna, NULL) == STATUS_OK);
         signature_error(&error, &centres);
         config.rays_per_radius *= 4;
         config.rays_per_wavelength *= 4;

@@ -60,7 +60,7 @@ static ScatterMatrix look(Signatures *s, int model, const double *joint, const S
     Centres             centres = {0};
     ScatterMatrix       m;
     CHECK(signatures_find(&signature, s, model, joint, 0, &of, NULL) == STATUS_OK);
-    CHECK(centres_make(&centres, signature, a, a) == STATUS_OK);
+    CHECK(centres_make(&centres, signature, a, a, NULL) == STATUS_OK);
     centres_field(&m, &centres, frequency_hz);
     centres_free(&centres);
     return m;

@@ -88,7 +88,7 @@ static void look(Got *out, double az_deg, const double *joint, double warp_m, bo
     /* axes are made anew: their field, too */
     Centres       centres = {0};
     ScatterMatrix field;
-    CHECK(centres_make(&centres, got, &a, &a) == STATUS_OK);
+    CHECK(centres_make(&centres, got, &a, &a, NULL) == STATUS_OK);
     centres_field(&field, &centres, 5e9);
     CHECK(cabs(field.vv) > 0);
     centres_free(&centres);

@@ -41,7 +41,7 @@ static void gather(void *user)
 {
     Reuse *r = user;
     if (r->status == STATUS_OK) r->status = signature_make(&r->signature, &r->field, NULL, &r->cells);
-    if (r->status == STATUS_OK) r->status = centres_make(&r->centres, &r->signature, &r->now, &r->now);
+    if (r->status == STATUS_OK) r->status = centres_make(&r->centres, &r->signature, &r->now, &r->now, r->pool);
     bench_keep(r);
 }
 

@@ -124,7 +124,7 @@ static Status error_of_bin(RadarSpeed *r, double *error_db)
     Status status = total_field_trace(&finer, r->target, &r->middle, &r->middle, &tubes, true, r->many);
     if (status == STATUS_OK)
         status = total_field_sweep(want, 17, r->config.frequency_hz - half_hz, half_hz / 8, &finer, NULL, NULL, NULL);
-    if (status == STATUS_OK) status = centres_make(&r->centres, &r->signature, &r->middle, &r->middle);
+    if (status == STATUS_OK) status = centres_make(&r->centres, &r->signature, &r->middle, &r->middle, NULL);
     for (int f = 0; f < 17 && status == STATUS_OK; f++) {
         centres_field(&got, &r->centres, r->config.frequency_hz - half_hz + f * half_hz / 8);
         add_error(&error, &power, &got, &want[f]);
@@ -137,7 +137,7 @@ static Status error_of_bin(RadarSpeed *r, double *error_db)
 static void reuse(void *user)
 {
     RadarSpeed *r = user;
-    r->status = centres_make(&r->centres, &r->signature, &r->now, &r->now);
+    r->status = centres_make(&r->centres, &r->signature, &r->now, &r->now, NULL);
     bench_keep(r->centres.centre);
 }
 
@@ -180,7 +180,7 @@ static Status add_target_rows(RadarSpeed *r)
     /* a bin that is at hand: the list itself at its edge, over its band's ends */
     for (int i = 0; i < seen_looks && status == STATUS_OK; i++) {
         r->now = look_of(r, i);
-        status = centres_make(&r->centres, &r->signature, &r->now, &r->now);
+        status = centres_make(&r->centres, &r->signature, &r->now, &r->now, NULL);
         for (int end = -1; end <= 1 && status == STATUS_OK; end += 2) {
             const double f_hz = wave->centre_hz + 0.5 * end * wave->bandwidth_hz;
             status = total_field_sweep(want, 1, f_hz, 0, &r->field, &r->now, &r->now, NULL);

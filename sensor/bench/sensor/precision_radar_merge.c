@@ -1,0 +1,93 @@
+/* sensor/bench/sensor/precision_radar_merge.c: what is saved, and lost, where a radar's target has fewer echoes than
+ * scattering centres (sensor/radar/radar_merge.c). */
+#include "sensor/bench/sensor/precision.h"
+
+#include "sensor/radar/seeker_radar.h"
+#include "terrain/landscape/quick_landscape.h"
+
+static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0};
+
+typedef struct MergeWay {
+    SeekerRadar      *radar;
+    RadarScene        scene;
+    Arena            *arena;
+    const RadarFrame *frame;
+    Status            status;
+} MergeWay;
+
+static void measure(void *user)
+{
+    MergeWay *w = user;
+    arena_reset(w->arena);
+    w->status = seeker_radar_measure(&w->frame, w->radar, &w->scene, NULL, w->arena);
+    bench_keep(w->frame);
+}
+
+/* Root of the power of what differs over that of the map. */
+static double apart(const RadarFrame *got, const RadarFrame *want)
+{
+    const size_t cells = (size_t)interval_channels * (size_t)want->map.rows * (size_t)want->map.columns;
+    double       off = 0, power = 0;
+    for (size_t i = 0; i < cells; i++) {
+        off += scatter_power(got->map.cell[i] - want->map.cell[i]);
+        power += scatter_power(want->map.cell[i]);
+    }
+    return sqrt(off / power);
+}
+
+static Status compare(Bench *bench, TrialScene *scene, SeekerRadar *radar, Arena *const arena[3])
+{
+    enum { settings = 2 };
+    const Weather weather = weather_default();
+    Snapshot      snapshot;
+    MergeWay      way[settings];
+    BenchWork     work[settings];
+    char          name[settings][64];
+    BenchSetting  point[settings];
+    Status        status = entity_table_snapshot(&snapshot, scene->table, scene->sun_now_s + 0.5, arena[2]);
+    const View    view = trial_view(scene, 4000, 400, 3 * rad_per_deg, 64, 64);
+    for (int k = 0; k < settings && status == STATUS_OK; k++) {
+        way[k] = (MergeWay){.radar = radar, .arena = arena[k],
+                            .scene = {.world = &scene->world, .snapshot = &snapshot, .view = &view, .hidden = -1,
+                                      .v_enu_mps = {0, 200, -20}, .reference_m = NAN, .t_s = 1, .weather = &weather,
+                                      .number = 1, .apart = k == 0}};
+        measure(&way[k]);
+        status = way[k].status;
+        work[k] = (BenchWork){measure, &way[k], 1};
+    }
+    if (status != STATUS_OK) return status;
+    for (int k = 0; k < settings; k++) {
+        snprintf(name[k], sizeof name[k], k ? "%d echoes" : "each centre: %d echoes", way[k].frame->echoes);
+        point[k] = (BenchSetting){.setting = name[k], .error = k ? apart(way[1].frame, way[0].frame) : 0, .is_default = k == 1};
+    }
+    bench_tunable(bench, &(BenchTunable){"echoes of a target that is hardly resolved", "sensor/radar/radar_merge.c",
+                                         "search_ku, a tank 4 km away, no ground", "", "map of four channels, of each centre's own", 0.02},
+                  work, point, settings);
+    return STATUS_OK;
+}
+
+Status precision_radar_merge(Bench *bench)
+{
+    const Geodetic origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
+    LocalFrame     frame;
+    Landscape      landscape = {0};
+    TrialScene     scene = {0};
+    SeekerRadar   *radar = NULL;
+    Arena         *arena[3] = {arena_create(), arena_create(), arena_create()};
+    char           catalog[4096];
+    double         times_s[2];
+    Status         status = arena[0] && arena[1] && arena[2] ? STATUS_OK : STATUS_NO_MEMORY;
+    bench_progress(bench, "echoes of a target that is hardly resolved");
+    if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
+    if (status == STATUS_OK) status = quick_landscape_create(&landscape, times_s, &frame, 6000, 6000, NULL);
+    if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = trial_scene_open(&scene, &landscape, catalog, &tank_type, 1, 0);
+    if (status == STATUS_OK)
+        status = seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = "search_ku", .catalog = catalog, .warp_m = 1e-3, .seed = 1});
+    if (status == STATUS_OK) status = compare(bench, &scene, radar, arena);
+    seeker_radar_destroy(radar);
+    trial_scene_close(&scene);
+    landscape_destroy(&landscape);
+    for (int k = 0; k < 3; k++) arena_destroy(arena[k]);
+    return status;
+}
