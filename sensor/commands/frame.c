@@ -10,7 +10,7 @@
 #include "sensor/publish/consumers.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/publish/records.h"
-#include "sensor/truth/frame_error.h"
+#include "sensor/truth/radar_error.h"
 #include "sensor/world/frame_radar.h"
 
 #include <errno.h>
@@ -131,6 +131,7 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
     char        path[path_size];
     Target     *target = arena_alloc(arena, (size_t)s->snapshot.count + 1, sizeof *target);
     FrameError  error;
+    RadarError  of_radar;
     const int   host = file->eye.host_index;
     if (!target) return STATUS_NO_MEMORY;
     FrameRecord record = {.frame = file->frame, .time_s = file->time_s, .snapshot = &s->snapshot, .catalog = s->catalog,
@@ -150,6 +151,10 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
                     s->config.models.sag_m, file->all_on_ground,
                     world_air_k(&s->world, file->unix_s + file->time_s)))
         record.error = &error;
+    if (file->request.budget && radar) {
+        radar_error(&of_radar, radar, &s->snapshot);
+        record.radar_error = &of_radar;
+    }
     if (snprintf(path, sizeof path, "%s/truth.jsonl", out) >= (int)sizeof path) return STATUS_BAD_VALUE;
     FILE  *to     = fopen(path, "w");
     Status status = to ? record_write_frame(to, &record) : STATUS_IO;
