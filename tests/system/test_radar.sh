@@ -99,8 +99,8 @@ run replay "$tmp/demo.pcap" --out "$tmp/bare" "${small[@]}" --from 1365 --set ra
 check "without ground: fewer echoes" [ "$(json_numbers "$tmp/bare/truth.jsonl" ground_cells | head -n 1)" = 0 ]
 # of the same entities: the ground in the map has no such error, their cross sections have it all the same
 share() { grep -o '"range_doppler":{[^}]*}' "$1/truth.jsonl" | tail -n 1 | sed -E "s/.*\"$2\":([^,}]*).*/\1/"; }
-bare=$(share "$tmp/bare" sampling) among=$(share "$tmp/two" sampling)
-check "the map's error by ray tubes: without ground $bare, with it $among: less" is "$bare" '>' "$among"
+without=$(share "$tmp/bare" sampling) with=$(share "$tmp/two" sampling)
+check "the map's error by ray tubes: without ground $without, with it $with: less" is "$without" '>' "$with"
 check "that of cross sections: the same" is "$(share "$tmp/bare" sampling_db)" == "$(share "$tmp/two" sampling_db)"
 python3 - "$tmp/one/truth.jsonl" <<'P' || fail "the truck that the missile flies to"
 import json, sys
