@@ -52,7 +52,7 @@ static void show_row(FILE *page, const BenchRow *row)
     cell(page, row->median, row->unit);
     cell(page, row->best, row->unit);
     cell(page, row->rate, row->rate_unit);
-    fputs("<td>", page);
+    fputs("<td style=\"white-space:nowrap\">", page);
     if (!isnan(row->ratio)) {
         html_text(page, "%.3g x %s", row->ratio, row->to ? row->to : "");
         if (row->to && strcmp(row->to, "frame") == 0) /* a share of the whole */

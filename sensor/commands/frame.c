@@ -10,7 +10,7 @@
 #include "sensor/publish/consumers.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/publish/records.h"
-#include "sensor/truth/frame_error.h"
+#include "sensor/truth/radar_error.h"
 #include "sensor/world/frame_radar.h"
 
 #include <errno.h>
@@ -131,6 +131,7 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
     char        path[path_size];
     Target     *target = arena_alloc(arena, (size_t)s->snapshot.count + 1, sizeof *target);
     FrameError  error;
+    RadarError  of_radar;
     const int   host = file->eye.host_index;
     if (!target) return STATUS_NO_MEMORY;
     FrameRecord record = {.frame = file->frame, .time_s = file->time_s, .snapshot = &s->snapshot, .catalog = s->catalog,
@@ -150,6 +151,10 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
                     s->config.models.sag_m, file->all_on_ground,
                     world_air_k(&s->world, file->unix_s + file->time_s)))
         record.error = &error;
+    if (file->request.budget && radar) {
+        radar_error(&of_radar, radar, &s->snapshot);
+        record.radar_error = &of_radar;
+    }
     if (snprintf(path, sizeof path, "%s/truth.jsonl", out) >= (int)sizeof path) return STATUS_BAD_VALUE;
     FILE  *to     = fopen(path, "w");
     Status status = to ? record_write_frame(to, &record) : STATUS_IO;
@@ -211,13 +216,14 @@ static Status write_products(const FrameOptions *o, const FrameFile *file, Frame
 /* ---- rendered again ----------------------------------------------------------------------------- */
 
 /* Measured again; differ grows by one where the map is another. */
-static Status measure(const RadarFrame **out, int *differ, const FrameFile *file, FrameScene *s, Pool *pool, Arena *arena)
+static Status measure(const RadarFrame **out, int *differ, const FrameFile *file, FrameScene *s, const Picture *picture,
+                      Pool *pool, Arena *arena)
 {
     bool         same;
     SeekerRadar *radar;
     Status       status = frame_radar_open(&radar, &s->config, "avx2", false);
     if (status != STATUS_OK) return status;
-    status = frame_radar_again(out, radar, file, &s->snapshot, &s->world, &s->config, pool, arena);
+    status = frame_radar_again(out, radar, file, &s->snapshot, &s->world, picture, &s->config, pool, arena);
     if (status == STATUS_OK) status = frame_radar_same(&same, file, *out);
     /* the preset is the radar's own */
     RadarPreset *preset = status == STATUS_OK ? arena_alloc(arena, 1, sizeof *preset) : NULL;
@@ -228,8 +234,12 @@ static Status measure(const RadarFrame **out, int *differ, const FrameFile *file
         *kept = **out;
         kept->preset = preset;
         *out = kept;
-        if (same) log_print("the same: the radar's map, to the bit; %d detections\n", kept->detections_in_all);
-        else log_error("frame: the radar's map differs; %d detections, were %d", kept->detections_in_all, file->radar.detections);
+        if (same)
+            log_print("the same: the radar's map%s, to the bit; %d detections\n", kept->scan ? " and scan" : "",
+                      kept->detections_in_all);
+        else
+            log_error("frame: the radar's map%s differs; %d detections, were %d", kept->scan ? " or scan" : "",
+                      kept->detections_in_all, file->radar.detections);
         *differ += !same;
     }
     seeker_radar_destroy(radar);
@@ -252,7 +262,7 @@ static Status show(int *differ, const FrameOptions *o, const FrameFile *file, Fr
                    again->made.sha256, file->frame_sha256,
                    strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : "; another version of pitviper made it");
     const RadarFrame *radar = NULL;
-    if (file->measured) status = measure(&radar, differ, file, s, pool, arena);
+    if (file->measured) status = measure(&radar, differ, file, s, &again->picture, pool, arena);
     return status == STATUS_OK && o->out ? write_products(o, file, s, again, radar, pool, arena) : status;
 }
 

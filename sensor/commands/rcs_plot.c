@@ -3,7 +3,7 @@
 
 #include "sensor/publish/html.h"
 
-enum { width_px = 760, height_px = 640, middle_x = 320, middle_y = 344, radius_px = 252 };
+enum { width_px = 800, height_px = 640, middle_x = 320, middle_y = 344, radius_px = 252, legend_x = width_px - 206 };
 
 static const char style[] =
     "<style>.pvr text{font:12px system-ui,'DejaVu Sans',sans-serif}.pvr text.h{font-weight:600;font-size:14px}"
@@ -72,7 +72,7 @@ static void draw_curve(FILE *to, const RcsSweep *sweep, const Rings *rings, int 
     }
     fprintf(to, "\"/>\n<path fill=\"none\" stroke-width=\"2\" stroke=\"%s\" d=\"M%d %dh22\"/>"
                 "<text class=\"t\" fill=\"#222\" x=\"%d\" y=\"%d\">%s, mean %.1f dBsm</text>\n",
-            colours[p], width_px - 168, y, width_px - 140, y + 4, names[p],
+            colours[p], legend_x, y, legend_x + 28, y + 4, names[p],
             mean_m2 > 0 ? 10 * log10(mean_m2) : -INFINITY);
 }
 
@@ -97,7 +97,6 @@ void rcs_plot(FILE *to, const RcsSweep *sweep)
     for (int p = 0; p < 2; p++) draw_curve(to, sweep, &rings, p);
     if (!isnan(sweep->grid_db))
         fprintf(to, "<text class=\"d\" fill=\"#666\" x=\"%d\" y=\"%d\">another grid of tubes: %.0f dB</text>\n",
-                width_px - 168, 144,
-                sweep->grid_db);
+                legend_x, 144, sweep->grid_db);
     fputs("</svg>\n", to);
 }

@@ -2,6 +2,7 @@
 #include "sensor/framefile/frame_radar_file.h"
 
 #include "sensor/framefile/frame_fields.h"
+#include "sensor/publish/plane_hash.h"
 #include "sensor/publish/radar_record.h"
 #include "sensor/world/frame_world.h"
 
@@ -20,6 +21,18 @@ void frame_fields_radar(Fields *f, FrameFile *file)
     for (int n = 0; n < r->joint_count && fields_good(f); n++) field_real(f, "a joint", &r->joint[n], -1e12, 1e12);
 }
 
+/* SHA-256 of the map; with a scan, of the map and both its images over range and azimuth. */
+static Status hash_of(char out[sha256_text_size], const RadarFrame *r)
+{
+    const RadarScan *s = r->scan;
+    if (!s) return radar_map_sha256(out, r);
+    const int   rows = interval_channels * r->map.rows;
+    const Plane plane[] = {{"range_doppler", PLANE_F64, 2 * r->map.columns, rows, r->map.cell},
+                           {"scan", PLANE_F64, s->columns, s->plan.positions, s->power_w},
+                           {"dbs", PLANE_F64, s->columns, s->azimuths, s->sharp_w}};
+    return plane_hash(out, plane, 3);
+}
+
 Status frame_radar_gather(FrameFile *file, const RadarFrame *radar, double *joint)
 {
     FrameRadar *r = &file->radar;
@@ -28,17 +41,18 @@ Status frame_radar_gather(FrameFile *file, const RadarFrame *radar, double *join
                       .joint_count = file->snapshot.node_count, .joint = joint, .detections = radar->detections_in_all};
     memcpy(r->v_enu_mps, radar->v_enu_mps, sizeof r->v_enu_mps);
     memcpy(r->aim_v_enu_mps, radar->aim_v_enu_mps, sizeof r->aim_v_enu_mps);
-    return radar_map_sha256(r->map_sha256, radar);
+    return hash_of(r->map_sha256, radar);
 }
 
 Status frame_radar_again(const RadarFrame **out, SeekerRadar *radar, const FrameFile *file, const Snapshot *snapshot,
-                         const World *world, const Config *config, Pool *pool, Arena *arena)
+                         const World *world, const Picture *picture, const Config *config, Pool *pool, Arena *arena)
 {
     const FrameRadar *r = &file->radar;
     const Weather     weather = frame_weather_at(config, world, file->unix_s + file->time_s);
     RadarScene        scene = {.world = world, .snapshot = snapshot, .joint = r->joint, .view = &file->request.view,
                                .hidden = file->request.hidden_entity, .reference_m = r->has_aim ? r->aim_m : NAN,
-                               .t_s = file->time_s, .weather = &weather, .number = r->number};
+                               .t_s = file->time_s, .weather = &weather, .number = r->number,
+                               .range_m = picture->range_m, .entity = picture->entity};
     memcpy(scene.v_enu_mps, r->v_enu_mps, sizeof scene.v_enu_mps);
     memcpy(scene.reference_v_enu_mps, r->aim_v_enu_mps, sizeof scene.reference_v_enu_mps);
     return seeker_radar_measure(out, radar, &scene, pool, arena);
@@ -47,7 +61,7 @@ Status frame_radar_again(const RadarFrame **out, SeekerRadar *radar, const Frame
 Status frame_radar_same(bool *same, const FrameFile *file, const RadarFrame *radar)
 {
     char         hash[sha256_text_size];
-    const Status status = radar_map_sha256(hash, radar);
+    const Status status = hash_of(hash, radar);
     *same = status == STATUS_OK && strcmp(hash, file->radar.map_sha256) == 0 && radar->detections_in_all == file->radar.detections;
     return status;
 }

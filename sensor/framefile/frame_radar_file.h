@@ -8,10 +8,10 @@
 
 /* Of a frame with one; joint: values of all nodes' joints of its snapshot. */
 Status frame_radar_gather(FrameFile *file, const RadarFrame *radar, double *joint);
-/* Measured again, by a radar of the file's settings. */
+/* Measured again, by a radar of the file's settings. picture: rendered again, for what a scan shows on its pixels. */
 Status frame_radar_again(const RadarFrame **out, SeekerRadar *radar, const FrameFile *file, const Snapshot *snapshot,
-                         const World *world, const Config *config, Pool *pool, Arena *arena);
-/* Whether it is the file's to the bit. */
+                         const World *world, const Picture *picture, const Config *config, Pool *pool, Arena *arena);
+/* Whether its map, and its scan, are the file's to the bit. */
 Status frame_radar_same(bool *same, const FrameFile *file, const RadarFrame *radar);
 
 #endif

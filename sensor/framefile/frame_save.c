@@ -160,7 +160,8 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Se
     if (status == STATUS_OK) *same = frame_differences(&file, &again->made, false) == 0;
     if (*same && radar) {
         *same = false;
-        status = frame_radar_again(&measured, radar, &file, &file.snapshot, &world, save->config, save->pool, arena);
+        status = frame_radar_again(&measured, radar, &file, &file.snapshot, &world, &again->picture, save->config,
+                                   save->pool, arena);
         if (status == STATUS_OK) status = frame_radar_same(same, &file, measured);
     }
     world_close(&world);

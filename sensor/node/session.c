@@ -127,6 +127,10 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
                                              target, r->target_count, shared->config->models.sag_m,
                                              shared->contact == GROUND_CONTACT_ALL, world_air_k(shared->world, f->unix_s)))
         r->error = &f->error;
+    if (s->wants & WANT_ERROR && f->request.budget && f->radar) {
+        radar_error(&f->radar_error, f->radar, &seen->snapshot);
+        r->radar_error = &f->radar_error;
+    }
     return STATUS_OK;
 }
 

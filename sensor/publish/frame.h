@@ -65,6 +65,7 @@ struct Frame {
     Sun               sun;
     const RadarFrame *radar;             /* NULL: no radar was asked for */
     FrameError        error;
+    RadarError        radar_error;
     FrameRecord       record;            /* its lists and all fields of truth.jsonl; frame_sha256 is NULL */
     Provenance        provenance;
     bool              buried;            /* the sensor was below the ground */

@@ -158,22 +158,30 @@ static json_t *target_json(const TargetRecord *t)
     return target;
 }
 
-/* rms over the image as a share of the band's mean, by source; _k: the same in kelvin about that mean. */
-static json_t *error_json(const FrameRecord *r)
+/* By source: as a share, and the same in a unit. */
+static void set_error(json_t *error, const char *of, const double share[error_sources],
+                      const double same[error_sources], const char *unit)
 {
     static const char *const name[error_sources] = {"sampling", "level_of_detail", "table", "heat", "dead_reckoning", "total"};
-    json_t *error = json_object();
-    for (int b = 0; b < BAND_COUNT; b++) {
-        char    kelvin[32];
-        json_t *band = json_object();
-        for (int s = 0; s < error_sources; s++) {
-            snprintf(kelvin, sizeof kelvin, "%s_k", name[s]);
-            set_number(band, name[s], r->error->share[b][s]);
-            set_number(band, kelvin, r->error->kelvin[b][s]);
-        }
-        if (json_object_size(band) > 0) json_object_set_new(error, band_name((Band)b), band);
-        else json_decref(band);
+    json_t *band = json_object();
+    char    key[32];
+    for (int s = 0; s < error_sources; s++) {
+        snprintf(key, sizeof key, "%s_%s", name[s], unit);
+        set_number(band, name[s], share[s]);
+        set_number(band, key, same[s]);
     }
+    if (json_object_size(band) > 0) json_object_set_new(error, of, band);
+    else json_decref(band);
+}
+
+/* rms over the image as a share of the band's mean; _k: the same in kelvin about that mean. Of the radar over its map;
+ * _db: of an entity's cross section. */
+static json_t *error_json(const FrameRecord *r)
+{
+    json_t *error = json_object();
+    for (int b = 0; b < BAND_COUNT && r->error; b++)
+        set_error(error, band_name((Band)b), r->error->share[b], r->error->kelvin[b], "k");
+    if (r->radar_error) set_error(error, "range_doppler", r->radar_error->share, r->radar_error->db, "db");
     return error;
 }
 
@@ -191,7 +199,7 @@ char *record_frame_text(const FrameRecord *r)
     json_object_set_new(line, "sensors", sensors);
     for (int i = 0; i < r->target_count; i++) json_array_append_new(targets, target_json(&r->target[i]));
     json_object_set_new(line, "targets", targets);
-    if (r->error) json_object_set_new(line, "error", error_json(r));
+    if (r->error || r->radar_error) json_object_set_new(line, "error", error_json(r));
     if (r->radar) json_object_set_new(line, "radar", radar_record_json(r->radar, r->snapshot, r->catalog));
 
     char *text = json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15));

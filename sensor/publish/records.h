@@ -13,7 +13,7 @@
 #include "sensor/truth/footprint.h"
 #include "sensor/publish/target_record.h"
 #include "sensor/publish/latency.h"
-#include "sensor/truth/frame_error.h"
+#include "sensor/truth/radar_error.h"
 #include "terrain/earth/sun.h"
 #include "terrain/woods/woods.h"
 
@@ -37,6 +37,7 @@ typedef struct FrameRecord {
     int                   target_count;
     const char           *frame_sha256; /* NULL: not given */
     const FrameError     *error;        /* NULL: not given */
+    const RadarError     *radar_error;  /* likewise */
     const GroundPoint    *footprint;    /* [FOOTPRINT_COUNT]; NULL: not requested */
     const RadarFrame     *radar;        /* NULL: none */
 } FrameRecord;

@@ -63,26 +63,13 @@ static bool find_ground(Bounce *b, double p_enu[3], const Making *m, const Targe
 /* Whether the antenna sees the reflection: within its beam, and nothing but the entity itself before it. */
 static bool reflection_is_seen(const Making *m, const Target *t, const Bounce *b, const double p_enu[3])
 {
-    static _Thread_local Rays rays;
-    static _Thread_local Hits hits;
-    VisibilityCounters        counters = {0};
-    Sight                     to;
+    const double own_m = fmax(slack_m, slack_height_m / -v3_dot(b->plane.n, b->image.u));
+    bool         hidden;
+    Sight        to;
     making_sight(&to, m, p_enu, m->half_window_m);
     if (!(v3_dot(to.d_enu, m->ahead) > 0) || making_off_axis(m, &to) > m->widest) return false;
-    rays.count = 1;
-    rays.columns = 0;
-    rays.far_m[0] = to.range_m;
-    for (int k = 0; k < 3; k++) {
-        rays.o_enu[k][0] = m->p_enu[k];
-        rays.d_enu[k][0] = to.d_enu[k];
-    }
-    visibility_first_hit(&hits, m->visibility, &rays, NULL, -1, m->scene->hidden, &counters);
-    const double own_m = fmax(slack_m, slack_height_m / -v3_dot(b->plane.n, b->image.u));
-    for (int i = 0; i < hits.count; i++) {
-        const bool before = hits.kind[i] != hit_sky && hits.range_m[i] < to.range_m - own_m;
-        if (before && (int)hits.entity[i] != t->index + 1) return false;
-    }
-    return true;
+    making_hidden(&hidden, m, m->p_enu, &to, &own_m, 1, t->index);
+    return !hidden;
 }
 
 /* ---- echoes ------------------------------------------------------------------------------------------- */

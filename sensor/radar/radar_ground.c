@@ -71,33 +71,13 @@ static void place_block(Ground *g, const GroundJob *job, int first, int end)
     }
 }
 
-void making_hidden(bool *hidden, const Making *m, const Sight *sight, int count, double slack_m)
-{
-    static _Thread_local Rays rays;
-    static _Thread_local Hits hits;
-    VisibilityCounters        counters = {0};
-    rays.count = count;
-    rays.columns = 0;
-    for (int i = 0; i < count; i++) {
-        hidden[i] = false;
-        rays.far_m[i] = sight[i].range_m;
-        for (int k = 0; k < 3; k++) {
-            rays.o_enu[k][i] = m->scene->view->p_enu[k];
-            rays.d_enu[k][i] = sight[i].d_enu[k];
-        }
-    }
-    visibility_first_hit(&hits, m->visibility, &rays, NULL, -1, m->scene->hidden, &counters);
-    for (int i = 0; i < hits.count; i++) {
-        const int ray = hit_ray(&hits, i);
-        if (hits.kind[i] != hit_sky && sight[ray].range_m - hits.range_m[i] > slack_m) hidden[ray] = true;
-    }
-}
-
 /* Takes out what relief or entities hide. */
 static void drop_hidden(Ground *g, const Making *m, int *hidden)
 {
-    bool out[block];
-    making_hidden(out, m, g->sight, g->count, sight_slack_m);
+    bool   out[block];
+    double slack_m[block];
+    for (int i = 0; i < g->count; i++) slack_m[i] = sight_slack_m;
+    making_hidden(out, m, m->scene->view->p_enu, g->sight, slack_m, g->count, -1);
     int kept = 0;
     for (int i = 0; i < g->count; i++) {
         if (out[i]) continue;

@@ -15,31 +15,18 @@ typedef struct Lines {
 
 static void look_along(void *user, int worker, int task)
 {
-    static _Thread_local Rays rays;
-    static _Thread_local Hits hits;
-    const Lines              *l = user;
-    const Making             *m = l->making;
-    VisibilityCounters        counters = {0};
-    const int first = task * block_rays, left = l->count - first;
+    static const double no_slack_m[block_rays];
+    const Lines        *l = user;
+    const double       *p = l->making->scene->view->p_enu;
+    const int first = task * block_rays, left = l->count - first, count = left < block_rays ? left : block_rays;
+    Sight               sight[block_rays];
     (void)worker;
-    rays.count = left < block_rays ? left : block_rays;
-    rays.columns = 0;
-    for (int i = 0; i < rays.count; i++) {
-        double d[3];
-        v3_sub(d, l->p_enu[first + i], m->scene->view->p_enu);
-        rays.far_m[i] = v3_length(d);
-        v3_normalize(d, d);
-        for (int k = 0; k < 3; k++) {
-            rays.o_enu[k][i] = m->scene->view->p_enu[k];
-            rays.d_enu[k][i] = d[k];
-        }
+    for (int i = 0; i < count; i++) {
+        v3_sub(sight[i].d_enu, l->p_enu[first + i], p);
+        sight[i].range_m = v3_length(sight[i].d_enu);
+        v3_normalize(sight[i].d_enu, sight[i].d_enu);
     }
-    visibility_first_hit(&hits, m->visibility, &rays, NULL, -1, m->scene->hidden, &counters);
-    for (int i = 0; i < hits.count; i++) {
-        const int ray = hit_ray(&hits, i);
-        if (hits.kind[i] != hit_sky && hits.range_m[i] < rays.far_m[ray] && (int)hits.entity[i] != l->entity + 1)
-            l->hidden[first + ray] = true;
-    }
+    making_hidden(l->hidden + first, l->making, p, sight, no_slack_m, count, l->entity);
 }
 
 /* Puts centres into cells, body axes: of[i] is that of centre i; returns how many there are. middle: mean position of a
@@ -89,7 +76,6 @@ Status radar_sight_centres(bool *seen, const Making *m, int entity, const double
         v3_scale(p_body, weight[i] > 0 ? 1 / weight[i] : 0, lines.p_enu[i]);
         m3_mul_v3(lines.p_enu[i], r_enu_from_body, p_body);
         v3_add(lines.p_enu[i], lines.p_enu[i], p_enu);
-        lines.hidden[i] = false;
     }
     const int tasks = (lines.count + block_rays - 1) / block_rays;
     if (m->pool) pool_run(m->pool, tasks, look_along, &lines);

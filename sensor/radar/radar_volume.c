@@ -78,8 +78,12 @@ int making_keep(RadarPoint *out, VolumePoint *point, int count, const Making *m,
 {
     static _Thread_local Sight sight[hits_capacity];
     static _Thread_local bool  hidden[hits_capacity];
-    for (int i = 0; i < count; i++) sight[i] = point[i].sight;
-    making_hidden(hidden, m, sight, count, slack_m);
+    static _Thread_local double slacks_m[hits_capacity];
+    for (int i = 0; i < count; i++) {
+        sight[i] = point[i].sight;
+        slacks_m[i] = slack_m;
+    }
+    making_hidden(hidden, m, m->scene->view->p_enu, sight, slacks_m, count, -1);
     int kept = 0;
     for (int i = 0; i < count; i++) {
         if (hidden[i]) continue;

@@ -121,8 +121,10 @@ Status making_bounce(Making *making, const Target *target, const ScatterMatrix *
  * meets the entity itself first is clear. Those of many mirrors stand for the middle of their path. */
 Status radar_sight_centres(bool *seen, const Making *making, int entity, const double p_enu[3], const double r_enu_from_body[9],
                            const Centres *centres);
-/* Where relief or an entity is met more than slack_m before the place that a sight leads to. count: up to hits_capacity. */
-void making_hidden(bool *hidden, const Making *making, const Sight *sight, int count, double slack_m);
+/* Where relief, a plant or an entity is met more than slack_m[i] before the place that sight[i] leads to from from_enu.
+ * own: snapshot index of an entity that is in nothing's way, -1: none. count: up to hits_capacity. */
+void making_hidden(bool *hidden, const Making *making, const double from_enu[3], const Sight *sight,
+                   const double *slack_m, int count, int own);
 /* Sets near_m and far_m about reference_m. */
 void making_reach(Making *making);
 /* Rectangle in plan about what the main lobe lights within the window. */

@@ -197,21 +197,28 @@ static bool path_of(char path[4096], const SignatureLibrary *l, const char name[
     return snprintf(path, 4096, "%s/%s.sig", l->folder, name) < 4096;
 }
 
-static bool fetch(void *user, Signature *out, const SignatureKey *key)
+/* *out: count, centres and tubes' fields of the file. False: it is not there, or, as is said, damaged. */
+static bool read_file(Signature *out, SignatureLibrary *l, const SignatureKey *key)
 {
-    SignatureLibrary *l = user;
     char              name[sha256_text_size], path[4096];
     size_t            count = 0;
     if (name_of(name, l, key) != STATUS_OK || !path_of(path, l, name)) return false;
     uint8_t *octets = read_whole(&count, path);
     if (!octets) return false;
-    const SignatureCells cells = signature_default_cells(l->config.frequency_hz, l->config.bandwidth_hz, l->config.aspect_rad,
-                                                         l->config.interval_s);
-    Signature    read = {.tx = key->look.tx, .rx = key->look.rx};
-    const Status status = signature_from_octets(&read, octets, count, name, key->model->part_count);
+    const Status status = signature_from_octets(out, octets, count, name, key->model->part_count);
     free(octets);
     if (status == STATUS_BAD_VALUE) refused(l, path);
-    if (status != STATUS_OK) return false;
+    return status == STATUS_OK;
+}
+
+static bool fetch(void *user, Signature *out, const SignatureKey *key)
+{
+    SignatureLibrary       *l = user;
+    const SignaturesConfig *c = &l->config;
+    const SignatureCells    cells =
+        signature_default_cells(c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->interval_s);
+    Signature read = {.tx = key->look.tx, .rx = key->look.rx};
+    if (!read_file(&read, l, key)) return false;
     signature_axes(&read, &cells);
     *out = read;
     return true;
@@ -255,8 +262,10 @@ static void keep(void *user, const Signature *signature, const SignatureKey *key
 
 bool signature_library_has(SignatureLibrary *l, const SignatureKey *key)
 {
-    char name[sha256_text_size], path[4096];
-    return name_of(name, l, key) == STATUS_OK && path_of(path, l, name) && access(path, R_OK) == 0;
+    Signature  read = {0};
+    const bool has = read_file(&read, l, key);
+    signature_free(&read);
+    return has;
 }
 
 /* ---- the interface ---------------------------------------------------------------------------------- */

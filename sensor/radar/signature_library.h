@@ -25,7 +25,7 @@ Status signature_library_open(SignatureLibrary **out, const char *folder, const 
 void   signature_library_close(SignatureLibrary *library); /* accepts NULL */
 /* For signatures_create; valid until the library is closed. */
 SignatureStore signature_library_store(SignatureLibrary *library);
-/* Whether it has a file of that name; nothing is read. */
+/* Whether it has its file, and that is whole: it is read. */
 bool   signature_library_has(SignatureLibrary *library, const SignatureKey *key);
 /* Octets written; files that were refused. */
 typedef struct SignatureLibraryCounters {

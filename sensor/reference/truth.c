@@ -21,7 +21,10 @@ const Reference reference_products = {
         "    profiles/radar/NNNNNN.csv        help profile   pseudo-radar power over range\n"
         "    radar/NNNNNN.csv                 help radar     range profile of a radar with phase; radar.preset\n"
         "    radar/NNNNNN.exr, .png           help radar-map its map of range and Doppler\n"
-        "    radar/NNNNNN_scan.*, _dbs.*, _view.* help radar-scan its scan; radar.scan_deg\n"
+        "    radar/NNNNNN_scan.exr, .png      help radar-scan its scan, real beam; radar.scan_deg\n"
+        "    radar/NNNNNN_dbs.exr, .png       help radar-scan the same sharpened by Doppler\n"
+        "    radar/NNNNNN_dbs.csv             help radar-azimuths  its resolution over azimuth\n"
+        "    radar/NNNNNN_view.exr, _view_*.png help radar-scan both on the pixels of the bands\n"
         "    pairs.jsonl, pairs/              help pairs     each frame without its target, without noise; --pairs\n"
         "    coco.json                        help coco      boxes and masks; --coco\n"
         "    manifest.jsonl, V/variant.json   help manifest  of --sweep: a line per variant; V/ is a folder of "
@@ -167,6 +170,21 @@ static const ReferenceField fields[] = {
     {"error.BAND.heat_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"error.BAND.dead_reckoning_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"error.BAND.total_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
+    {"error.range_doppler", "object", "", "", "with radar.preset none",
+     "the same of the radar's map, rms over the cells of its sum channel"},
+    {"error.range_doppler.sampling", "number", "", "share of the cells' rms", "", "grid of ray tubes on entities"},
+    {"error.range_doppler.level_of_detail", "number", "", "share of the cells' rms", "",
+     "scattering centres in place of what the tubes hit"},
+    {"error.range_doppler.table", "number", "", "share of the cells' rms", "",
+     "gridding of echoes over delay and Doppler"},
+    {"error.range_doppler.dead_reckoning", "number", "", "share of the cells' rms", "",
+     "position errors of dead-reckoned entities along the line of sight: of the cells' magnitudes"},
+    {"error.range_doppler.total", "number", "", "share of the cells' rms", "", "total of these"},
+    {"error.range_doppler.sampling_db", "number", "dB", "", "without an entity in sight, or of given signatures alone",
+     "the same of an entity's cross section, and of a detection's: one standard deviation"},
+    {"error.range_doppler.level_of_detail_db", "number", "dB", "", "likewise", "likewise"},
+    {"error.range_doppler.table_db", "number", "dB", "", "likewise", "likewise"},
+    {"error.range_doppler.total_db", "number", "dB", "", "likewise", "likewise, of these three"},
     {"radar", "object", "", "", "with radar.preset none", "what the radar on the sensor's axis measured, and the truth of it"},
     {"radar.preset", "string", "", "", "", "row of etc/radars.csv or radar.table"},
     {"radar.waveform", "object", "", "", "", "its times, and what they limit (etc/reference/radar_waveforms.md)"},

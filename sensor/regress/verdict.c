@@ -33,8 +33,8 @@ static const struct ChannelRow {
                          4},
     [CHANNEL_MWIR] = {"mwir", "radiance at the sensor as apparent temperature, 3.4-4.8 um", "K", {FRAME_MWIR}, 1},
     [CHANNEL_LWIR] = {"lwir", "radiance at the sensor as apparent temperature, 8-12 um", "K", {FRAME_LWIR}, 1},
-    [CHANNEL_RADAR] = {"radar", "radar power of each pixel, relative to the brightest of the "
-                       "baseline", "dB", {FRAME_RADAR}, 1},
+    [CHANNEL_RADAR] = {"radar", "of the band, power of each pixel, relative to the brightest of the baseline; of "
+                       "radar.preset, detections and truth", "dB", {FRAME_RADAR}, 1},
     [CHANNEL_PROFILE] = {"radar profile", "radar power over range, relative to the largest of the "
                          "baseline", "dB", {0}, 0},
     [CHANNEL_SIGNALS] = {"target signals", "contrast, signal-to-noise ratio and intensity of each target", "", {0}, 0},

@@ -44,6 +44,38 @@ again radar --out "$tmp/radar_again"
 check "radar: the same map" grep -q "the same: the radar's map, to the bit; [1-9]" "$tmp/stdout"
 check "radar: truth.jsonl is the replay's" cmp "$tmp/radar/truth.jsonl" "$tmp/radar_again/truth.jsonl"
 for file in radar/000012.csv radar/000012.exr; do check "radar: $file" cmp "$tmp/radar/$file" "$tmp/radar_again/$file"; done
+# the same with a scan: over range and azimuth, and on the pixels
+printf 'x_m,y_m,z_m,hh_dbsm,vv_dbsm\n0,0,-1,20,20\n' >"$tmp/point.csv"
+printf 'entity,signature\n*,point.csv\n' >"$tmp/given.csv"
+saved scan "$tmp/demo.pcap" 12 --bands radar --set radar.preset=search_ku --set radar.scan_deg=4 \
+    --set radar.given="$tmp/given.csv"
+again scan --out "$tmp/scan_again"
+check "scan: the same map and scan" grep -q "the same: the radar's map and scan, to the bit; [1-9]" "$tmp/stdout"
+check "scan: truth.jsonl is the replay's" cmp "$tmp/scan/truth.jsonl" "$tmp/scan_again/truth.jsonl"
+check "scan: its files are the replay's" diff -r "$tmp/scan/radar" "$tmp/scan_again/radar"
+# all files of a scan, and no others; the next run clears them away, and leaves what is not of a run
+files="000012.csv 000012.exr 000012.png 000012_dbs.csv 000012_dbs.exr 000012_dbs.png 000012_scan.exr 000012_scan.png"
+files+=" 000012_view.exr 000012_view_dbs.png 000012_view_scan.png"
+check "scan: its files have these names" [ "$(ls "$tmp/scan/radar" | tr '\n' ' ')" = "$files " ]
+patterns=()
+while read -ra words; do
+    for word in "${words[@]}"; do
+        word=${word%,}
+        case $word in
+            radar/NNNNNN*) word=${word#radar/NNNNNN}; stem=${word%.*} ;;
+            .*) word=$stem$word ;;
+            _*) ;;
+            *) break ;;
+        esac
+        patterns+=("$word")
+    done
+done < <("$pitviper" help products | grep '^ *radar/NNNNNN')
+listed() { for p in "${patterns[@]}"; do [[ $1 == $p ]] && return; done; false; }
+for file in $files; do check "scan: help products lists ${file#000012}" listed "${file#000012}"; done
+check "scan: help products lists nothing else" not listed _scan.csv
+echo mine >"$tmp/scan/radar/000012_mine.png"
+run replay "$tmp/demo.pcap" --out "$tmp/scan" --size 32x24 --only 3 --bands radar --overwrite
+check "scan: the next run clears its files away, and no others" [ "$(ls "$tmp/scan/radar")" = 000012_mine.png ]
 for band in swir mwir lwir radar truth; do
     png=frames/$band/000012.png
     check "products: $band.png is the replay's" cmp "$tmp/demo/$png" "$tmp/again/$png"

@@ -53,8 +53,19 @@ good &= abs(got["rcs_dbsm"] - target["rcs_dbsm"]["hh"]) < 0.2   # I and Q differ
 good &= got["snr_db"] > 45                                      # over what phase noise and windows leave of so strong an echo
 good &= abs(got["range_m"] - (range_m - 1.78)) < 0.5            # its front; cells are 7.5 m
 good &= abs(got["az_deg"] - target["az_deg"]) < 0.05 and abs(got["range_rate_mps"]) < 0.3
+# almost all of the map is this echo, so that its error is the map's; transmitted h
+error = frame["error"]["range_doppler"]
+own = math.hypot((10 ** (0.1 * target["rcs_error_db"]["hh"]) - 1) / math.sqrt(2), error["level_of_detail"])
+print("error of the map: " + ", ".join("%s %.2g" % pair for pair in error.items()) + "; of the sphere %.2g" % own)
+both = ("sampling", "level_of_detail", "table", "total")
+good &= set(error) == {s + unit for s in both for unit in ("", "_db")} | {"dead_reckoning"}
+good &= abs(error["sampling_db"] - target["rcs_error_db"]["hh"]) < 1e-9 and abs(error["total"] / own - 1) < 0.1
+good &= abs(sum(error[s] ** 2 for s in both[:3] + ("dead_reckoning",)) / error["total"] ** 2 - 1) < 1e-9
 sys.exit(not good)
 P
+replay "$tmp/ball.pcap" "$tmp/plain" "${seen[@]}" --only 5 --set radar.preset=search_ku --set radar.ground=false \
+    --set quality.budget=off
+check "without a budget no error is given" [ $code = 0 -a "$(grep -c '"error"' "$tmp/plain/truth.jsonl")" = 0 ]
 
 # the same by way of the ground: a sphere returns a / 2 at any of these angles, so of a ground that mirrors G once gives 4 G^2 and
 # both ways G^4 of its cross section; all that is found in one cell is all four paths
@@ -86,6 +97,11 @@ check "the last frame alone, two threads, no skips: the same bits" \
     [ -n "$(map "$tmp/two")" -a "$(map "$tmp/two")" = "$(map "$tmp/one" | tail -n 1)" ]
 run replay "$tmp/demo.pcap" --out "$tmp/bare" "${small[@]}" --from 1365 --set radar.ground=false
 check "without ground: fewer echoes" [ "$(json_numbers "$tmp/bare/truth.jsonl" ground_cells | head -n 1)" = 0 ]
+# of the same entities: the ground in the map has no such error, their cross sections have it all the same
+share() { grep -o '"range_doppler":{[^}]*}' "$1/truth.jsonl" | tail -n 1 | sed -E "s/.*\"$2\":([^,}]*).*/\1/"; }
+without=$(share "$tmp/bare" sampling) with=$(share "$tmp/two" sampling)
+check "the map's error by ray tubes: without ground $without, with it $with: less" is "$without" '>' "$with"
+check "that of cross sections: the same" is "$(share "$tmp/bare" sampling_db)" == "$(share "$tmp/two" sampling_db)"
 python3 - "$tmp/one/truth.jsonl" <<'P' || fail "the truck that the missile flies to"
 import json, sys
 good = 0

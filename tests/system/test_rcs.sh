@@ -87,6 +87,40 @@ check "beyond its limits" complained '91 is outside its limits, -90 .. 90'
 run rcs "${turned[@]}" -o "$tmp/wrong" --joint sail
 check "no value" [ $code = 2 ] && complained 'needs NAME=VALUE'
 
+# a library of signatures: interrupted, it goes on where it was, to the same bits; what is whole is left as it is, what
+# is cut short is made again
+bins=(rcs truck --preset search_ku --azimuth 20:21 --elevation 5.2 --range 1000)
+run "${bins[@]}" --library "$tmp/whole"
+check "a library: exit code" [ $code = 0 ] || cat "$tmp/stderr"
+check "a library: what was made" said 'truck for search_ku: [1-9][0-9]* bins, [1-9][0-9]* made'
+count=$(find "$tmp/whole" -name '*.sig' | wc -l)
+check "a library: a file a bin" said "truck for search_ku: $count bins, $count made"
+check "a library: and nothing else" [ "$count" -ge 4 -a "$(find "$tmp/whole" -type f | wc -l)" = "$count" ]
+"$pitviper" "${bins[@]}" --library "$tmp/part" >/dev/null 2>&1 &
+going=$!
+for _ in $(seq 600); do [ "$(find "$tmp/part" -name '*.sig' 2>/dev/null | wc -l)" -ge 1 ] && break; sleep 0.05; done
+kill -KILL $going 2>/dev/null; wait $going 2>/dev/null
+made=$(find "$tmp/part" -name '*.sig' | wc -l)
+check "a library: it was interrupted after $made of $count" [ "$made" -ge 1 -a "$made" -lt "$count" ]
+find "$tmp/part" -name '*.part' -delete
+stamps() { (cd "$tmp/part" && stat -c '%n %i %y' "$@"); }
+mapfile -t there < <(cd "$tmp/part" && ls -- *.sig)
+before=$(stamps "${there[@]}")
+run "${bins[@]}" --library "$tmp/part"
+check "a library: resumed" [ $code = 0 ]
+check "a library: only what was missing is made" said "$count bins, $((count - made)) made"
+check "a library: what was there is left as it is" [ "$(stamps "${there[@]}")" = "$before" ]
+check "a library: as if never interrupted" diff -r "$tmp/whole" "$tmp/part"
+mapfile -t there < <(cd "$tmp/part" && ls -- *.sig)
+truncate -s -1 "$tmp/part/${there[0]}"
+: >"$tmp/part/${there[1]}"
+run "${bins[@]}" --library "$tmp/part"
+check "a library, two files cut short: both are made again" said "$count bins, 2 made"
+check "a library, two files cut short: it is said" complained "${there[0]%.sig}.*damaged|${there[1]%.sig}.*damaged"
+check "a library, two files cut short: whole again" diff -r "$tmp/whole" "$tmp/part"
+run "${bins[@]}" --library "$tmp/part"
+check "a library that is whole: nothing is made" said "$count bins, 0 made"
+
 run rcs frigate9 -o "$tmp/none"
 check "no such model: exit code" [ $code = 1 ]
 check "no such model: said" complained "no built-in model of this name: 'frigate9'"

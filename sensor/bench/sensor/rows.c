@@ -18,9 +18,11 @@ const BenchSuite sensor_benches[] = {
      .run = bench_speed,
      .reads =
          "Frames are whole, planes of truth and all, handed over in memory; stages are of one thread, where they add "
-         "up to the frame (bars: their share), and `rays alone` is the least that a frame could take."},
+         "up to the frame (bars: their share), and `rays alone` is the least that a frame could take. Rows of the "
+         "radar are of one with phase: its targets, and whole updates."},
     {.name = "speed",
-     .help = "a 94 GHz seeker's radar: a target in a new bin of aspect and in one at hand, ten of them with clutter",
+     .help = "a 94 GHz seeker's radar: a target in a new bin of aspect and in one at hand, ten of them with clutter; "
+             "what the ground's mirror costs",
      .run = bench_speed_radar},
     {.name = "woods",
      .options = "trees=N: at most; 3000000,level1-px=PX: plants lower than this are simplified; 24",

@@ -301,7 +301,9 @@ static Status time_updates(RadarSpeed *r, TrialScene *scene, Arena *const arena[
     return status;
 }
 
-static Status add_update_rows(RadarSpeed *r)
+typedef Status (*SceneRows)(RadarSpeed *r, TrialScene *scene, Arena *const arena[3]);
+
+static Status on_ground(RadarSpeed *r, SceneRows rows)
 {
     const Geodetic origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
     LocalFrame     frame;
@@ -315,10 +317,73 @@ static Status add_update_rows(RadarSpeed *r)
     if (status == STATUS_OK) status = quick_landscape_create(&landscape, times_s, &frame, 6000, 6000, r->many);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = trial_scene_open(&scene, &landscape, catalog, &tank_type, 1, 0);
-    if (status == STATUS_OK) status = time_updates(r, &scene, arena);
+    if (status == STATUS_OK) status = rows(r, &scene, arena);
     trial_scene_close(&scene);
     landscape_destroy(&landscape);
     for (int k = 0; k < 3; k++) arena_destroy(arena[k]);
+    return status;
+}
+
+/* ---- by way of the ground ----------------------------------------------------------------------------- */
+
+static const char *const bounce_preset = "seeker_35";
+
+/* Each with the radar of its own: without the ground's mirror and with it. */
+static Status open_bounce(Updates u[2], RadarSpeed *r, const char *catalog)
+{
+    Status status = STATUS_OK;
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        const SeekerRadarConfig config = {.preset = bounce_preset, .catalog = catalog, .warp_m = 1e-3, .seed = 1,
+                                          .ground_bounce = k == 1};
+        status = seeker_radar_create(&u[k].radar, &config);
+        if (status != STATUS_OK) break;
+        bench_progress(r->bench, k ? "signatures by way of the ground" : "signature of a tank");
+        u[k].pool = r->many;
+        update(&u[k]);
+        u[k].pool = r->one;
+        status = u[k].status;
+    }
+    if (status == STATUS_OK && !(u[1].frame->targets == 1 && u[1].frame->target[0].bounce.coherence > 0)) {
+        log_error("bench: speed: the ground mirrors nothing of the tank");
+        status = STATUS_BAD_VALUE;
+    }
+    return status;
+}
+
+/* What the mirror of the ground costs: a tank alone, bins at hand. */
+static Status time_bounce(RadarSpeed *r, TrialScene *scene, Arena *const arena[3])
+{
+    static const char *const what[2] = {"radar, 35 GHz: a tank at 1 km, bins at hand, no ground, 1 thread",
+                                        "radar, 35 GHz: the same with radar.ground_bounce"};
+    char      catalog[4096];
+    Snapshot  snapshot;
+    Weather   weather = weather_default();
+    Updates   u[2] = {{0}};
+    BenchTime time[2];
+    Status    status = trial_scene_place(scene, &(TrialPlace){.type = tank_type, .number = 100, .turn_rad = 0.61});
+    if (status == STATUS_OK) status = entity_table_snapshot(&snapshot, scene->table, scene->sun_now_s + 0.5, arena[2]);
+    if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
+    if (status != STATUS_OK) return status;
+    const View view = trial_view(scene, 1000, 30, 3 * rad_per_deg, 64, 64);
+    for (int k = 0; k < 2; k++)
+        u[k] = (Updates){.scene = {.world = &scene->world, .snapshot = &snapshot, .view = &view, .hidden = -1,
+                                   .v_enu_mps = {0, 200, 0}, .reference_m = NAN, .t_s = 1, .weather = &weather,
+                                   .number = 1},
+                         .arena = arena[k]};
+    status = open_bounce(u, r, catalog);
+    const double coherence = status == STATUS_OK ? u[1].frame->target[0].bounce.coherence : 0;
+    const BenchWork work[2] = {{update, &u[0], 1}, {update, &u[1], 1}};
+    bench_progress(r->bench, "a tank with and without the ground's mirror");
+    if (status == STATUS_OK) bench_time(time, r->bench, work, 2);
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        BenchRow row = bench_row_of(what[k], &time[k], "updates/s", 1);
+        if (k) row.ratio = bench_ratio(&time[1], &time[0]), row.to = "without";
+        /* a mirror of nothing would cost nothing */
+        if (k) row.error = 100 * coherence, row.error_unit = "% of the field", row.against = "what the ground mirrors";
+        bench_add(r->bench, &row);
+        status = u[k].status;
+    }
+    for (int k = 0; k < 2; k++) seeker_radar_destroy(u[k].radar);
     return status;
 }
 
@@ -329,7 +394,8 @@ Status bench_speed_radar(Bench *bench)
     radar_look(&r.middle, 33 * rad_per_deg, 7 * rad_per_deg, range_m);
     Status status = open_radar(&r);
     if (status == STATUS_OK) status = add_target_rows(&r);
-    if (status == STATUS_OK) status = add_update_rows(&r);
+    if (status == STATUS_OK) status = on_ground(&r, time_updates);
+    if (status == STATUS_OK) status = on_ground(&r, time_bounce);
     if (status != STATUS_OK) log_error("bench: speed: radar: %s", status_name(status));
     close_radar(&r);
     return status;
