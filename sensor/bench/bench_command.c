@@ -56,7 +56,7 @@ void bench_time_finish(BenchTime *time)
 void bench_time_more(BenchTime *time, Bench *bench, const BenchWork *work, int count)
 {
     const double budget_s = count * (bench->quick ? 0.02 : 1.0);
-    const int    first = time[0].rounds, least = first + (bench->quick ? 3 : 7);
+    const int    first = time[0].rounds, least = first + (bench->quick ? 2 : 7);
     int          rounds = first;
     for (int k = 0; k < count; k++) work[k].run(work[k].user);
     for (const double begun_s = wall_clock_s();

@@ -1,83 +1,7 @@
 /* Adaptive antialiasing against the picture that has all the rays everywhere: the same bits where it refined, close
- * elsewhere, few rays on bare ground, and the same picture for any number of threads, with and without skips, and
- * whatever else was asked for. labels: slow threads */
-#include "tests/render/hand_world.h"
-
-static const double sun_enu[3] = {-0.48, 0.36, 0.8};
-
-static int open_world(void **state)
-{
-    (void)state;
-    return hand_open(true);
-}
-
-static double ground_at(double x, double y) { return elevation_height(&hand.landscape.elevation, x, y, NULL); }
-
-/* Real light, and the hand-made things strewn over the ground from 60 m to 3 km before the eye. */
-static View strew(int things, int width, int height)
-{
-    const double eye_enu[3] = {-400, 0, ground_at(-400, 0) + 40}, ahead[3] = {1, 0, -0.09};
-    hand_air_on(sun_enu, 40);
-    hand_clear();
-    hand_draw = 77;
-    for (int k = 0; k < things; k++) {
-        const double ahead_m = 60 * pow(50, (k + 0.5) / things), aside_m = hand_uniform(-0.2, 0.2) * ahead_m;
-        double       p_enu[3] = {eye_enu[0] + ahead_m, eye_enu[1] + aside_m, 0}, r[9];
-        p_enu[2] = ground_at(p_enu[0], p_enu[1]) + (k % hand_models == hand_sphere_model ? 0.9 : 0);
-        hand_attitude(r, hand_uniform(0, 6), 0);
-        hand_add(k % hand_models, p_enu, r);
-    }
-    return hand_view(eye_enu, ahead, width, height, width * 2.2);
-}
-
-static RenderRequest request_of(const View *view)
-{
-    RenderRequest request = hand_request(view);
-    request.bands         = 15;
-    request.profile_bins  = 600;
-    request.profile_bin_m = 1;
-    return request;
-}
-
-static void same_planes(const Picture *a, const Picture *b, unsigned bands)
-{
-    const size_t n = (size_t)a->width * (size_t)a->height;
-    static const Band band_of[picture_plane_count] = {BAND_OPTICAL, BAND_OPTICAL, BAND_OPTICAL, BAND_MWIR, BAND_LWIR, BAND_RADAR};
-    for (int plane = 0; plane < picture_plane_count; plane++)
-        if (picture_plane(a, plane) && bands >> band_of[plane] & 1)
-            assert_memory_equal(picture_plane(a, plane), picture_plane(b, plane), n * sizeof(float));
-    assert_memory_equal(a->entity, b->entity, n * sizeof *a->entity);
-    assert_memory_equal(a->range_m, b->range_m, n * sizeof *a->range_m);
-    assert_memory_equal(a->material, b->material, n * sizeof *a->material);
-    for (int i = 0; i < hand.snapshot.count; i++) {
-        const TargetPixels *s = &a->target[i], *t = &b->target[i];
-        CHECK(s->visible == t->visible && s->amodal == t->amodal && s->occluder == t->occluder && s->small == t->small);
-        CHECK(s->occluded_ground == t->occluded_ground && s->occluded_entity == t->occluded_entity);
-        CHECK(s->radiance[picture_lwir] == t->radiance[picture_lwir]);
-        assert_memory_equal(s->box, t->box, sizeof s->box);
-    }
-}
-
-static void threads_and_skips_change_no_bit(void **state)
-{
-    (void)state;
-    const View    view    = strew(40, 200, 140);
-    RenderRequest request = request_of(&view);
-    arena_reset(hand.arena);
-    const Picture one = hand_render(&request, hand.pool);
-    CHECK(one.counters.small_targets > 8 && one.counters.rays_edges > 5000);
-    for (int threads = 1; threads <= 4; threads += threads) {
-        Pool *pool = NULL;
-        assert_int_equal(pool_create(&pool, threads), STATUS_OK);
-        for (int no_skip = 0; no_skip < (threads == 1 ? 2 : 1); no_skip++) {
-            request.skips_off = no_skip ? skips_all_off : 0;
-            const Picture other = hand_render(&request, pool);
-            same_planes(&one, &other, 15);
-            assert_memory_equal(one.profile, other.profile, 600 * radar_bounces * sizeof *one.profile);
-        }
-        pool_destroy(pool);
-    }
-}
+ * elsewhere, few rays on bare ground, and the same picture whatever else was asked for; by how many threads:
+ * test_antialias_threads.c. labels: slow */
+#include "tests/render/strewn_world.h"
 
 /* No band's bits hang on what other bands were asked for: shadows show in two of them only. */
 static void a_band_alone_is_the_band_in_company(void **state)
@@ -342,7 +266,6 @@ static void an_edge_has_its_places(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(threads_and_skips_change_no_bit),
         cmocka_unit_test(a_band_alone_is_the_band_in_company),
         cmocka_unit_test(refined_pixels_are_those_of_the_full_picture),
         cmocka_unit_test(the_error_and_its_price),

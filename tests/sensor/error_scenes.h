@@ -14,6 +14,7 @@ typedef struct ErrorScene {
     int         vehicles;
     bool        smoke;
     double      pitch_deg;     /* the camera is turned up by so much */
+    bool        heat;          /* its heat is judged */
 } ErrorScene;
 
 enum { width_px = 96, height_px = 64, radiance_bands = 3 };
@@ -187,93 +188,93 @@ static void judge(Tally *tally, const char *scene, const char *source, Band band
                   100 * estimate, 100 * truth, estimate / truth, held ? "" : "  *");
 }
 
-/* Rays: against 16 x 16 in every pixel. */
-static inline void judge_sampling(Tally *tally, const ErrorScene *of)
+/* A scene on both grounds, and its frame, which stays in arena 0, as by default: what all sources are judged by. */
+typedef struct ErrorCase {
+    const ErrorScene *of;
+    TrialScene        coarse, fine;
+    RenderRequest     request;
+    TrialFrame        frame;
+    FrameError        error;
+} ErrorCase;
+
+static inline void open_case(ErrorCase *c, const ErrorScene *of)
 {
-    TrialScene scene;
-    open_scene(&scene, &lab.ground, of);
-    RenderRequest    request = request_of(&scene, of);
-    TrialFrame       frame = frame_of(&scene, &request, 0);
-    const FrameError error = error_of(&frame);
-    request.samples = 16, request.edge_samples = request.target_samples = 0, request.budget = false;
-    const TrialFrame better = frame_of(&scene, &request, 1);
+    *c = (ErrorCase){.of = of};
+    open_scene(&c->coarse, &lab.ground, of);
+    open_scene(&c->fine, &lab.fine, of);
+    c->request = request_of(&c->coarse, of);
+    c->frame = frame_of(&c->coarse, &c->request, 0);
+    c->error = error_of(&c->frame);
+    c->request.budget = false; /* of frames that are better */
+}
+
+static inline void close_case(ErrorCase *c)
+{
+    trial_scene_close(&c->coarse);
+    trial_scene_close(&c->fine);
+}
+
+/* Rays: against 16 x 16 in every pixel. */
+static inline void judge_sampling(Tally *tally, const ErrorCase *c)
+{
+    RenderRequest request = c->request;
+    request.samples = 16, request.edge_samples = request.target_samples = 0;
+    const TrialFrame better = frame_of(&c->coarse, &request, 1);
     for (int b = 0; b < radiance_bands; b++)
-        judge(tally, of->name, "sampling", (Band)b, error.share[b][ERROR_SAMPLING],
-              apart(&frame.picture, &better.picture, (Band)b));
-    trial_scene_close(&scene);
+        judge(tally, c->of->name, "sampling", (Band)b, c->error.share[b][ERROR_SAMPLING],
+              apart(&c->frame.picture, &better.picture, (Band)b));
 }
 
 /* Posts: 4 m apart against 1 m, both of 4 x 4 rays, so that rays are not what differs. */
-static inline void judge_ground(Tally *tally, const ErrorScene *of)
+static inline void judge_ground(Tally *tally, const ErrorCase *c)
 {
-    TrialScene coarse, fine;
-    open_scene(&coarse, &lab.ground, of);
-    open_scene(&fine, &lab.fine, of);
-    RenderRequest request = request_of(&coarse, of);
-    TrialFrame    plain = frame_of(&coarse, &request, 0);
-    const FrameError error = error_of(&plain);
-    request.samples = 4, request.edge_samples = 0, request.budget = false;
-    const TrialFrame a = frame_of(&coarse, &request, 0), b = frame_of(&fine, &request, 1);
+    RenderRequest request = c->request;
+    request.samples = 4, request.edge_samples = 0;
+    const TrialFrame a = frame_of(&c->coarse, &request, 1), b = frame_of(&c->fine, &request, 2);
     for (int band = 0; band < radiance_bands; band++)
-        judge(tally, of->name, "level_of_detail", (Band)band, error.share[band][ERROR_LEVEL_OF_DETAIL],
+        judge(tally, c->of->name, "level_of_detail", (Band)band, c->error.share[band][ERROR_LEVEL_OF_DETAIL],
               apart(&a.picture, &b.picture, (Band)band));
-    trial_scene_close(&coarse);
-    trial_scene_close(&fine);
 }
 
-/* Heat: of ground, against steps of 120 s, 33 more facets a side and elements of 1 mm. */
-static inline void judge_heat(Tally *tally, const ErrorScene *of)
+/* Heat: of ground, against steps of 150 s, the most facets a side and elements of 1.2 mm. */
+static inline void judge_heat(Tally *tally, const ErrorCase *c)
 {
-    TrialScene scene, fine;
-    open_scene(&scene, &lab.ground, of);
-    open_scene(&fine, &lab.ground, of);
+    TrialScene fine;
+    open_scene(&fine, &lab.ground, c->of);
     HeatConfig heat = heat_default_config();
     heat.step_s = 150, heat.facets = heat_most_facets, heat.grid = (GroundGrid){0.0012, 1.17, 3, 0.002};
     CHECK(trial_scene_warm(&fine, &heat) == STATUS_OK);
     fine.past_parts = 8;
-    RenderRequest    request = request_of(&scene, of);
-    TrialFrame       frame = frame_of(&scene, &request, 0);
-    const FrameError error = error_of(&frame);
-    request.budget = false;
-    const TrialFrame better = frame_of(&fine, &request, 1);
+    const TrialFrame better = frame_of(&fine, &c->request, 1);
     for (int b = BAND_MWIR; b < radiance_bands; b++)
-        judge(tally, of->name, "heat", (Band)b, error.share[b][ERROR_HEAT], apart(&frame.picture, &better.picture, (Band)b));
-    trial_scene_close(&scene);
+        judge(tally, c->of->name, "heat", (Band)b, c->error.share[b][ERROR_HEAT],
+              apart(&c->frame.picture, &better.picture, (Band)b));
     trial_scene_close(&fine);
 }
 
 /* Rays and posts together, on a ground of every post with 16 x 16 rays: whether the sources add up as squares do. */
-static inline void judge_sum(Tally *tally, const ErrorScene *of)
+static inline void judge_sum(Tally *tally, const ErrorCase *c)
 {
-    TrialScene coarse, fine;
-    open_scene(&coarse, &lab.ground, of);
-    open_scene(&fine, &lab.fine, of);
-    RenderRequest    request = request_of(&coarse, of);
-    TrialFrame       frame = frame_of(&coarse, &request, 0);
-    const FrameError error = error_of(&frame);
-    request.samples = 16, request.edge_samples = request.target_samples = 0, request.budget = false;
-    const TrialFrame better = frame_of(&fine, &request, 1);
+    RenderRequest request = c->request;
+    request.samples = 16, request.edge_samples = request.target_samples = 0;
+    const TrialFrame better = frame_of(&c->fine, &request, 1);
     for (int b = 0; b < radiance_bands; b++)
-        judge(tally, of->name, "rays and posts", (Band)b,
-              hypot(error.share[b][ERROR_SAMPLING], error.share[b][ERROR_LEVEL_OF_DETAIL]),
-              apart(&frame.picture, &better.picture, (Band)b));
-    trial_scene_close(&coarse);
-    trial_scene_close(&fine);
+        judge(tally, c->of->name, "rays and posts", (Band)b,
+              hypot(c->error.share[b][ERROR_SAMPLING], c->error.share[b][ERROR_LEVEL_OF_DETAIL]),
+              apart(&c->frame.picture, &better.picture, (Band)b));
 }
 
 /* Air: every pixel with the atmosphere asked for its path alone (atmosphere_path, which makes no tables of a frame).
  * What leaves the surface is what the picture shows less its veil. */
-static inline void judge_tables(Tally *tally, const ErrorScene *of)
+static inline void judge_tables(Tally *tally, const ErrorCase *c)
 {
     static AirPaths veils;
     static Hits  hits;
     static Rays  rays;
     static const AirBand air_of[radiance_bands + 2] = {AIR_R, AIR_G, AIR_B, AIR_MWIR, AIR_LWIR};
-    TrialScene scene;
-    open_scene(&scene, &lab.ground, of);
-    RenderRequest request = request_of(&scene, of);
-    request.edge_samples = request.target_samples = 0; /* one ray: what a pixel shows is its truth's */
-    TrialFrame       frame = frame_of(&scene, &request, 0);
+    RenderRequest request = c->request;
+    request.edge_samples = request.target_samples = 0, request.budget = true; /* one ray: what a pixel shows is its truth's */
+    TrialFrame       frame = frame_of(&c->coarse, &request, 1);
     const FrameError error = error_of(&frame);
     const Picture   *p = &frame.picture;
     const Air       *air = &frame.air;
@@ -311,7 +312,7 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
                                                            range_m * range_m * level * level / (2 * 6371e3),
                                                        0)};
                 PathAir want;
-                atmosphere_path(&want, scene.world.atmosphere, air->light.weather.visibility_m, b, &path,
+                atmosphere_path(&want, c->coarse.world.atmosphere, air->light.weather.visibility_m, b, &path,
                                 thermal && p->temp_k[i] > 0 ? (double)p->temp_k[i] : 288);
                 const double tau = thermal ? want.transmittance : want.sun_transmittance;
                 const double added = want.thermal_w_m2_sr * warmer + (b == AIR_LWIR ? 0 : want.scattered_w_m2_sr * au2);
@@ -319,7 +320,7 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
                     (seen - (double)veils.added_w_m2_sr[0]) / fmax((double)veils.transmittance[0], 1e-6) * tau + added;
             } else {
                 SkyAir sky;
-                atmosphere_sky(&sky, scene.world.atmosphere, air->light.weather.visibility_m, b, air->eye_height_m,
+                atmosphere_sky(&sky, c->coarse.world.atmosphere, air->light.weather.visibility_m, b, air->eye_height_m,
                                acos(fmax(d[2], 0)), sun_zenith, azimuth);
                 seen = sky.thermal_w_m2_sr * warmer + (b == AIR_LWIR ? 0 : sky.scattered_w_m2_sr * au2);
             }
@@ -328,8 +329,7 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
         shares[plane < 3 ? 0 : plane - 2] += square * width_px * height_px / (sum * sum) / (plane < 3 ? 3 : 1);
     }
     for (int band = 0; band < radiance_bands; band++)
-        judge(tally, of->name, "tables", (Band)band, error.share[band][ERROR_TABLES], sqrt(shares[band]));
-    trial_scene_close(&scene);
+        judge(tally, c->of->name, "tables", (Band)band, error.share[band][ERROR_TABLES], sqrt(shares[band]));
 }
 
 #endif

@@ -215,6 +215,4 @@ static inline void over_range(double *out, const double *power, int rows, int co
     }
 }
 
-static double line[scan_azimuths_most];
-
 #endif

@@ -3,10 +3,10 @@
 #include "tests/sensor/error_scenes.h"
 
 static const ErrorScene scenes[] = {
-    {"ground from 100 m", 600, 100, 40, 0, false, 0},
-    {"vehicles at 60 m", 60, 12, 40, 6, false, 0},
-    {"vehicles at 600 m", 600, 60, 12, 10, false, 0},
-    {"horizon", 300, 8, 30, 3, false, 3},
+    {"ground from 100 m", 600, 100, 40, 0, false, 0, false},
+    {"vehicles at 60 m", 60, 12, 40, 6, false, 0, true},
+    {"vehicles at 600 m", 600, 60, 12, 10, false, 0, false},
+    {"horizon", 300, 8, 30, 3, false, 3, false},
 };
 enum { scene_count = sizeof scenes / sizeof *scenes };
 
@@ -15,15 +15,18 @@ static void estimates_are_near_the_truth(void **state)
     (void)state;
     Tally rays = {0}, ground = {0}, tables = {0}, heat = {0};
     for (int k = 0; k < scene_count; k++) {
-        judge_sampling(&rays, &scenes[k]);
-        judge_ground(&ground, &scenes[k]);
-        judge_tables(&tables, &scenes[k]);
-        judge_heat(&heat, &scenes[k]);
+        ErrorCase c;
+        open_case(&c, &scenes[k]);
+        judge_sampling(&rays, &c);
+        judge_ground(&ground, &c);
+        judge_tables(&tables, &c);
+        if (scenes[k].heat) judge_heat(&heat, &c); /* half a minute: the other scenes in the deep test */
+        close_case(&c);
     }
     const bool held[] = {nine_in_ten(&rays, "sampling"), nine_in_ten(&ground, "level of detail"),
                          nine_in_ten(&tables, "tables")};
     CHECK(held[0] && held[1] && held[2]);
-    for (int b = BAND_MWIR; b <= BAND_LWIR; b++) CHECK(heat.cases[b] == scene_count && heat.held[b] == scene_count);
+    for (int b = BAND_MWIR; b <= BAND_LWIR; b++) CHECK(heat.cases[b] == 1 && heat.held[b] == 1);
 }
 
 /* What the tests count by can fail, in one band alone, too; and an estimate that is two and a half times the truth

@@ -172,10 +172,10 @@ static void given_keys_stay_and_the_choice_is_said(void **state)
 static void promises_hold_elsewhere(void **state)
 {
     (void)state;
-    static const ErrorScene scenes[] = {{"ground from 100 m", 700, 110, 45, 0, false, 0},
-                                        {"vehicles at 80 m", 80, 15, 40, 6, false, 0},
-                                        {"vehicles at 400 m", 400, 50, 15, 10, false, 0},
-                                        {"horizon", 250, 9, 35, 3, false, 3}};
+    static const ErrorScene scenes[] = {{"ground from 100 m", 700, 110, 45, 0, false, 0, false},
+                                        {"vehicles at 80 m", 80, 15, 40, 6, false, 0, false},
+                                        {"vehicles at 400 m", 400, 50, 15, 10, false, 0, false},
+                                        {"horizon", 250, 9, 35, 3, false, 3, false}};
     static const double asked_percent[] = {10, 5, 2.5};
     char         path[512];
     QualityTable table;

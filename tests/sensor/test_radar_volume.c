@@ -178,7 +178,8 @@ static void rain_has_the_power_of_its_integral(void **state)
     enum { seeds = 4, every = 2 };
     static double sample[seeds * 512 / every];
     Weather       weather = weather_default();
-    double        got_w = 0, want_w = 0, mean, variance, row = 0, row2 = 0, power = 0, cross = 0, phase = 0;
+    double        got_w = 0, want_w = 0, eta = NAN, mean = NAN, variance = NAN;
+    double        row = 0, row2 = 0, power = 0, cross = 0, phase = 0;
     int           samples = 0;
     weather.rain_mm_h = 10;
     weather.wind_mps = 8;
@@ -192,8 +193,9 @@ static void rain_has_the_power_of_its_integral(void **state)
         frame = measure(radar, &scene);
         got_w += power_w(frame);
         /* over the sphere about the axis; along the range it goes by 1 / R^2 and the air */
-        const double eta = rain_by_hand(&mean, &variance, 35, atmosphere_temp_k(stage.world.atmosphere, 0), 10);
+        if (seed == 1) eta = rain_by_hand(&mean, &variance, 35, atmosphere_temp_k(stage.world.atmosphere, 0), 10);
         CHECK_NEAR(frame->rain_1_m / eta, 1, 2e-3);
+        const WindowFigures figures = range_figures(frame);
         const double window_m = 0.5 * 512 * frame->map.metre_per_column, wavelength_m = frame->preset->antenna.wavelength_m;
         double       pattern = 0, along = 0;
         for (double a = 1e-4; a < 0.5; a += 2e-4) pattern += 2 * pi_rad * sin(a) * 2e-4 * pow(antenna_gain(&frame->preset->antenna, sin(a), 0).sum, 4);
@@ -204,8 +206,8 @@ static void rain_has_the_power_of_its_integral(void **state)
             const double r = reference_m + (i - 256) * frame->map.metre_per_column;
             const double mean_w = frame->preset->power_w * wavelength_m * wavelength_m / pow(4 * pi_rad, 3) / frame->preset->loss * eta * pattern *
                                   pow(10, -0.2 * frame->air_db * r / reference_m) / (r * r) * frame->map.metre_per_column *
-                                  range_figures(frame).noise_bins;
-            const double noise_w = frame->receiver.noise_w * range_figures(frame).noise_bins / 512;
+                                  figures.noise_bins;
+            const double noise_w = frame->receiver.noise_w * figures.noise_bins / 512;
             const double complex z = frame->profile[i];
             sample[samples++] = creal(z * conj(z)) / (mean_w + noise_w);
         }
@@ -340,21 +342,24 @@ static double march_db(const double p_enu[3])
         v3_cross(off, to, d);
         if (v3_length(off) < 0.45 * plant_height_m(&plant[i]) + 2 && v3_dot(to, d) > -12) near[count++] = i;
     }
-    for (double s = 0.5 * step_m; p_enu[2] + s * d[2] < stage.view.p_enu[2] - 200 && s < 120; s += step_m)
-        for (int n = 0; n < count; n++) {
-            const Plant *of = &plant[near[n]];
-            double       axis[3][3], scale[2], away[3];
-            plant_axes(axis, scale, of, NULL);
-            for (int k = 0; k < 3; k++)
-                away[k] = p_enu[k] + s * d[k] - stage.woods.origin_enu[k] - (double)of->p_m[k] - 0.7 * scale[1] * axis[2][k];
-            const double across = hypot(away[0], away[1]) / (0.28 * scale[0]), up = away[2] / (0.3 * scale[1]);
-            if (!(across * across + up * up < 1)) continue;
-            const SurfaceClass class = of->kind == PLANT_PINE      ? SURFACE_FOREST_CONIFER
-                                       : of->kind < PLANT_TREES ? SURFACE_FOREST_BROADLEAF
-                                                                : SURFACE_SCRUB;
+    for (int n = 0; n < count; n++) {
+        const Plant *of = &plant[near[n]];
+        double       axis[3][3], scale[2], from[3];
+        plant_axes(axis, scale, of, NULL);
+        for (int k = 0; k < 3; k++)
+            from[k] = p_enu[k] - stage.woods.origin_enu[k] - (double)of->p_m[k] - 0.7 * scale[1] * axis[2][k];
+        const double       wide_m = 0.28 * scale[0], half_m = 0.3 * scale[1];
+        const SurfaceClass class = of->kind == PLANT_PINE    ? SURFACE_FOREST_CONIFER
+                                   : of->kind < PLANT_TREES ? SURFACE_FOREST_BROADLEAF
+                                                            : SURFACE_SCRUB;
+        for (double s = 0.5 * step_m; p_enu[2] + s * d[2] < stage.view.p_enu[2] - 200 && s < 120; s += step_m) {
+            const double x = (from[0] + s * d[0]) / wide_m, y = (from[1] + s * d[1]) / wide_m;
+            const double up = (from[2] + s * d[2]) / half_m;
+            if (!(x * x + y * y + up * up < 1)) continue;
             depth += step_m;
             weighted += step_m * table.row[class][CLUTTER_KA].foliage_db_m;
         }
+    }
     return depth > 14 ? weighted * 14 / depth * pow(depth / 14, 0.588) : weighted;
 }
 

@@ -2,6 +2,8 @@
  * that the test knows. */
 #include "tests/sensor/scan_stage.h"
 
+static double line[scan_azimuths_most]; /* power over azimuth */
+
 static const double speed_mps = 200, off_rad = 14 * rad_per_deg;
 
 /* lambda R / (2 v T sin psi) over R. */

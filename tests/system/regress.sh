@@ -1,7 +1,7 @@
 # What tests of `pitviper regress` share; source it after common.sh.
 export TMPDIR=$tmp # what failed on purpose is not kept
 # new_case NAME [SIZE RATE FRAMES]: frames in all bands of the demo's missile, 2 of 64x48 unless said; without the ground's
-# detail, whose noise no file format makes small
+# detail, whose noise no file format makes small; warmed up in few steps, as $bare does
 new_case() {
     local name=$1 size=${2:-64x48} rate=${3:-5} frames=${4:-5, 24}
     mkdir -p "$tmp/$name"
@@ -19,6 +19,8 @@ config: |
   terrain:
     detail: off
     woods: off
+  heat: {facets: 3, step_s: 1800, shadow_m: 64, vehicle_step_s: 600}
+  models: {sag_m: 0.02}
   seed: 1
 causal: true
 frames: [$frames]

@@ -2,6 +2,7 @@
 # The ground's heat in frames: a function of log, settings and time alone, whatever is rendered of it; shade, stands and
 # weather that show; marks over a restart.
 . "$(dirname "$0")/common.sh"
+bare=("${full[@]}") # heat as it is by default
 
 exercise tests/regress/departed/scenario.yaml "$tmp/gone.pcap"
 look=(--bands lwir --rate 0.01 --config "$tmp/look.yaml")

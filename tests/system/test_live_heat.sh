@@ -3,6 +3,7 @@
 # temperatures of patches, and what the tanks are warmer than their ground.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
+bare=("${full[@]}") # heat as it is by default
 
 cat >"$tmp/tanks.yaml" <<'YAML'
 duration_s: 60

@@ -86,16 +86,21 @@ good &= abs(got["rcs_dbsm"] - bounce["rcs_dbsm"]["hh"]) < 0.3 and abs(bounce["rc
 sys.exit(not good)
 P
 
-# ground, a truck, and the same bits: map_sha256 and detections of every frame
+# ground, a truck, and the same bits: map_sha256 and detections of every frame. A seeker like seeker_35 of half its
+# frequency, whose signatures take a quarter of the rays
 exercise demo "$tmp/demo.pcap"
 map() { grep -o '"radar":.*' "$1/truth.jsonl"; }
-small=(--bands radar --size 48x32 --set radar.preset=seeker_35 --from 1364 --to 1365 --rate 1 --overwrite)
+table=$(dirname "$0")/../../etc/radars.csv
+{ grep '^name,' "$table"; sed -n 's/^seeker_35,lfm,35,/seeker,lfm,17.5,/p' "$table"; } >"$tmp/seeker.csv"
+small=(--bands radar --size 48x32 --set radar.preset=seeker --set radar.table="$tmp/seeker.csv" --from 1364 --to 1365 --rate 1 --overwrite)
 run replay "$tmp/demo.pcap" --out "$tmp/one" "${small[@]}" --threads 1
 check "a seeker" [ $code = 0 ] || cat "$tmp/stderr"
 run replay "$tmp/demo.pcap" --out "$tmp/two" "${small[@]}" --threads 2 --no-skip --from 1365
 check "the last frame alone, two threads, no skips: the same bits" \
     [ -n "$(map "$tmp/two")" -a "$(map "$tmp/two")" = "$(map "$tmp/one" | tail -n 1)" ]
-run replay "$tmp/demo.pcap" --out "$tmp/bare" "${small[@]}" --from 1365 --set radar.ground=false
+printf 'x_m,y_m,z_m,hh_dbsm,vv_dbsm\n0,0,-1,20,20\n' >"$tmp/point.csv"
+printf 'entity,signature\n*,point.csv\n' >"$tmp/given.csv"
+run replay "$tmp/demo.pcap" --out "$tmp/bare" "${small[@]}" --from 1365 --set radar.ground=false --set radar.given="$tmp/given.csv"
 check "without ground: fewer echoes" [ "$(json_numbers "$tmp/bare/truth.jsonl" ground_cells | head -n 1)" = 0 ]
 # of the same entities: the ground in the map has no such error, their cross sections have it all the same
 share() { grep -o '"range_doppler":{[^}]*}' "$1/truth.jsonl" | tail -n 1 | sed -E "s/.*\"$2\":([^,}]*).*/\1/"; }
@@ -146,11 +151,10 @@ good &= all(t["entity"] != "1:3001:12" for frame in (wet, dry) for t in frame["r
 sys.exit(not good)
 P
 
-run replay "$tmp/demo.pcap" --out "$tmp/none" "${small[@]}" --set radar.preset=hubble
+run replay "$tmp/demo.pcap" --out "$tmp/none" "${small[@]}" --set radar.table= --set radar.preset=hubble
 check "an unknown radar is refused, and the known ones said" [ $code = 1 ] && complained 'hubble.*seeker_94, seeker_35, search_ku'
 
 # each waveform, from a table of one's own; a table that is not one
-table=$(dirname "$0")/../../etc/radars.csv
 for kind in "stepped_35 stepped" "pulse_doppler_ku pulse_doppler" "fmcw_94 fmcw"; do
     set -- $kind
     { printf '# mine\n'; grep '^name,' "$table"; grep "^$1," "$table" | sed 's/^[a-z_0-9]*/mine/'; } >"$tmp/radars.csv"

@@ -83,7 +83,7 @@ changed bad_config 's/width_px: 64/width_px: 7/'
 changed bad_set 's/^config/scenario_set: nobodys=5\nconfig/'
 changed beyond 's/frames: .*/frames: [5, 24, 5000]/'
 cp "$tmp/good/record/000005.exr" "$tmp/beyond/record/005000.exr"
-changed slow 's/timeout_s: 300/timeout_s: 0.1/; s/seed: 1/seed: 1\n  models: {sag_m: 0.0001}/'
+changed slow 's/timeout_s: 300/timeout_s: 0.1/; s/sag_m: 0.02/sag_m: 0.0001/'
 run regress "$tmp"/{good,absent,absent_file,bad_config,bad_set,beyond,slow} --junit "$tmp/junit.xml" --report "$tmp/report.html" \
     --work "$tmp/work" --jobs 3
 check "among others: exit code" [ $code = 1 ]
@@ -108,7 +108,7 @@ check "causal is false by default: the bits of a plain replay" test "$(hashes "$
 check "and not those of --causal" test "$(hashes "$tmp/own")" != "$(tr -d ' \n' <"$tmp/good/record/run.json" | grep -o '"frame_sha256":\[[^]]*\]')"
 
 # a crash: the child gets a signal that it would give itself
-changed crash 's/64/720/; s/48/486/; s/seed: 1/seed: 1\n  models: {sag_m: 0.0001}/; s/rate_hz: 5/rate_hz: 5\n    samples: 8/'
+changed crash 's/64/720/; s/48/486/; s/sag_m: 0.02/sag_m: 0.0001/; s/rate_hz: 5/rate_hz: 5\n    samples: 8/'
 "$pitviper" regress "$tmp/crash" --work "$tmp/work" >"$tmp/stdout" 2>"$tmp/stderr" &
 parent=$!
 for ((i = 0; i < 400; i++)); do

@@ -19,6 +19,8 @@ check "all records together are small" [ "$(cat tests/regress/*/record/* | wc -c
 run regress tests/regress/*/ --threads 1 --junit "$tmp/junit.xml" --report "$tmp/report.html"
 cat "$tmp/stdout"
 passes "one thread" ${#cases[@]}
+mutated='tank|antimeridian|dis7|pole|helicopter|bundles' # the cases of test_mutants.sh
+check "the cases of mutants: no other bits" [ "$(grep -cE "^($mutated) +ok  \(" "$tmp/stdout")" = 6 ]
 check "JUnit: every case" [ "$(grep -c '<testcase ' "$tmp/junit.xml")" = ${#cases[@]} ]
 check "JUnit: none failed" grep -q 'failures="0" errors="0"' "$tmp/junit.xml"
 check "the report: every case" [ "$(grep -c '<details id="case' "$tmp/report.html")" = ${#cases[@]} ]

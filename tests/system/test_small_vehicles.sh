@@ -3,6 +3,7 @@
 # samples over each. 8-12 um within 1.5 % (seen: 1.3), optical 2 % (0.9). In 3.4-4.8 um the sun glints on edges narrower
 # than a sample: 3 % rms (seen: 1.9), 10 % at worst (9.3, one of 68 sightings).
 . "$(dirname "$0")/common.sh"
+bare=("${full[@]}") # radiances as they are by default
 command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
 
 exercise demo "$tmp/demo.pcap"

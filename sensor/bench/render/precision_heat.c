@@ -178,11 +178,12 @@ static Status knob_facets(Bench *bench, const GroundKinds *kinds, Pool *pool)
     BenchSetting  point[settings] = {0};
     const HeatDay day = heat_day_default();
     HeatConfig    c = config_of(&day, 1800, 3, 6);
+    const int     count = bench_quick(bench) ? settings - 1 : settings;
     Status        status = STATUS_OK;
     c.pool = pool, c.spin_up_s = 12 * 3600;
     bench_progress(bench, "slopes of the ground's heat");
     status = slopes_by_themselves(own_k, kinds, &c);
-    for (int f = 0; f < settings && status == STATUS_OK; f++) {
+    for (int f = 0; f < count && status == STATUS_OK; f++) {
         set[f].arena = arena_create();
         c.facets = facets[f];
         status = set[f].arena ? heat_create(&set[f].heat, kinds, &c, NULL, 0) : STATUS_NO_MEMORY;
@@ -206,8 +207,8 @@ static Status knob_facets(Bench *bench, const GroundKinds *kinds, Pool *pool)
     }
     if (status == STATUS_OK)
         bench_tunable(bench, &(BenchTunable){"slopes of the ground's heat", "heat.facets", "a step of all kinds", "K",
-                                             "rms, slopes up to 45 degrees run by themselves", 1.2}, work, point, settings);
-    for (int f = 0; f < settings; f++) {
+                                             "rms, slopes up to 45 degrees run by themselves", 1.2}, work, point, count);
+    for (int f = 0; f < count; f++) {
         heat_destroy(set[f].heat);
         arena_destroy(set[f].arena);
     }

@@ -7,8 +7,10 @@
 #include "sensor/bench/render/precision_radar.h"
 #include "sensor/bench/turn.h"
 
+/* Rays grow as the target's outline: quick runs look at a smaller one. */
 static const double tank_hz = 16e9;
-enum { looks = 6, tank_settings = 5 };
+static const char *const tank_look = "a look at a tank at 16 GHz", *const quick_look = "a look at a jeep at 16 GHz";
+enum { looks = 6, quick_looks = 2, tank_settings = 5 };
 
 /* Fields of a tank from some sides. */
 typedef struct TankSet {
@@ -44,9 +46,10 @@ static double field_error(const TankSet *got, const TankSet *want)
     return 100 * sqrt(off / whole);
 }
 
-static TankSet tank_set(const RadarModel *model, Pool *pool, double more_rays)
+static TankSet tank_set(const RadarModel *model, Pool *pool, double more_rays, bool quick)
 {
-    TankSet t = {.target = model->target, .pool = pool, .looks = looks, .tubes = tubes_default_config(tank_hz)};
+    TankSet t = {.target = model->target, .pool = pool, .looks = quick ? quick_looks : looks,
+                 .tubes = tubes_default_config(tank_hz)};
     t.tubes.rays_per_wavelength *= more_rays;
     t.tubes.rays_per_radius *= more_rays;
     t.tubes.splits = 0; /* as signatures are made */
@@ -78,12 +81,14 @@ static Status knob_tubes(Bench *bench, const RadarModel *model, Pool *pool)
 {
     static const char *const name[tank_settings] = {"0.6", "1.25", "1.8", "2.5", "3.5"};
     static const double      more[tank_settings] = {0.48, 1, 1.44, 2, 2.8};
-    TankSet set[tank_settings], fine = tank_set(model, pool, bench_quick(bench) ? 5 : 8);
+    const bool quick = bench_quick(bench);
+    const int  count = quick ? tank_settings - 1 : tank_settings; /* the last has eight times the default's rays */
+    TankSet    set[tank_settings], fine = tank_set(model, pool, quick ? 5 : 8, quick);
     bench_progress(bench, "ray tubes");
-    for (int k = 0; k < tank_settings; k++) set[k] = tank_set(model, pool, more[k]);
-    return knob(bench, set, &fine, name, tank_settings, 1,
-                &(BenchTunable){"ray tubes a wavelength", "render/radar/tubes.h", "a look at a tank at 16 GHz", "%",
-                                "field, rms of six looks; 6 tubes or more", 18});
+    for (int k = 0; k < count; k++) set[k] = tank_set(model, pool, more[k], quick);
+    return knob(bench, set, &fine, name, count, 1,
+                &(BenchTunable){"ray tubes a wavelength", "render/radar/tubes.h", quick ? quick_look : tank_look, "%",
+                                "field, rms of the looks; 6 tubes or more", 18});
 }
 
 /* At 10 GHz, where edges rule; on quick runs one look, the last setting left out. */
@@ -91,11 +96,12 @@ static Status knob_splits(Bench *bench, const RadarModel *model, Pool *pool)
 {
     enum { settings = 4 };
     static const char *const name[settings] = {"0", "1", "2", "3"};
-    const int count = bench_quick(bench) ? settings - 1 : settings;
-    TankSet   set[settings], fine = tank_set(model, pool, 1);
+    const bool quick = bench_quick(bench);
+    const int  count = quick ? settings - 1 : settings;
+    TankSet    set[settings], fine = tank_set(model, pool, 1, quick);
     bench_progress(bench, "divisions of ray tubes");
     fine.tubes.frequency_hz = tank_hz / 1.6;
-    fine.looks = bench_quick(bench) ? 1 : looks;
+    if (quick) fine.looks = 1;
     fine.tubes.splits = count;
     fine.tubes.cuts_per_radius = 1e6;
     fine.tubes.seed = 1;
@@ -105,24 +111,26 @@ static Status knob_splits(Bench *bench, const RadarModel *model, Pool *pool)
         set[k].tubes.seed = 0;
     }
     return knob(bench, set, &fine, name, count, 2,
-                &(BenchTunable){"divisions of ray tubes at edges", "render/radar/tubes.h", "a look at a tank at 10 GHz",
-                                "%", "field, rms of the looks; another grid, one division more", 12});
+                &(BenchTunable){"divisions of ray tubes at edges", "render/radar/tubes.h",
+                                quick ? "a look at a jeep at 10 GHz" : "a look at a tank at 10 GHz", "%",
+                                "field, rms of the looks; another grid, one division more", 12});
 }
 
 static Status knob_mirrors(Bench *bench, const RadarModel *model, Pool *pool)
 {
     static const char *const name[tank_settings] = {"2", "3", "5", "8", "16"};
     static const int         mirrors[tank_settings] = {2, 3, 5, 8, 16};
-    TankSet set[tank_settings], fine = tank_set(model, pool, 1);
+    const bool quick = bench_quick(bench);
+    TankSet    set[tank_settings], fine = tank_set(model, pool, 1, quick);
     bench_progress(bench, "mirrors of ray tubes");
     fine.tubes.bounces = 40;
     for (int k = 0; k < tank_settings; k++) {
-        set[k] = tank_set(model, pool, 1);
+        set[k] = tank_set(model, pool, 1, quick);
         set[k].tubes.bounces = mirrors[k];
     }
     return knob(bench, set, &fine, name, tank_settings, 3,
-                &(BenchTunable){"mirrors of a ray tube", "render/radar/tubes.h", "a look at a tank at 16 GHz", "%",
-                                "field, rms of six looks; 40 mirrors", 13});
+                &(BenchTunable){"mirrors of a ray tube", "render/radar/tubes.h", quick ? quick_look : tank_look, "%",
+                                "field, rms of the looks; 40 mirrors", 13});
 }
 
 Status bench_precision_radar(Bench *bench)
@@ -131,7 +139,8 @@ Status bench_precision_radar(Bench *bench)
     RadarModel     model = {0};
     Pool          *pool = NULL;
     Status         status = radar_materials_load(&materials);
-    if (status == STATUS_OK) status = radar_model_open(&model, "tank", &materials, radar_sag_m(tank_hz));
+    if (status == STATUS_OK)
+        status = radar_model_open(&model, bench_quick(bench) ? "jeep" : "tank", &materials, radar_sag_m(tank_hz));
     if (status == STATUS_OK) status = pool_create(&pool, bench_threads(bench));
     if (status == STATUS_OK) status = knob_tubes(bench, &model, pool);
     if (status == STATUS_OK) status = knob_splits(bench, &model, pool);
