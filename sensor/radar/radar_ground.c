@@ -7,7 +7,7 @@ static const double sight_slack_m = 0.5; /* ground met so much before a scattere
 
 void making_lit_rectangle(double low_m[2], double high_m[2], const Making *m)
 {
-    const double *p = m->scene->view->p_enu, reach = m->frame->reference_m, lobe_rad = asin(making_null(m));
+    const double *p = m->scene->view->p_enu, reach = m->frame->reference_m, lobe_rad = asin(fmin(m->reach * making_null(m), 1));
     const double  below_m = p[2] - m->base_m;
     const double  level = hypot(m->ahead[0], m->ahead[1]), azimuth = atan2(m->ahead[1], m->ahead[0]);
     const double  turn = atan2(tan(fmin(m->scan_half_rad, 1.5)), fmax(level, 0.05));
@@ -146,7 +146,7 @@ static void scatter_block(void *user, int worker, int task)
 Status making_ground(Making *m)
 {
     SeekerRadar  *r = m->radar;
-    const double *p = m->scene->view->p_enu, widest = making_null(m), lobe_rad = asin(widest);
+    const double *p = m->scene->view->p_enu, widest = fmin(m->reach * making_null(m), 1), lobe_rad = asin(making_null(m));
     double        low_m[2], high_m[2];
     making_lit_rectangle(low_m, high_m, m);
 

@@ -340,7 +340,8 @@ Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const Ra
     if (!frame) return STATUS_NO_MEMORY;
     Making m = {.radar = radar, .scene = scene, .preset = p, .frame = frame, .pool = pool, .arena = arena,
                 .half_window_m = p->wave.samples * light_mps / (4 * p->wave.bandwidth_hz),
-                .widest = 16 / (pi_rad * p->antenna.diameter_m / p->antenna.wavelength_m)};
+                .reach = scene->reach > 0 ? scene->reach : 1};
+    m.widest = m.reach * 16 / (pi_rad * p->antenna.diameter_m / p->antenna.wavelength_m);
     *frame = (RadarFrame){.preset = p, .aim_m = scene->reference_m, .number = scene->number};
     memcpy(frame->v_enu_mps, scene->v_enu_mps, sizeof frame->v_enu_mps);
     memcpy(frame->aim_v_enu_mps, scene->reference_v_enu_mps, sizeof frame->aim_v_enu_mps);

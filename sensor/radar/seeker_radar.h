@@ -18,7 +18,7 @@
  * (radar_scan.h) has further intervals before and after.
  *
  * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main
- * lobe's null; what one entity mirrors to another; range rates that change within the interval; what FMCW's transmitter
+ * lobe's null (RadarScene.reach); what one entity mirrors to another; range rates that change within the interval; what FMCW's transmitter
  * leaks into its receiver; the internal motion of ground within the interval (it moves between intervals); diffraction
  * about what hides part of an entity: each scattering centre is in sight or not. */
 #ifndef SENSOR_RADAR_SEEKER_RADAR_H
@@ -64,6 +64,7 @@ typedef struct RadarScene {
     double          t_s;         /* exercise time */
     const Weather  *weather;     /* at the ground */
     uint32_t        number;      /* of the frame: for its noise */
+    double          reach;       /* factor on the angles beyond which echoes are left out; 0: 1 */
     bool            apart;       /* each scattering centre is an echo of its own (slower, exact) */
     const float    *range_m;     /* [view height][width]: of what each pixel shows, INFINITY: sky. NULL: no pixels */
     const uint32_t *entity;      /* likewise: snapshot index + 1, 0: none */

@@ -64,6 +64,7 @@ typedef struct Making {
     double            sweep_m;                     /* and ranges will change by up to this */
     double            half_window_m;               /* of range */
     double            near_m, far_m;               /* ranges between which echoes can be in it, fold by fold */
+    double            reach;                       /* RadarScene.reach */
     double            widest;                      /* sine off the axis beyond which entities are left out */
     double            air_np_m;                    /* power, one way, 1/m */
     int               missing;                     /* entities whose signatures are still to be made */

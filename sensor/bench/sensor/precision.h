@@ -39,6 +39,6 @@ Status precision_models(Precision *p);
 Status precision_detectors(Bench *bench);
 Status precision_small_target(Bench *bench);
 Status precision_plants(Bench *bench);
-Status precision_radar_merge(Bench *bench);
+Status precision_radar_seeker(Bench *bench);
 
 #endif
