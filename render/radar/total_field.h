@@ -1,4 +1,5 @@
-/* render/radar/total_field.h: all that a target scatters at one look: ray tubes and edges, S = S_rays + S_edges.
+/* render/radar/total_field.h: all that a target scatters at one look: ray tubes, edges, and flat faces in closed form,
+ * S = S_rays + S_edges + S_polygons; the last where TubeConfig.polygons is set, 0 else.
  *
  * Edges are those between parts of metal, coated or not, that are there in the target's state of damage. A look is
  * traced once and serves many frequencies, and antennas moved a little, as field.h says of the list of hits. */
@@ -7,10 +8,12 @@
 
 #include "render/radar/edges.h"
 #include "render/radar/field.h"
+#include "render/radar/polygons.h"
 
 typedef struct TotalField {
     TubeHits     hits;
     EdgeSegments edges; /* up to half more than the tubes' frequency */
+    Polygons     polygons;
 } TotalField;
 
 /* out: zeroed, or of an earlier call. edges: false leaves them out. Statuses as tubes_trace. */
