@@ -10,7 +10,7 @@ enum {
     chunk_faces = 16, chunk_polygons = 2048,
     halvings = 18      /* of a triangle; one that needs more is left to tubes */
 };
-static const double per_radius = 256;    /* rays over the target's radius; on convex bodies 8, for sheets that coincide */
+static const double per_radius = 128;    /* rays over the target's radius; on convex bodies 8, for sheets that coincide */
 static const double inside_m = 5e-4;     /* rays along a border keep off it */
 static const double thin_m = 1e-3;       /* triangles thinner than this are seen where the rest of their face is */
 static const double grazing = 1e-3;      /* cosine below which an antenna does not see a face */
@@ -408,7 +408,7 @@ Status polygons_find(Polygons *out, const RadarTarget *target, const ScatterAnte
         out->whole_size = triangles;
     }
     memset(out->whole, 0, (size_t)triangles);
-    if (faces->count == 0 || target->entity.node_count == 0 || config->warp_m > 0 || config->last_only ||
+    if (faces->count == 0 || faces->count > config->polygon_faces || target->entity.node_count == 0 || config->warp_m > 0 || config->last_only ||
         config->keep_hidden || !antenna_is_good(tx) || !antenna_is_good(rx) || !(config->frequency_hz > 0) ||
         isinf(config->frequency_hz))
         return STATUS_OK;

@@ -107,12 +107,13 @@ Status total_field_trace(TotalField *out, const RadarTarget *target, const Scatt
                          const TubeConfig *config, bool edges, Pool *pool)
 {
     out->edges.count = 0;
-    out->polygons.count = 0;
-    Status status = config->polygons ? polygons_find(&out->polygons, target, tx, rx, config, pool) : STATUS_OK;
+    Polygons *flat = &out->polygons;
+    flat->count = 0;
+    Status status = STATUS_OK;
+    if (config->polygon_faces > 0) status = polygons_find(flat, target, tx, rx, config, pool);
     if (status == STATUS_OK)
-        status = config->polygons && out->polygons.count > 0
-                     ? tubes_trace_rest(&out->hits, target, tx, rx, config, out->polygons.whole, out->polygons.all, pool)
-                     : tubes_trace(&out->hits, target, tx, rx, config, pool);
+        status = tubes_trace_rest(&out->hits, target, tx, rx, config, flat->count > 0 ? flat->whole : NULL,
+                                  flat->count > 0 && flat->all, pool);
     if (status != STATUS_OK || !edges || target->wedge_count == 0) return status;
     Sight            sight = {&target->entity, {tx, rx}};
     const double         k_per_m = 2 * pi_rad * config->frequency_hz / light_mps;

@@ -1,5 +1,5 @@
 /* render/radar/total_field.h: all that a target scatters at one look: ray tubes, edges, and flat faces in closed form,
- * S = S_rays + S_edges + S_polygons; the last where TubeConfig.polygons is set, 0 else.
+ * S = S_rays + S_edges + S_polygons; the last where TubeConfig.polygon_faces asks for it, else 0.
  *
  * Edges are those between parts of metal, coated or not, that are there in the target's state of damage. A look is
  * traced once and serves many frequencies, and antennas moved a little, as field.h says of the list of hits. */

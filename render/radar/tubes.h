@@ -23,7 +23,7 @@
 
 #include "render/radar/target.h"
 
-enum { tubes_splits_most = 5 };
+enum { tubes_splits_most = 5, polygon_faces_few = 64 };
 
 typedef struct TubeConfig {
     double   frequency_hz;        /* of materials and spacing: the highest, or the centre, of those to come */
@@ -41,8 +41,8 @@ typedef struct TubeConfig {
     double   warp_m, warp_length_m; /* surfaces uneven by this height, rms, over this length (warp.h); 0, 0.5 */
     uint64_t warp_seed;
     uint64_t seed;                /* of the grid */
-    bool     polygons;            /* of total_field_trace alone: flat faces that are wholly seen are summed in closed
-                                   * form (polygons.h); false: signatures sum pieces smaller than such faces */
+    int      polygon_faces;       /* total_field_trace sums flat faces in closed form (polygons.h) on targets of at
+                                   * most so many of them; 0: on none, as for signatures; polygon_faces_few */
 } TubeConfig;
 
 TubeConfig tubes_default_config(double frequency_hz);

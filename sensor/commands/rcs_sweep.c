@@ -71,6 +71,7 @@ Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
     }
     if (config->splits >= 0) out->tubes.splits = config->splits;
     out->tubes.warp_m = config->warp_mm * 1e-3;
+    out->tubes.polygon_faces = config->no_polygons ? 0 : polygon_faces_few;
     const char *given = given_signature_path(config->name);
     Status      status = radar_materials_load(&out->materials);
     if (status == STATUS_OK && given) status = given_signature_open(&out->given, given);

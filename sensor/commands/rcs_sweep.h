@@ -24,7 +24,7 @@ typedef struct RcsConfig {
     double      rays_per_wavelength;     /* 0: the default */
     int         splits;                  /* of tubes at edges; -1: the default */
     double      warp_mm;                 /* unevenness of surfaces, rms */
-    bool        no_edges;
+    bool        no_edges, no_polygons;
     int         joints;                  /* the others are at rest */
     RcsJoint    joint[rcs_most_joints];
     double      image_deg;               /* azimuth of the picture's middle; NaN: none */
