@@ -110,7 +110,8 @@ static bool is_closed(Edge *edge, const Model *m, const int *place)
 
 static bool is_convex(const FlatFaces *faces, const Model *m, Edge *edge, const int *place)
 {
-    if (faces->count == 0 || faces->count > convex_faces || faces->first[faces->count] != m->triangle_count) return false;
+    const int flat = faces->first[faces->count];
+    if (faces->count == 0 || faces->count > convex_faces || flat != m->triangle_count) return false;
     for (int p = 0; p < m->part_count; p++)
         if (m->part[p].damage_hidden || m->part[p].node != m->part[0].node) return false;
     if (faces->count == 1) return true;

@@ -1,21 +1,15 @@
-/* render/radar/polygons.c: flat faces in closed form: which are wholly seen, and their field. */
-#include "render/radar/polygons.h"
-
+/* render/radar/polygons.c: flat faces in closed form: their triangles, and their field. */
 #include "render/radar/currents.h"
+#include "render/radar/polygons_private.h"
 
 #include <stdlib.h>
 
 enum {
-    block_rays = 512,  /* traced together */
-    chunk_faces = 16, chunk_polygons = 2048,
-    halvings = 18      /* of a triangle; one that needs more is left to tubes */
+    chunk_polygons = 2048,
+    halvings = 18 /* of a triangle; one that needs more is left to tubes */
 };
-static const double per_radius = 128;    /* rays over the target's radius; on convex bodies 8, for sheets that coincide */
-static const double inside_m = 5e-4;     /* rays along a border keep off it */
-static const double thin_m = 1e-3;       /* triangles thinner than this are seen where the rest of their face is */
-static const double grazing = 1e-3;      /* cosine below which an antenna does not see a face */
-static const double linear_rad = 4e-3;   /* a side's phase out of a straight line */
-static const double turn_rad = 0.05;     /* a side, seen from an antenna */
+static const double linear_rad = 4e-3; /* a side's phase out of a straight line */
+static const double turn_rad = 0.05;   /* a side, seen from an antenna */
 
 /* ---- closed form --------------------------------------------------------------------------------------- */
 
@@ -47,179 +41,13 @@ double complex polygon_mean(const double x[3])
     return turn(middle) * CMPLX(re, im);
 }
 
-/* ---- what is seen -------------------------------------------------------------------------------------- */
-
-typedef struct Block {
-    double  o[3][block_rays], d[3][block_rays], far_m[block_rays], range_m[block_rays];
-    PartHit hit[block_rays];
-    uint32_t triangle[block_rays]; /* each should meet */
-    int     list[block_rays], count;
-} Block;
-
-typedef struct Search {
-    const RadarTarget *target;
-    ScatterAntenna antenna[2];
-    int        antennas;   /* 1: transmitter and receiver are one */
-    double     spacing_m;
-    Block     *block;      /* one a worker */
-    uint8_t   *seen;       /* [faces] */
-    long long *rays;       /* [chunks] */
-} Search;
-
-static void corners_of(double corner[3][3], const RadarTarget *target, uint32_t triangle)
-{
-    const Model    *model = target->model;
-    const NodePose *at = &target->pose[model->part[model->triangle_part[triangle]].node];
-    for (int k = 0; k < 3; k++) {
-        m3_mul_v3(corner[k], at->r_body_from_node, model->vertex[model->triangle[triangle][k]]);
-        v3_add(corner[k], corner[k], at->p_body);
-    }
-}
-
-static double normal_of(double n[3], const double corner[3][3])
-{
-    double ab[3], ac[3];
-    v3_sub(ab, corner[1], corner[0]);
-    v3_sub(ac, corner[2], corner[0]);
-    v3_cross(n, ab, ac);
-    const double area2 = v3_length(n);
-    v3_normalize(n, n);
-    return 0.5 * area2;
-}
-
-static bool trace_block(Block *block, const RadarTarget *target)
-{
-    const double *const o[3] = {block->o[0], block->o[1], block->o[2]};
-    const double *const d[3] = {block->d[0], block->d[1], block->d[2]};
-    bool met = true;
-    for (int i = 0; i < block->count; i++) block->list[i] = i, block->range_m[i] = INFINITY;
-    parts_first_hits(block->range_m, block->hit, &target->entity, o, d, block->far_m, block->list, block->count, false);
-    for (int i = 0; i < block->count; i++)
-        met &= !isinf(block->range_m[i]) && block->hit[i].triangle == block->triangle[i];
-    block->count = 0;
-    return met;
-}
-
-/* A ray from the antenna to a point of a triangle. False: the block was full, and one of its rays met something else. */
-static bool ask(Block *block, const Search *s, const ScatterAntenna *antenna, uint32_t triangle, const double p[3],
-                long long *rays)
-{
-    const int i = block->count++;
-    double    way[3];
-    const double away_m = antenna->range_m + scatter_path(way, antenna, p);
-    const double back_m = fmin(2.5 * s->target->entity.radius_m + 1e-3, away_m);
-    for (int c = 0; c < 3; c++) {
-        block->o[c][i] = p[c] + back_m * way[c];
-        block->d[c][i] = -way[c];
-    }
-    block->far_m[i] = INFINITY;
-    block->triangle[i] = triangle;
-    ++*rays;
-    return block->count < block_rays || trace_block(block, s->target);
-}
-
-/* Points of a triangle in rows along its longest side; then along all sides. */
-static bool ask_triangle(Block *block, const Search *s, const ScatterAntenna *antenna, uint32_t triangle,
-                         long long *rays)
-{
-    double       corner[3][3], n[3], p[3], middle[3], side_m[3];
-    corners_of(corner, s->target, triangle);
-    const double area_m2 = normal_of(n, corner);
-    int          base = 0;
-    for (int k = 0; k < 3; k++) {
-        double side[3];
-        v3_sub(side, corner[(k + 1) % 3], corner[k]);
-        side_m[k] = v3_length(side);
-        if (side_m[k] > side_m[base]) base = k;
-        middle[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
-    }
-    const double *a = corner[base], *b = corner[(base + 1) % 3], *tip = corner[(base + 2) % 3];
-    const double  height_m = 2 * area_m2 / side_m[base];
-    if (height_m < thin_m) return true;
-    if (!ask(block, s, antenna, triangle, middle, rays)) return false;
-    for (int k = 0; k < 3; k++) {
-        const int    count = (int)ceil(side_m[k] / s->spacing_m);
-        const double in = fmin(0.25, 3 * inside_m * side_m[k] / (2 * area_m2)); /* the middle is a third of a height away */
-        for (int i = 0; i < count; i++) {
-            const double along = (i + 0.5) / count;
-            for (int c = 0; c < 3; c++) {
-                const double on = corner[k][c] + along * (corner[(k + 1) % 3][c] - corner[k][c]);
-                p[c] = on + in * (middle[c] - on);
-            }
-            if (!ask(block, s, antenna, triangle, p, rays)) return false;
-        }
-    }
-    const int rows = (int)floor(height_m / s->spacing_m);
-    for (int j = 0; j < rows; j++) {
-        const double up = (j + 0.5) / rows;
-        const int    count = (int)ceil((1 - up) * side_m[base] / s->spacing_m);
-        for (int i = 0; i < count; i++) {
-            const double along = (i + (j % 2 ? 0.25 : 0.75)) / count * (1 - up);
-            for (int c = 0; c < 3; c++) p[c] = a[c] + along * (b[c] - a[c]) + up * (tip[c] - a[c]);
-            if (!ask(block, s, antenna, triangle, p, rays)) return false;
-        }
-    }
-    return true;
-}
-
-/* The side of a face, 1 or -1, that both antennas are on; 0: they are not, or along it. */
-static int side_of(const Search *s, const double corner[3][3])
-{
-    double n[3], way[3];
-    int    side = 0;
-    normal_of(n, corner);
-    for (int a = 0; a < s->antennas; a++) {
-        double least = INFINITY, most = -INFINITY;
-        for (int k = 0; k < 3; k++) {
-            scatter_path(way, &s->antenna[a], corner[k]);
-            least = fmin(least, v3_dot(n, way)), most = fmax(most, v3_dot(n, way));
-        }
-        const int here = least > grazing ? 1 : most < -grazing ? -1 : 0;
-        if (here == 0 || (a > 0 && here != side)) return 0;
-        side = here;
-    }
-    return side;
-}
-
-static bool face_is_seen(Block *block, const Search *s, int face, long long *rays)
-{
-    const FlatFaces *faces = &s->target->faces;
-    const int        first = faces->first[face], end = faces->first[face + 1];
-    block->count = 0;
-    for (int i = first; i < end; i++) {
-        double corner[3][3];
-        corners_of(corner, s->target, faces->triangle[i]);
-        if (side_of(s, corner) == 0) return false;
-    }
-    for (int a = 0; a < s->antennas; a++) { /* first one ray of each, which finds most of what is hidden */
-        for (int i = first; i < end && i < first + block_rays; i++) {
-            double corner[3][3], middle[3];
-            corners_of(corner, s->target, faces->triangle[i]);
-            for (int c = 0; c < 3; c++) middle[c] = 0.4 * corner[0][c] + 0.35 * corner[1][c] + 0.25 * corner[2][c];
-            if (!ask(block, s, &s->antenna[a], faces->triangle[i], middle, rays)) return false;
-        }
-        if (!trace_block(block, s->target)) return false;
-    }
-    for (int a = 0; a < s->antennas; a++)
-        for (int i = first; i < end; i++)
-            if (!ask_triangle(block, s, &s->antenna[a], faces->triangle[i], rays)) return false;
-    return trace_block(block, s->target);
-}
-
-static void look_at_faces(void *user, int worker, int task)
-{
-    const Search *s = user;
-    const int     end = (task + 1) * chunk_faces < s->target->faces.count ? (task + 1) * chunk_faces : s->target->faces.count;
-    for (int f = task * chunk_faces; f < end; f++) s->seen[f] = face_is_seen(&s->block[worker], s, f, &s->rays[task]);
-}
-
 /* ---- the list ------------------------------------------------------------------------------------------ */
 
 typedef struct Making {
     const RadarTarget *target;
     Polygons          *out;
     RadarSurface       surface; /* of the face's part */
-    double             k;
+    double             k, frequency_hz;
     uint32_t           triangle;
     bool               fits;    /* false: a triangle would be halved too often */
 } Making;
@@ -346,7 +174,7 @@ static Status add_face(Making *m, int face)
     Status             status = STATUS_OK;
     m->surface = (RadarSurface){0};
     if (target->materials)
-        radar_surface(&m->surface, &target->materials->material[target->material[part]], m->k * light_mps / (2 * pi_rad));
+        radar_surface(&m->surface, &target->materials->material[target->material[part]], m->frequency_hz);
     m->fits = true;
     for (int i = first; i < end && m->fits && status == STATUS_OK; i++) {
         double corner[3][3], path_m[3];
@@ -360,23 +188,21 @@ static Status add_face(Making *m, int face)
     return status;
 }
 
-/* Whether tubes would find nothing more: of a convex body each face with an antenna in front is here. */
-static bool is_all(const Polygons *out, const Search *s)
+/* Whether tubes would find nothing more: of a convex body each face with the antennas in front is here. */
+static bool is_all(const Polygons *out, const RadarTarget *target)
 {
-    const FlatFaces *faces = &s->target->faces;
+    const FlatFaces *faces = &target->faces;
     if (!faces->convex) return false;
     for (int f = 0; f < faces->count; f++) {
-        double          corner[3][3], n[3], to[3];
-        const uint32_t  t = faces->triangle[faces->first[f]];
-        bool            lit = true;
+        const uint32_t t = faces->triangle[faces->first[f]];
+        double         corner[3][3], n[3], to[2][3];
         if (out->whole[t]) continue;
-        corners_of(corner, s->target, t);
+        if (faces->count == 1) return false;
+        corners_of(corner, target, t);
         normal_of(n, corner);
-        for (int a = 0; a < s->antennas; a++) {
-            scatter_path(to, &s->antenna[a], corner[0]);
-            lit &= v3_dot(n, to) > 0 || faces->count == 1;
-        }
-        if (lit) return false;
+        scatter_path(to[0], &out->tx, corner[0]);
+        scatter_path(to[1], &out->rx, corner[0]);
+        if (v3_dot(n, to[0]) > 0 && v3_dot(n, to[1]) > 0) return false;
     }
     return true;
 }
@@ -386,48 +212,47 @@ static bool antenna_is_good(const ScatterAntenna *a)
     return v3_is_finite(a->u) && fabs(v3_dot(a->u, a->u) - 1) < 1e-9 && a->range_m > 0;
 }
 
-Status polygons_find(Polygons *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
-                     const TubeConfig *config, Pool *pool)
+static bool is_asked_for(const RadarTarget *target, const TubeConfig *config)
 {
-    const FlatFaces *faces = &target->faces;
-    const int        threads = pool ? pool_threads(pool) : 1, chunks = (faces->count + chunk_faces - 1) / chunk_faces;
-    const int        triangles = target->model->triangle_count;
-    const bool       one = memcmp(tx->u, rx->u, sizeof tx->u) == 0 && tx->range_m == rx->range_m;
-    const double     spacing_m = target->entity.radius_m / (faces->convex ? 8 : per_radius);
-    Search s = {.target = target, .antenna = {*tx, *rx}, .antennas = one ? 1 : 2, .spacing_m = spacing_m};
-    Making making = {.target = target, .out = out, .k = 2 * pi_rad * config->frequency_hz / light_mps};
-    Status status = STATUS_NO_MEMORY;
-    out->count = 0;
-    out->rays = 0;
-    out->all = false;
-    out->tx = *tx, out->rx = *rx;
+    return target->faces.count > 0 && target->faces.count <= config->polygon_faces && target->entity.node_count > 0 &&
+           !(config->warp_m > 0) && !config->last_only && !config->keep_hidden && config->frequency_hz > 0 &&
+           !isinf(config->frequency_hz);
+}
+
+static Status clear(Polygons *out, int triangles)
+{
     if (triangles > out->whole_size) {
         uint8_t *larger = realloc(out->whole, (size_t)triangles);
         if (!larger) return STATUS_NO_MEMORY;
         out->whole = larger;
         out->whole_size = triangles;
     }
-    memset(out->whole, 0, (size_t)triangles);
-    if (faces->count == 0 || faces->count > config->polygon_faces || target->entity.node_count == 0 || config->warp_m > 0 || config->last_only ||
-        config->keep_hidden || !antenna_is_good(tx) || !antenna_is_good(rx) || !(config->frequency_hz > 0) ||
-        isinf(config->frequency_hz))
-        return STATUS_OK;
-    s.block = malloc((size_t)threads * sizeof *s.block);
-    s.seen = calloc((size_t)faces->count, sizeof *s.seen);
-    s.rays = calloc((size_t)chunks, sizeof *s.rays);
-    if (!s.block || !s.seen || !s.rays) goto done;
-    if (pool) pool_run(pool, chunks, look_at_faces, &s);
-    else for (int t = 0; t < chunks; t++) look_at_faces(&s, 0, t);
-    status = STATUS_OK;
-    for (int t = 0; t < chunks; t++) out->rays += s.rays[t];
-    for (int f = 0; f < faces->count && status == STATUS_OK; f++)
-        if (s.seen[f]) status = add_face(&making, f);
-    out->all = status == STATUS_OK && is_all(out, &s);
+    if (triangles > 0) memset(out->whole, 0, (size_t)triangles);
+    out->count = 0;
+    out->rays = 0;
+    out->all = false;
+    return STATUS_OK;
+}
 
-done:
-    free(s.block);
-    free(s.seen);
-    free(s.rays);
+Status polygons_find(Polygons *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
+                     const TubeConfig *config, Pool *pool)
+{
+    const ScatterAntenna antenna[2] = {*tx, *rx};
+    const bool           one = memcmp(tx->u, rx->u, sizeof tx->u) == 0 && tx->range_m == rx->range_m;
+    Making making = {.target = target, .out = out, .k = 2 * pi_rad * config->frequency_hz / light_mps,
+                     .frequency_hz = config->frequency_hz};
+    Status status = clear(out, target->model->triangle_count);
+    out->tx = *tx, out->rx = *rx;
+    if (status != STATUS_OK || !is_asked_for(target, config) || !antenna_is_good(tx) || !antenna_is_good(rx))
+        return status;
+    uint8_t *seen = calloc((size_t)target->faces.count, sizeof *seen);
+    if (!seen) return STATUS_NO_MEMORY;
+    out->rays = polygons_seen(seen, target, antenna, one ? 1 : 2, pool);
+    if (out->rays < 0) status = STATUS_NO_MEMORY;
+    for (int f = 0; f < target->faces.count && status == STATUS_OK; f++)
+        if (seen[f]) status = add_face(&making, f);
+    out->all = status == STATUS_OK && is_all(out, target);
+    free(seen);
     return status;
 }
 
@@ -474,7 +299,8 @@ Status polygons_sweep(ScatterMatrix *s, int count, double first_hz, double step_
     const double k_per_hz = 2 * pi_rad / light_mps;
     const int    chunks = (polygons->count + chunk_polygons - 1) / chunk_polygons;
     Sweep        sweep = {.polygons = polygons, .tx = tx ? *tx : polygons->tx, .rx = rx ? *rx : polygons->rx,
-                          .moved = tx || rx, .count = count, .first_k = first_hz * k_per_hz, .step_k = step_hz * k_per_hz};
+                          .moved = tx || rx, .count = count, .first_k = first_hz * k_per_hz,
+                          .step_k = step_hz * k_per_hz};
     if (chunks == 0) return STATUS_OK;
     sweep.sum = calloc(4 * (size_t)count * (size_t)chunks, sizeof *sweep.sum);
     if (!sweep.sum) return STATUS_NO_MEMORY;

@@ -12,10 +12,11 @@
  * partly hidden or curved are left to ray tubes, and so are the later mirrors of every path: tubes go on from all
  * faces. Whole faces and not triangles, so that what tubes sum has no other borders than its real edges.
  *
- * On targets of few flat faces (TubeConfig.polygon_faces) alone. A convex body of them takes no tubes at all: 200 rays
- * a face in place of a hundred thousand. Dihedrals and trihedrals cost the same and are ten times nearer the answer. Of a
- * vehicle's thousands of faces those that are wholly seen give a fifth of the first bounce: neither the time nor the
- * error of a look changes (bench precision).
+ * Only on targets of few flat faces (TubeConfig.polygon_faces). A convex body of them takes no tubes at all: some
+ * hundred rays in place of ten thousands, and no error. Corner reflectors take the same time and are as near a fine
+ * grid (-76 .. -83 dB of the power). Of a vehicle's two thousand faces those that are wholly seen give 13 .. 22 %
+ * of the first bounce; later mirrors and hidden faces rule, so neither time nor error of a look changes (bench
+ * precision).
  *
  * For a look and its frequencies, not for signatures: those add up what lies in cells of a few wavelengths, and a
  * face is larger than a cell. Cut into pieces that small it would be as many as the tubes that it replaces.
@@ -46,10 +47,12 @@ typedef struct Polygons {
 } Polygons;
 
 /* out: zeroed, or of an earlier call. config: as for tubes_trace; with uneven surfaces, last_only or keep_hidden, and
- * where an antenna is out of range or there are more faces than polygon_faces, nothing is found. The same bits for any number of threads. */
+ * where an antenna is out of range or there are more faces than polygon_faces, nothing is found. The same bits for any
+ * number of threads. */
 Status polygons_find(Polygons *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
                      const TubeConfig *config, Pool *pool);
-/* Adds to S [count] at frequencies first_hz + i step_hz. tx, rx: antennas moved a little; NULL: those of polygons_find. */
+/* Adds to S [count] at frequencies first_hz + i step_hz. tx, rx: antennas moved a little; NULL: those of
+ * polygons_find. */
 Status polygons_sweep(ScatterMatrix *s, int count, double first_hz, double step_hz, const Polygons *polygons,
                       const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool);
 void   polygons_free(Polygons *polygons); /* frees and zeroes; accepts zeroes */

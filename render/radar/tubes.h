@@ -65,8 +65,8 @@ typedef struct TubeHits {
  * within the target, or a number that is not finite; STATUS_UNSUPPORTED, logged: more than 2^28 rays or 2^26 hits. */
 Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
                    const TubeConfig *config, Pool *pool);
-/* The same but for what the first mirror radiates where it is one of these triangles, `whole` [triangle_count]; the tubes go on
- * from there. none: no tube is shot at all. */
+/* The same but for what the first mirror radiates where it is one of these triangles, `whole` [triangle_count]; the
+ * tubes go on from there. NULL: of none. none: no tube is shot at all. */
 Status tubes_trace_rest(TubeHits *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
                         const TubeConfig *config, const uint8_t *whole, bool none, Pool *pool);
 void   tubes_free(TubeHits *hits);

@@ -36,7 +36,7 @@ static const char help[] =
     "  --joint NAME=VALUE   where a joint stands, deg, of one that slides m; at most 32. Others are at rest. `pitviper\n"
     "                       model info` lists them\n"
     "  --no-edges           without the diffraction at edges\n"
-    "  --no-polygons        by ray tubes alone: flat faces not in closed form, as they are on targets of at most 64 of them\n"
+    "  --no-polygons        by ray tubes alone; else flat faces are in closed form on targets of at most 64 of them\n"
     "  --image DEG|none     azimuth at which the picture is taken (30)\n"
     "  --cell M             its resolution, 0.01 .. 10 (a sixtieth of the target, at least three wavelengths)\n"
     "  --overwrite          replace these files in FOLDER; without it that is an error\n";

@@ -142,7 +142,8 @@ static Status check_grid(RcsSweep *sweep)
             whole += scatter_power(s[f].hh) + scatter_power(s[f].vv);
         }
     }
-    sweep->grid_db = whole > 0 ? 10 * log10(off / whole / 2) : NAN; /* half of it is each grid's own */
+    /* half of it is each grid's own; none where no tube was shot */
+    sweep->grid_db = whole > 0 && off > 0 ? 10 * log10(off / whole / 2) : NAN;
     return STATUS_OK;
 }
 

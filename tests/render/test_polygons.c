@@ -1,6 +1,6 @@
-/* Flat faces in closed form against answers from elsewhere: a plate's formula, direct integrals over a triangle and near a
- * plate, Fresnel's coefficients; and against ray tubes where faces are hidden, mirror one another or are a tank's. Each
- * figure reached is printed. labels: slow */
+/* Flat faces in closed form against answers from elsewhere: a plate's formula, direct integrals over a triangle and
+ * near a plate, Fresnel's coefficients; and against ray tubes where faces are hidden, mirror one another or are a
+ * tank's. Each figure reached is printed. labels: slow */
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 
@@ -12,6 +12,9 @@
 static const double x_hz = 10e9, w_hz = 94e9;
 
 static TotalField field; /* of the last look */
+
+/* Gauss's rule of 3 points on 0 .. 1 */
+static const double at[3] = {0.1127016653792583, 0.5, 0.8872983346207417}, weight[3] = {5 / 18.0, 8 / 18.0, 5 / 18.0};
 
 static ScatterMatrix look(RadarStage *s, const ScatterAntenna *tx, const ScatterAntenna *rx, int polygon_faces)
 {
@@ -51,7 +54,8 @@ static void put_quad(Model *m, int part, const double p[4][3])
 static void put_plate(Model *m, int part, double x_m, double y_m, double width_m, double height_m)
 {
     const double y = 0.5 * width_m, z = 0.5 * height_m;
-    put_quad(m, part, (const double[4][3]){{x_m, y_m - y, -z}, {x_m, y_m + y, -z}, {x_m, y_m + y, z}, {x_m, y_m - y, z}});
+    const double p[4][3] = {{x_m, y_m - y, -z}, {x_m, y_m + y, -z}, {x_m, y_m + y, z}, {x_m, y_m - y, z}};
+    put_quad(m, part, p);
 }
 
 /* A box about the origin; sides: 6, or 5 for one that is open at the top. */
@@ -89,7 +93,6 @@ static void close_stage(RadarStage *s)
 static double complex mean_directly(const double x[3])
 {
     enum { cuts = 120 };
-    static const double at[3] = {0.1127016653792583, 0.5, 0.8872983346207417}, weight[3] = {5 / 18.0, 8 / 18.0, 5 / 18.0};
     double complex      sum = 0;
     for (int i = 0; i < cuts; i++)
         for (int p = 0; p < 3; p++) {
@@ -158,8 +161,8 @@ static void a_plate_is_its_closed_form(void **state)
             worst = fmax(worst, fmax(cabs(m.hh - want), cabs(m.vv - want)) / peak);
             worst = fmax(worst, fmax(cabs(m.hv), cabs(m.vh)) / peak);
         }
-        printf("plate at %g GHz: within %.0f dB of the peak's amplitude, %lld rays a look\n", 1e-9 * hz, 2 * decibels(worst),
-               field.polygons.rays);
+        printf("plate at %g GHz: within %.0f dB of the peak's amplitude, %lld rays a look\n", 1e-9 * hz,
+               2 * decibels(worst), field.polygons.rays);
         CHECK(worst <= 1e-9 && field.polygons.rays < 1000);
         close_stage(&s);
     }
@@ -168,7 +171,6 @@ static void a_plate_is_its_closed_form(void **state)
 /* Of one antenna at a point: (range / distance)^2 cosine exp(-j k path) over the plate, Gauss's 3 points a cell. */
 static double complex plate_directly(const double antenna[3], double range_m, double k)
 {
-    static const double at[3] = {0.1127016653792583, 0.5, 0.8872983346207417}, weight[3] = {5 / 18.0, 8 / 18.0, 5 / 18.0};
     const double cell_m = 2 * pi_rad / k / 3;
     const int    cells[2] = {(int)ceil(plate_m[0] / cell_m), (int)ceil(plate_m[1] / cell_m)};
     double complex sum = 0;
@@ -186,7 +188,8 @@ static double complex plate_directly(const double antenna[3], double range_m, do
 static void near_a_plate_it_is_the_integral(void **state)
 {
     (void)state;
-    static const struct { double hz, range_m; } cases[] = {{10e9, 1.5}, {10e9, 20}, {94e9, 3}, {94e9, 50}, {94e9, 2000}};
+    static const struct { double hz, range_m; } cases[] = {
+        {10e9, 1.5}, {10e9, 20}, {94e9, 3}, {94e9, 50}, {94e9, 2000}};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         const double k = 2 * pi_rad * cases[n].hz / light_mps, ahead[3] = {cases[n].range_m, 0, 0};
         double       worst = 0, most = cabs(plate_directly(ahead, cases[n].range_m, k));
@@ -233,17 +236,18 @@ static void a_triangle_is_its_transform(void **state)
     v3_sub(ac, corner[2], corner[0]);
     v3_cross(n, ab, ac);
     peak = k / (2 * pi_rad) * 0.5 * v3_length(n);
-    for (int i = 0; i < 30; i++) { /* h of both antennas is across x y: its amplitude is the mean of both cosines' */
+    for (int i = 0; i < 30; i++) {
         const ScatterAntenna tx = antenna_at(1.9 * i, 0, INFINITY), rx = antenna_at(-1.3 * i + 4, 0, INFINITY);
         double               x[3];
         for (int c = 0; c < 3; c++) x[c] = -k * (v3_dot(corner[c], tx.u) + v3_dot(corner[c], rx.u));
-        const double complex want = -I * peak * tx.u[0] * mean_directly(x); /* E across the plane: n x H_i is cos(tx) */
+        /* v lies in the plate: 2 n x H is 2 cos(tx) v */
+        const double complex want = -I * peak * tx.u[0] * mean_directly(x);
         for (int on = 0; on < 2; on++) {
             const ScatterMatrix got = look(&s, &tx, &rx, on * polygon_faces_few);
-            worst[on] = fmax(worst[on], fmin(cabs(got.vv - want), cabs(got.vv + want)) / peak);
+            worst[on] = fmax(worst[on], cabs(got.vv - want) / peak);
         }
     }
-    printf("triangle of 19 wavelengths, antennas apart: tubes within %.0f dB of the peak's amplitude, closed form %.0f dB\n",
+    printf("triangle, antennas apart: tubes within %.0f dB of the peak's amplitude, closed form %.0f dB\n",
            2 * decibels(worst[0]), 2 * decibels(worst[1]));
     CHECK(worst[0] <= 1e-2 && worst[1] <= 1e-9);
     close_stage(&s);
@@ -274,7 +278,7 @@ static void other_surfaces_reflect_by_fresnel(void **state)
             fresnel_surface(&te, &tm, &surface, k, a.u[0]);
             const ScatterMatrix m = look(&s, &a, &a, polygon_faces_few);
             const double        peak = k / (2 * pi_rad) * plate_m[0] * plate_m[1];
-            worst = fmax(worst, fmax(cabs(m.hh + te * metal), cabs(m.vv - tm * metal)) / peak);
+            worst = fmax(worst, fmax(cabs(m.vv + te * metal), cabs(m.hh - tm * metal)) / peak);
         }
     printf("surfaces of four kinds: within %.1e of the peak\n", worst);
     CHECK(worst <= 1e-12);
@@ -319,7 +323,7 @@ static void a_box_needs_no_tubes(void **state)
     const ScatterAntenna a = antenna_at(20, 10, INFINITY);
     CHECK(s.target->faces.count == 5 && !s.target->faces.convex);
     look(&s, &a, &a, polygon_faces_few);
-    CHECK(!field.polygons.all && field.hits.rays > 0 && field.polygons.count == 4); /* two sides; of the third the lid is missing */
+    CHECK(!field.polygons.all && field.hits.rays > 0 && field.polygons.count == 4); /* two sides, no lid */
     close_stage(&s);
 }
 
@@ -350,9 +354,9 @@ static void a_hidden_face_is_left_to_tubes(void **state)
         off[1] += power_apart(&on, &fine);
         whole += scatter_power(fine.hh) + scatter_power(fine.vv);
     }
-    printf("plate behind a plate: tubes %.1f dB of the power from a fine grid, with the one in front in closed form %.1f dB\n",
+    printf("plate behind a plate: tubes %.1f dB of the power from a fine grid, one in closed form %.1f dB\n",
            decibels(off[0] / whole), decibels(off[1] / whole));
-    CHECK(off[1] <= 1e-4 * whole && off[1] <= 1.2 * off[0]);
+    CHECK(off[1] <= 1e-6 * whole);
 
     /* the hole that the ray test cannot miss: a strip thinner than its spacing, across the plate */
     const ScatterAntenna ahead = antenna_at(0, 0, INFINITY);
@@ -396,7 +400,8 @@ static void later_mirrors_stay_with_tubes(void **state)
         RadarStage s;
         stage_open(&s, shapes[n], x_hz);
         for (int i = 0; i < 6; i++) {
-            const ScatterAntenna a = antenna_at(n ? 45 + 5 * i - 13 : 7 * i - 17, n ? 35 + 3 * i - 8 : 2 * i - 5, i % 2 ? 50 : INFINITY);
+            const double         az_deg = n ? 32 + 5 * i : 7 * i - 17, el_deg = n ? 27 + 3 * i : 2 * i - 5;
+            const ScatterAntenna a = antenna_at(az_deg, el_deg, i % 2 ? 50 : INFINITY);
             const ScatterMatrix  tubes = look(&s, &a, &a, 0), on = look(&s, &a, &a, polygon_faces_few);
             const TubeConfig     used = s.config;
             CHECK(field.polygons.count > 0 && !field.polygons.all && field.hits.count > 0);
@@ -409,9 +414,9 @@ static void later_mirrors_stay_with_tubes(void **state)
             off[1] += power_apart(&on, &fine);
             whole += scatter_power(fine.hh) + scatter_power(fine.vv);
         }
-        printf("%s: tubes %.1f dB of the power from a fine grid, with the first bounce in closed form %.1f dB\n", shapes[n],
+        printf("%s: tubes %.1f dB of the power from a fine grid, the first bounce in closed form %.1f dB\n", shapes[n],
                decibels(off[0] / whole), decibels(off[1] / whole));
-        CHECK(off[1] <= 1e-4 * whole && off[1] <= 1.2 * off[0]);
+        CHECK(off[1] <= 1e-5 * whole && (off[1] <= 1e-7 * whole || off[1] <= off[0]));
         close_stage(&s);
     }
 }
