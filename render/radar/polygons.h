@@ -13,10 +13,10 @@
  * faces. Whole faces and not triangles, so that what tubes sum has no other borders than its real edges.
  *
  * Only on targets of few flat faces (TubeConfig.polygon_faces). A convex body of them takes no tubes at all: some
- * hundred rays in place of ten thousands, and no error. Corner reflectors take the same time and are as near a fine
+ * hundred rays in place of ten thousands, and no error. Corner reflectors take a little less time and are as near a fine
  * grid (-76 .. -83 dB of the power). Of a vehicle's two thousand faces those that are wholly seen give 13 .. 22 %
- * of the first bounce; later mirrors and hidden faces rule, so neither time nor error of a look changes (bench
- * precision).
+ * of the first bounce; later mirrors and hidden faces rule, so the error of a look is the same and its time no
+ * less (bench precision).
  *
  * For a look and its frequencies, not for signatures: those add up what lies in cells of a few wavelengths, and a
  * face is larger than a cell. Cut into pieces that small it would be as many as the tubes that it replaces.
