@@ -13,8 +13,8 @@
  * faces. Whole faces and not triangles, so that what tubes sum has no other borders than its real edges.
  *
  * Only on targets of few flat faces (TubeConfig.polygon_faces). A convex body of them takes no tubes at all: some
- * hundred rays in place of ten thousands, and no error. Corner reflectors take a little less time and are as near a fine
- * grid (-76 .. -83 dB of the power). Of a vehicle's two thousand faces those that are wholly seen give 13 .. 22 %
+ * hundred rays in place of ten thousands, and no error. Corner reflectors take a little less time and are as near a
+ * fine grid (-76 .. -83 dB of the power). Of a vehicle's two thousand faces those that are wholly seen give 13 .. 22 %
  * of the first bounce; later mirrors and hidden faces rule, so the error of a look is the same and its time no
  * less (bench precision).
  *
