@@ -71,8 +71,9 @@ static const char *take_model(RcsProbe *p, const char *name, double sag_m)
 
 static const char *trace(ScatterMatrix *s, RcsProbe *p, const ScatterAntenna *tx, const ScatterAntenna *rx, double f_hz)
 {
-    const TubeConfig config = tubes_default_config(f_hz);
-    const Status     status = total_field_trace(&p->field, p->model->target, tx, rx, &config, true, p->pool);
+    TubeConfig config = tubes_default_config(f_hz);
+    config.polygon_faces = polygon_faces_few;
+    const Status status = total_field_trace(&p->field, p->model->target, tx, rx, &config, true, p->pool);
     if (status == STATUS_NO_MEMORY) return "out of memory";
     if (status != STATUS_OK) return "too near or too large (see the log)";
     return total_field_sweep(s, 1, f_hz, 0, &p->field, NULL, NULL, p->pool) == STATUS_OK ? NULL : "out of memory";

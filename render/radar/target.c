@@ -76,6 +76,8 @@ Status radar_target_create(RadarTarget **out, const Model *model, const RadarMat
     const WedgeConfig edges = wedges_default_config();
     if (status == STATUS_OK) status = wedges_find(&target->wedges, model, &edges);
     if (status != STATUS_OK) goto fail;
+    status = flat_faces_find(&target->faces, model);
+    if (status != STATUS_OK) goto fail;
     status = edge_pairs_find(&target->pairs, target->wedges.wedge, target->wedges.count);
     if (status != STATUS_OK) goto fail;
     target->wedge = calloc((size_t)target->wedges.count + 1, sizeof *target->wedge);
@@ -116,6 +118,7 @@ void radar_target_destroy(RadarTarget *target)
     free(target->pair);
     edge_pairs_destroy(&target->pairs);
     wedges_destroy(&target->wedges);
+    flat_faces_free(&target->faces);
     free(target);
 }
 

@@ -11,6 +11,7 @@
 #include "render/radar/radar_materials.h"
 #include "render/radar/scatter.h"
 #include "render/radar/edge_pairs.h"
+#include "render/radar/flat_faces.h"
 
 typedef struct RadarTarget {
     const Model          *model;
@@ -27,6 +28,7 @@ typedef struct RadarTarget {
     EdgePair    *pair;               /* [pair_count], numbers of `wedge` */
     int          pair_count;
     int         *placed;             /* [wedges.count]: number in `wedge`; -1: not there */
+    FlatFaces    faces;
 } RadarTarget;
 
 /* model and materials must outlive it; its joints are at rest. isa: as tracer_create. */

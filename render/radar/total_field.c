@@ -1,4 +1,4 @@
-/* render/radar/total_field.c: ray tubes and edges of one look together. */
+/* render/radar/total_field.c: ray tubes, edges and flat faces of one look together. */
 #include "render/radar/total_field.h"
 
 #include <stdlib.h>
@@ -107,7 +107,13 @@ Status total_field_trace(TotalField *out, const RadarTarget *target, const Scatt
                          const TubeConfig *config, bool edges, Pool *pool)
 {
     out->edges.count = 0;
-    const Status status = tubes_trace(&out->hits, target, tx, rx, config, pool);
+    Polygons *flat = &out->polygons;
+    flat->count = 0;
+    Status status = STATUS_OK;
+    if (config->polygon_faces > 0) status = polygons_find(flat, target, tx, rx, config, pool);
+    if (status == STATUS_OK)
+        status = tubes_trace_rest(&out->hits, target, tx, rx, config, flat->count > 0 ? flat->whole : NULL,
+                                  flat->count > 0 && flat->all, pool);
     if (status != STATUS_OK || !edges || target->wedge_count == 0) return status;
     Sight            sight = {&target->entity, {tx, rx}};
     const double         k_per_m = 2 * pi_rad * config->frequency_hz / light_mps;
@@ -171,7 +177,8 @@ Status total_field_sweep(ScatterMatrix *s, int count, double first_hz, double st
                          const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool)
 {
     const double k_per_hz = 2 * pi_rad / light_mps;
-    const Status status = field_sweep(s, count, first_hz, step_hz, &field->hits, tx, rx, pool);
+    Status status = field_sweep(s, count, first_hz, step_hz, &field->hits, tx, rx, pool);
+    if (status == STATUS_OK) status = polygons_sweep(s, count, first_hz, step_hz, &field->polygons, tx, rx, pool);
     for (int i = 0; i < field->edges.count && status == STATUS_OK; i++) {
         const EdgeSegment *e = &field->edges.segment[i];
         const double path_m = tx || rx ? moved_path_m(e, field, tx ? tx : &field->hits.tx, rx ? rx : &field->hits.rx)
@@ -185,4 +192,5 @@ void total_field_free(TotalField *field)
 {
     tubes_free(&field->hits);
     edge_segments_destroy(&field->edges);
+    polygons_free(&field->polygons);
 }

@@ -222,8 +222,14 @@ static bool antenna_is_good(const ScatterAntenna *a)
 Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
                    const TubeConfig *config, Pool *pool)
 {
+    return tubes_trace_rest(out, target, tx, rx, config, NULL, false, pool);
+}
+
+Status tubes_trace_rest(TubeHits *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
+                        const TubeConfig *config, const uint8_t *whole, bool none, Pool *pool)
+{
     const int threads = pool ? pool_threads(pool) : 1;
-    TubeWork  work = {.target = target, .tx = *tx, .rx = *rx, .config = *config,
+    TubeWork  work = {.target = target, .whole = whole, .tx = *tx, .rx = *rx, .config = *config,
                       .k = 2 * pi_rad * config->frequency_hz / light_mps,
                       .monostatic = memcmp(tx->u, rx->u, sizeof tx->u) == 0 && tx->range_m == rx->range_m};
     if (!antenna_is_good(tx) || !antenna_is_good(rx) || !(config->frequency_hz > 0) ||
@@ -250,6 +256,7 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
         return status;
     }
     out->spacing_m = work.grid.spacing_m;
+    if (none) return STATUS_OK;
     work.levels = tube_levels(work.grid.spacing_m, target->entity.radius_m, config);
     work.widest_m = target->entity.radius_m;
     status = open_work(&work, threads, target);
@@ -263,8 +270,8 @@ Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenn
     }
     if (status == STATUS_NO_MEMORY) log_error("radar: out of memory for the hits of ray tubes: rays=%lld", out->rays);
     if (status == STATUS_OK && out->count > 0) {
-        static const TubeHit none;
-        append(out, &none, 1);
+        static const TubeHit nothing;
+        append(out, &nothing, 1);
         out->count--;
     }
     close_work(&work, threads);

@@ -23,7 +23,7 @@
 
 #include "render/radar/target.h"
 
-enum { tubes_splits_most = 5 };
+enum { tubes_splits_most = 5, polygon_faces_few = 64 };
 
 typedef struct TubeConfig {
     double   frequency_hz;        /* of materials and spacing: the highest, or the centre, of those to come */
@@ -41,6 +41,8 @@ typedef struct TubeConfig {
     double   warp_m, warp_length_m; /* surfaces uneven by this height, rms, over this length (warp.h); 0, 0.5 */
     uint64_t warp_seed;
     uint64_t seed;                /* of the grid */
+    int      polygon_faces;       /* total_field_trace sums flat faces in closed form (polygons.h) on targets of at
+                                   * most so many of them; 0: on none, as for signatures; polygon_faces_few */
 } TubeConfig;
 
 TubeConfig tubes_default_config(double frequency_hz);
@@ -63,6 +65,10 @@ typedef struct TubeHits {
  * within the target, or a number that is not finite; STATUS_UNSUPPORTED, logged: more than 2^28 rays or 2^26 hits. */
 Status tubes_trace(TubeHits *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
                    const TubeConfig *config, Pool *pool);
+/* The same but for what the first mirror radiates where it is one of these triangles, `whole` [triangle_count]; the
+ * tubes go on from there. NULL: of none. none: no tube is shot at all. */
+Status tubes_trace_rest(TubeHits *out, const RadarTarget *target, const ScatterAntenna *tx, const ScatterAntenna *rx,
+                        const TubeConfig *config, const uint8_t *whole, bool none, Pool *pool);
 void   tubes_free(TubeHits *hits);
 
 #endif

@@ -36,6 +36,7 @@ typedef struct TubeMark {
     float    slope_m[2];
     uint16_t part;
     bool     seen;       /* by the receiver; else path and slopes are not set */
+    bool     whole;      /* the first, on a face that is not summed by tubes */
 } TubeMark;
 
 /* A cell of the grid or, at level n, a 4^n-th of one. */
@@ -67,6 +68,7 @@ typedef struct TubeWorker {
 
 typedef struct TubeWork {
     const RadarTarget *target;
+    const uint8_t     *whole;   /* [triangle_count], or NULL: as tubes_trace_rest */
     ScatterAntenna     tx, rx;
     TubeConfig         config;
     TubeGrid           grid;

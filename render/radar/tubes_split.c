@@ -66,18 +66,24 @@ static bool continues(const TubeMark *a, const TubeMark *b, int x, int y, double
            k * fabs(step_m + 2 * (x * (double)b->slope_m[0] + y * (double)b->slope_m[1])) <= most_rad;
 }
 
-/* The mirror from which two neighbours have no more in common; 0: none. */
+/* The mirror from which two neighbours have no more in common; 0: none. Faces that are summed whole do not part them:
+ * only what comes after does. */
 static int parting(const TubeWork *work, const TubeCell *a, const TubeCell *b)
 {
     const int marks = a->marks < b->marks ? a->marks : b->marks, from = a->from > b->from ? a->from : b->from;
     for (int m = from; m <= marks; m++) {
         const TubeMark *p = &a->mark[m - 1], *q = &b->mark[m - 1];
-        if (p->seen != q->seen) return m;
-        if (p->seen && (!continues(p, q, b->x - a->x, b->y - a->y, work->k, work->config.split_rad) ||
-                        work->target->material[p->part] != work->target->material[q->part]))
-            return m;
+        const bool      whole = p->whole && q->whole; /* neither counts, though what they reflect may differ */
+        if (p->seen != q->seen && !whole) return m;
+        if (p->seen && q->seen && work->target->material[p->part] != work->target->material[q->part])
+            return whole ? m + 1 : m;
+        if (p->seen && !whole && !continues(p, q, b->x - a->x, b->y - a->y, work->k, work->config.split_rad)) return m;
     }
-    return a->marks != b->marks ? marks + 1 > from ? marks + 1 : from : 0;
+    if (a->marks == b->marks) return 0;
+    const TubeCell *longer = a->marks > b->marks ? a : b;
+    int             next = marks + 1;
+    if (next == 1 && longer->mark[0].whole && ++next > longer->marks) return 0;
+    return next > from ? next : from;
 }
 
 static void compare(const TubeWork *work, TubeCell *a, TubeCell *b, int level)

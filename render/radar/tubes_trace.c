@@ -1,4 +1,5 @@
 /* render/radar/tubes_trace.c: follows ray tubes from mirror to mirror, and what each facet radiates. */
+#include "render/radar/currents.h"
 #include "render/radar/tubes_private.h"
 
 #include <stdlib.h>
@@ -7,10 +8,6 @@
  * faces within 0.1 mm as one); their length is taken from the facet itself. */
 static const double lift_m = 2e-4;
 static const double least_power = 1e-8; /* of the incident field's: weaker tubes end */
-
-typedef struct Field {
-    double re[3], im[3];
-} Field;
 
 typedef struct Tube {
     double  p[3], d[3];         /* where it was last mirrored, and its direction since */
@@ -28,97 +25,14 @@ struct TubeTile {
     double  o[3][tile_rays], d[3][tile_rays], far_m[tile_rays], range_m[tile_rays];
     PartHit hit[tile_rays];
     double  from[3][tile_rays], to[3][tile_rays], limit_m[tile_rays]; /* towards the receiver */
-    uint8_t met[tile_rays], kept[tile_rays], arrived[tile_rays];
+    uint8_t met[tile_rays], kept[tile_rays], arrived[tile_rays], whole[tile_rays];
     TubeHit record[tile_rays];
     int     alive[tile_rays];
 };
 
 size_t tube_tile_octets(void) { return sizeof(TubeTile); }
 
-/* ---- fields ----------------------------------------------------------------------------------------- */
-
-static void field_scale(Field *e, double s)
-{
-    v3_scale(e->re, s, e->re);
-    v3_scale(e->im, s, e->im);
-}
-
-/* times j */
-static void field_quarter(Field *e)
-{
-    const Field was = *e;
-    v3_scale(e->re, -1, was.im);
-    v3_scale(e->im, 1, was.re);
-}
-
-/* 2 (n.E) n - E: the field that a perfect mirror returns. */
-static void mirror_vector(double out[3], const double e[3], const double n[3])
-{
-    const double along = 2 * v3_dot(n, e);
-    for (int c = 0; c < 3; c++) out[c] = along * n[c] - e[c];
-}
-
-/* a += g (e . from) to */
-static void add_part(Field *a, double complex g, const Field *e, const double from[3], const double to[3])
-{
-    const double re = v3_dot(e->re, from), im = v3_dot(e->im, from);
-    const double x = creal(g) * re - cimag(g) * im, y = creal(g) * im + cimag(g) * re;
-    v3_add_scaled(a->re, a->re, x, to);
-    v3_add_scaled(a->im, a->im, y, to);
-}
-
-/* The field mirrored by a surface of normal n, from direction d to d_out. */
-static void reflect_field(Field *out, const Field *e, const RadarSurface *surface, double complex te, double complex tm,
-                          const double n[3], const double d[3], const double d_out[3])
-{
-    double across[3], in[3], away[3];
-    if (surface->kind == RADAR_METAL) {
-        mirror_vector(out->re, e->re, n);
-        mirror_vector(out->im, e->im, n);
-        if (surface->rough_m > 0) field_scale(out, creal(tm));
-        return;
-    }
-    v3_cross(across, d, n);
-    if (v3_length(across) < 1e-9) { /* any direction across */
-        const double aside[3] = {fabs(d[0]) < 0.5, fabs(d[0]) >= 0.5, 0};
-        v3_cross(across, d, aside);
-    }
-    v3_normalize(across, across);
-    v3_cross(in, d, across);
-    v3_cross(away, d_out, across);
-    *out = (Field){{0}, {0}};
-    add_part(out, te, e, across, across);
-    add_part(out, tm, e, in, away);
-}
-
-/* Twice the currents' far field towards s over -jk/4pi, less its part along s: n x (d x E + d_out x E') - (n x (E +
- * E')) x s. */
-static void radiate(double out[3], const double e[3], const double e_out[3], const double n[3], const double d[3],
-                    const double d_out[3], const double s[3])
-{
-    double h[3], h_out[3], j[3], whole[3], m[3], ms[3];
-    v3_cross(h, d, e);
-    v3_cross(h_out, d_out, e_out);
-    v3_add(h, h, h_out);
-    v3_cross(j, n, h);
-    v3_add(whole, e, e_out);
-    v3_cross(m, n, whole);
-    v3_cross(ms, m, s);
-    v3_sub(out, j, ms);
-}
-
 /* ---- the start -------------------------------------------------------------------------------------- */
-
-/* The antenna's polarisation, across a ray of direction d. */
-static void polarise(double out[2][3], const ScatterAntenna *antenna, const double d[3])
-{
-    scatter_basis(out[0], out[1], antenna->u);
-    if (isinf(antenna->range_m)) return;
-    for (int q = 0; q < 2; q++) {
-        v3_add_scaled(out[q], out[q], -v3_dot(out[q], d), d);
-        v3_normalize(out[q], out[q]);
-    }
-}
 
 /* x, y: place in the grid, in its cells; side_m: of the tube. */
 static void start_tube(TubeTile *tile, const TubeWork *work, double x, double y, double side_m)
@@ -287,12 +201,6 @@ static void bend(double dn[3], const Model *model, const PosedFacet *facet, cons
     v3_add_scaled(dn, dn, -v3_dot(dn, facing->smooth), facing->smooth);
 }
 
-static void mirror_direction(double out[3], const double d[3], const double n[3])
-{
-    v3_add_scaled(out, d, -2 * v3_dot(n, d), n);
-    v3_normalize(out, out);
-}
-
 /* The tube's direction, spreading and field beyond the mirror. */
 static void leave(Tube *tube, const TubeWork *work, const PosedFacet *facet, const Facing *facing,
                   const RadarSurface *surface,
@@ -331,26 +239,14 @@ static void leave(Tube *tube, const TubeWork *work, const PosedFacet *facet, con
 static bool record_hit(TubeHit *record, const Tube *tube, const TubeWork *work, const Facing *facing,
                        const RadarSurface *surface, double complex te, double complex tm, int part)
 {
-    double s[3], d_out[3], footprint[3], q[2][3], away[3];
+    double s[3], footprint[3], radiated[8];
     const double path_m = scatter_path(s, &work->rx, tube->p);
     if (!(v3_dot(facing->n, s) > 0) && !work->config.keep_hidden) return false;
     v3_cross(footprint, tube->side[0], tube->side[1]);
     double area_m2 = 0.5 * v3_length(footprint);
     if (!isinf(work->rx.range_m)) area_m2 *= work->rx.range_m / (work->rx.range_m + path_m);
-    mirror_direction(d_out, tube->d, facing->n);
-    v3_scale(away, -1, s);
-    polarise(q, &work->rx, away);
-    for (int p = 0; p < 2; p++) {
-        Field  e_out;
-        double re[3], im[3];
-        reflect_field(&e_out, &tube->e[p], surface, te, tm, facing->n, tube->d, d_out);
-        radiate(re, tube->e[p].re, e_out.re, facing->n, tube->d, d_out, s);
-        radiate(im, tube->e[p].im, e_out.im, facing->n, tube->d, d_out, s);
-        for (int r = 0; r < 2; r++) {
-            record->amplitude[4 * r + 2 * p] = (float)(area_m2 * v3_dot(q[r], re));
-            record->amplitude[4 * r + 2 * p + 1] = (float)(area_m2 * v3_dot(q[r], im));
-        }
-    }
+    facet_radiates(radiated, tube->e, surface, te, tm, facing->n, tube->d, s, &work->rx);
+    for (int i = 0; i < 8; i++) record->amplitude[i] = (float)(area_m2 * radiated[i]);
     const double against = v3_dot(facing->smooth, tube->d);
     for (int i = 0; i < 2; i++) {
         double side[3];
@@ -401,7 +297,7 @@ static int mirror_all(TubeTile *tile, TubeWork *work, const int *list, int count
         const int i = list[k];
         Tube     *tube = &tile->tube[i];
         Facing    facing;
-        tile->kept[i] = tile->arrived[i] = 0;
+        tile->kept[i] = tile->arrived[i] = tile->whole[i] = 0;
         if (isinf(tile->range_m[i])) continue;
         const PosedNode *node = &work->target->entity.node[tile->hit[i].node];
         if (facet.node != node || facet.triangle != tile->hit[i].triangle)
@@ -409,6 +305,7 @@ static int mirror_all(TubeTile *tile, TubeWork *work, const int *list, int count
         const int part = model->triangle_part[tile->hit[i].triangle];
         if (!arrive(tube, &facing, tile, work, &facet, &work->warp[part], i)) continue;
         tile->arrived[i] = 1;
+        tile->whole[i] = work->whole && tube->bounces == 1 && work->whole[tile->hit[i].triangle];
         const RadarSurface *surface = &work->surface[part];
         double complex      te = -1, tm = 1;
         if (surface->kind != RADAR_METAL || surface->rough_m > 0)
@@ -479,6 +376,7 @@ static void leave_mark(TubeCell *cell, const TubeTile *tile, int i, int bounce)
     TubeMark      *mark = &cell->mark[bounce - 1];
     cell->marks = bounce;
     mark->seen = tile->kept[i];
+    mark->whole = tile->whole[i];
     if (!mark->seen) return;
     mark->path_m = record->path_m;
     memcpy(mark->slope_m, record->slope_m, sizeof mark->slope_m);
@@ -505,7 +403,7 @@ bool tube_follow(TubeWork *work, int worker_at, long long number, int level, Tub
                 if (!isinf(tile->range_m[tile->alive[k]])) tile->kept[tile->alive[k]] = 0;
         for (int k = 0; k < count; k++) {
             tile->record[list[k]].cell = first + list[k];
-            if (tile->kept[list[k]]) good &= keep(worker, &tile->record[list[k]]);
+            if (tile->kept[list[k]] && !tile->whole[list[k]]) good &= keep(worker, &tile->record[list[k]]);
         }
         memcpy(list, tile->alive, (size_t)alive * sizeof *list);
         count = alive;

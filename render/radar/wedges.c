@@ -46,8 +46,7 @@ static int find_place(const Cells *c, const int *node, int vertex)
     return best;
 }
 
-/* place[vertex_count]: the corner that stands for each. */
-static Status weld(int *place, const Model *m, double weld_m)
+Status wedges_weld(int *place, const Model *m, double weld_m)
 {
     const int n = m->vertex_count;
     Cells cells = {.model = m, .weld_m = weld_m, .mask = 15};
@@ -379,7 +378,7 @@ Status wedges_find(WedgeList *out, const Model *model, const WedgeConfig *config
     found.end = malloc(most * sizeof *found.end);
     found.open = open;
     if (!place || !side || !pool || !open || !used || !end || !found.wedge || !found.end) goto done;
-    status = weld(place, model, config->weld_m);
+    status = wedges_weld(place, model, config->weld_m);
     if (status != STATUS_OK) goto done;
 
     find_pieces(&found, side, find_sides(side, model, place), open, pool);

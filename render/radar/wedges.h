@@ -40,6 +40,9 @@ typedef struct WedgeList {
 Status wedges_find(WedgeList *out, const Model *model, const WedgeConfig *config);
 void   wedges_destroy(WedgeList *list); /* frees and zeroes; accepts zeroes */
 
+/* place[vertex_count]: the first of the vertices of one node that lie within weld_m of each. */
+Status wedges_weld(int *place, const Model *model, double weld_m);
+
 /* Wedges [list->count] in body axes, moved by -origin_body (the phase centre); pose: of all nodes. */
 void wedges_place(Wedge *out, const WedgeList *list, const NodePose *pose, const double origin_body[3]);
 

@@ -12,7 +12,7 @@
 static const char help[] =
     "usage: pitviper rcs NAME|FILE|SHAPE [-o FOLDER] [--frequency GHZ[,GHZ...]] [--azimuth FROM:TO:STEP]\n"
     "                    [--elevation DEG] [--range M] [--rays N] [--splits N] [--warp MM] [--no-edges]\n"
-    "                    [--joint NAME=VALUE ...] [--image DEG|none] [--cell M] [--overwrite]\n"
+    "                    [--no-polygons] [--joint NAME=VALUE ...] [--image DEG|none] [--cell M] [--overwrite]\n"
     "\n"
     "A target's radar cross section over azimuth, at full polarisation, by ray tubes, physical optics and edges. It\n"
     "stands alone: no ground.\n"
@@ -36,6 +36,7 @@ static const char help[] =
     "  --joint NAME=VALUE   where a joint stands, deg, of one that slides m; at most 32. Others are at rest. `pitviper\n"
     "                       model info` lists them\n"
     "  --no-edges           without the diffraction at edges\n"
+    "  --no-polygons        by ray tubes alone; else flat faces are in closed form on targets of at most 64 of them\n"
     "  --image DEG|none     azimuth at which the picture is taken (30)\n"
     "  --cell M             its resolution, 0.01 .. 10 (a sixtieth of the target, at least three wavelengths)\n"
     "  --overwrite          replace these files in FOLDER; without it that is an error\n";
@@ -119,6 +120,10 @@ static int parse(RcsOptions *o, int argc, char **argv)
         }
         if (strcmp(option, "--no-edges") == 0) {
             c->no_edges = true;
+            continue;
+        }
+        if (strcmp(option, "--no-polygons") == 0) {
+            c->no_polygons = true;
             continue;
         }
         if (option[0] != '-') {

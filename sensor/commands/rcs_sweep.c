@@ -71,6 +71,7 @@ Status rcs_sweep_open(RcsSweep *out, const RcsConfig *config)
     }
     if (config->splits >= 0) out->tubes.splits = config->splits;
     out->tubes.warp_m = config->warp_mm * 1e-3;
+    out->tubes.polygon_faces = config->no_polygons ? 0 : polygon_faces_few;
     const char *given = given_signature_path(config->name);
     Status      status = radar_materials_load(&out->materials);
     if (status == STATUS_OK && given) status = given_signature_open(&out->given, given);
@@ -141,7 +142,8 @@ static Status check_grid(RcsSweep *sweep)
             whole += scatter_power(s[f].hh) + scatter_power(s[f].vv);
         }
     }
-    sweep->grid_db = whole > 0 ? 10 * log10(off / whole / 2) : NAN; /* half of it is each grid's own */
+    /* half of it is each grid's own; none where no tube was shot */
+    sweep->grid_db = whole > 0 && off > 0 ? 10 * log10(off / whole / 2) : NAN;
     return STATUS_OK;
 }
 

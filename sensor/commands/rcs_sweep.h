@@ -24,7 +24,7 @@ typedef struct RcsConfig {
     double      rays_per_wavelength;     /* 0: the default */
     int         splits;                  /* of tubes at edges; -1: the default */
     double      warp_mm;                 /* unevenness of surfaces, rms */
-    bool        no_edges;
+    bool        no_edges, no_polygons;
     int         joints;                  /* the others are at rest */
     RcsJoint    joint[rcs_most_joints];
     double      image_deg;               /* azimuth of the picture's middle; NaN: none */
@@ -41,7 +41,7 @@ typedef struct RcsSweep {
     TotalField     field;                /* of the last look */
     ScatterMatrix *s;                    /* [looks][frequencies] */
     long long      rays, hit_count, unknown; /* unknown: looks and frequencies that the given signature lacks */
-    double         grid_db;              /* error by another grid of tubes, of the power, some looks; NaN: none */
+    double         grid_db;              /* error by another grid of tubes, of the power, some looks; NaN: none, or no difference */
 } RcsSweep;
 
 /* Logs what fails. A name given:FILE is a signature of given_signature.h, without a picture. */

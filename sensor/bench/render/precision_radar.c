@@ -146,6 +146,7 @@ Status bench_precision_radar(Bench *bench)
     if (status == STATUS_OK) status = knob_splits(bench, &model, pool);
     if (status == STATUS_OK) status = knob_mirrors(bench, &model, pool);
     if (status == STATUS_OK) status = precision_radar_reuse(bench, model.target, pool);
+    if (status == STATUS_OK) status = precision_radar_polygons(bench, &materials, pool);
     if (status != STATUS_OK) log_error("bench: precision: radar: %s", status_name(status));
     pool_destroy(pool);
     radar_model_close(&model);

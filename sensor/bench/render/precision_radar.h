@@ -7,5 +7,7 @@
 
 /* Edges, lists used at other aspects, centres instead of hits. */
 Status precision_radar_reuse(Bench *bench, RadarTarget *tank, Pool *pool);
+/* Flat faces by ray tubes and in closed form. */
+Status precision_radar_polygons(Bench *bench, const RadarMaterials *materials, Pool *pool);
 
 #endif
