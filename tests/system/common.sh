@@ -25,11 +25,10 @@ finish() {
     exit
 }
 
-# Most tests are of other things than plants and heat, which cost seconds a run: bare ground, warmed up in few steps, and
-# coarse built-in models, unless their options say otherwise. Tests of heat or of radiances have $full in place of $bare.
+# Most tests are of other things than plants and heat, which cost seconds a run: bare ground, warmed up in few steps,
+# unless their options say otherwise. Tests of heat or of radiances have $full in place of $bare.
 full=(--set terrain.woods=off)
-bare=("${full[@]}" --set heat.facets=3 --set heat.step_s=1800 --set heat.shadow_m=64 --set heat.vehicle_step_s=600
-      --set models.sag_m=0.02)
+bare=("${full[@]}" --set heat.facets=3 --set heat.step_s=1800 --set heat.shadow_m=64 --set heat.vehicle_step_s=600)
 # run ARGUMENTS: pitviper, with standard output, standard error and exit code in $tmp/stdout, $tmp/stderr, $code
 run() {
     case ${1:-} in replay|run) set -- "$1" "${bare[@]}" "${@:2}" ;; esac

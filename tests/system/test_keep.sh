@@ -124,7 +124,8 @@ check "--planes range,colour" complained "publish.planes: 'range,colour' is not 
 name=$'a\033[31m\033]0;x\a\302\2331m\342\200\256\377\303\251.pcap'
 cp "$tmp/demo.pcap" "$tmp/$name" && mkdir "$tmp/o$name"
 steers() { LC_ALL=C grep -qaP '[\x00-\x08\x0b-\x1f\x7f\xff]|\xc2\x9b|\xe2\x80\xae' "$tmp/stdout" "$tmp/stderr"; }
-for words in "inspect $tmp/$name" "inspect $tmp/no$name" "replay $tmp/$name --only 1 --out $tmp/o$name/o" "replay $tmp/$name --host $name" \
+for words in "inspect $tmp/$name" "inspect $tmp/no$name" "replay $tmp/$name --host $name" \
+             "replay ${bare[*]} ${small[*]} $tmp/$name --only 1 --out $tmp/o$name/o" \
              "replay $tmp/$name --set $name=1" "replay --$name" "check $tmp/$name" "regress $tmp/$name" "model info $name" "probe $name" "help $name" "help truth $name" "$name" \
              "exercise $name -o x" "record -o $tmp/nowhere/$name --for 1" "replay $tmp/$name --out $tmp/o$name/o --planes $name"; do
     # shellcheck disable=SC2086
