@@ -116,7 +116,6 @@ static void a_sphere_has_its_own_share_and_moves(void **state)
 
 int main(void)
 {
-    (void)line; /* of the stage, which nothing here sums up */
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gridding_leaves_as_much),
         cmocka_unit_test(a_sphere_has_its_own_share_and_moves),

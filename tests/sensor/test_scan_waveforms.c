@@ -2,6 +2,8 @@
  * a still antenna and from one that flies. */
 #include "tests/sensor/scan_stage.h"
 
+static double line[scan_azimuths_most]; /* power over azimuth */
+
 static const double near_m = 600; /* within the window of fmcw_94 */
 
 static void place_near(double azimuth)

@@ -309,6 +309,7 @@ Status bench_precision(Bench *bench)
     precision_close(&p);
     if (status == STATUS_OK) status = precision_plants(bench);
     if (status == STATUS_OK) status = precision_detectors(bench);
+    if (status == STATUS_OK) status = precision_radar_seeker(bench);
     if (status != STATUS_OK) log_error("bench: precision: %s", status_name(status));
     return status;
 }
