@@ -38,6 +38,24 @@ typedef struct Split {
 
 static double outside(double x, double low, double high) { return x < low ? low - x : x > high ? x - high : 0; }
 
+/* Whether a cell of this side is small enough for all places of a square. */
+static bool suits(const Split *s, double side_m, double west_m, double south_m, double width_m)
+{
+    const double x_m = outside(s->from_m[0], west_m, west_m + width_m);
+    const double y_m = outside(s->from_m[1], south_m, south_m + width_m);
+    return side_m * side_m <= s->share * s->share * (x_m * x_m + y_m * y_m);
+}
+
+static void take(Split *s, ClutterCell cell)
+{
+    double centre_m[2];
+    clutter_centre(centre_m, s->grid, &cell);
+    for (int a = 0; a < 2; a++)
+        if (!(centre_m[a] >= s->low_m[a] && centre_m[a] < s->high_m[a])) return;
+    if (s->count < s->capacity) s->out[s->count] = cell;
+    s->count++;
+}
+
 static void split(Split *s, ClutterCell cell)
 {
     const double side_m = clutter_side(s->grid, cell.level);
@@ -46,18 +64,16 @@ static void split(Split *s, ClutterCell cell)
     if (west_m >= s->high_m[0] || south_m >= s->high_m[1] || west_m + side_m <= s->low_m[0] ||
         south_m + side_m <= s->low_m[1])
         return;
-    const double x_m = outside(s->from_m[0], west_m, west_m + side_m), y_m = outside(s->from_m[1], south_m, south_m + side_m);
-    if (cell.level > 0 && side_m * side_m > s->share * s->share * (x_m * x_m + y_m * y_m)) {
-        for (int k = 0; k < 4; k++)
-            split(s, (ClutterCell){2 * cell.x + k % 2, 2 * cell.y + k / 2, cell.level - 1});
+    if (cell.level == 0 || suits(s, side_m, west_m, south_m, side_m)) {
+        take(s, cell);
         return;
     }
-    double centre_m[2];
-    clutter_centre(centre_m, s->grid, &cell);
-    for (int a = 0; a < 2; a++)
-        if (!(centre_m[a] >= s->low_m[a] && centre_m[a] < s->high_m[a])) return;
-    if (s->count < s->capacity) s->out[s->count] = cell;
-    s->count++;
+    const bool last = cell.level == 1 || suits(s, 0.5 * side_m, west_m, south_m, side_m); /* no quarter is divided */
+    for (int k = 0; k < 4; k++) {
+        const ClutterCell quarter = {2 * cell.x + k % 2, 2 * cell.y + k / 2, cell.level - 1};
+        if (last) take(s, quarter);
+        else split(s, quarter);
+    }
 }
 
 size_t clutter_cells_at(ClutterCell *out, size_t capacity, const ClutterGrid *grid, const double low_m[2],

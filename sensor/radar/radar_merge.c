@@ -10,22 +10,13 @@
  * precision has the time it saves, and its error. */
 #include "sensor/radar/seeker_radar_private.h"
 
-enum { axes = 4, worth = 2 };
+enum { axes = merge_axes, worth = 2 };
 static const double step_rad[axes] = {0.4, 0.4, 0.25, 0.25}, together_rad = 0.1;
 
 typedef struct Axis {
     double low, high, scale;    /* rad of phase, or u, over its unit */
     int    nodes;
 } Axis;
-
-/* Delay and its growth as two-way paths; cosines off the antenna's axis. Returns what is lost on the way there, np. */
-static double coordinates(double x[axes], const Making *m, const RadarPoint *p)
-{
-    Sight to;
-    making_sight(&to, m, p->p_enu, 0);
-    x[0] = p->path_m, x[1] = p->path_per_pulse_m, x[2] = to.cos_right, x[3] = to.cos_down;
-    return making_volume_np(m, &to);
-}
 
 /* False: too many nodes. */
 static bool grid_over(Axis axis[axes], size_t *nodes, int count)
@@ -63,13 +54,22 @@ static RadarPoint node_of(const Axis axis[axes], size_t number, const RadarPoint
     return out;
 }
 
-/* Adds a point to the nodes about it. */
-static void share_out(RadarPoint *node, const double *lost_np, const Axis axis[axes], const Making *m, const RadarPoint *p)
+static double lost_on_the_way(const Making *m, const RadarPoint *p)
 {
-    const double k = 2 * pi_rad * m->preset->wave.centre_hz / light_mps;
-    double       x[axes], weight[axes][2];
-    size_t       first = 0, stride[axes], next = 1;
-    const double own_np = coordinates(x, m, p);
+    Sight to;
+    if (!m->radar->foliage && m->chaff_count == 0) return 0;
+    making_sight(&to, m, p->p_enu, 0);
+    return making_volume_np(m, &to);
+}
+
+/* Adds a point to the nodes about it. */
+static void share_out(RadarPoint *node, const double *lost_np, const Axis axis[axes], const Making *m,
+                      const RadarPoint *p, const double x[axes])
+{
+    const double   k = 2 * pi_rad * m->preset->wave.centre_hz / light_mps, own_np = lost_on_the_way(m, p);
+    double         weight[axes][2];
+    double complex turn[2] = {0};
+    size_t         first = 0, stride[axes], next = 1;
     for (int a = 0; a < axes; a++) {
         const int    last = axis[a].nodes - 1;
         const double at = last > 0 ? clamp((x[a] - axis[a].low) / (axis[a].high - axis[a].low), 0, 1) * last : 0;
@@ -79,6 +79,10 @@ static void share_out(RadarPoint *node, const double *lost_np, const Axis axis[a
         stride[a] = next;
         first += (size_t)low * next;
         next *= (size_t)axis[a].nodes;
+        for (int side = 0; side < 2 && a == 0; side++) {
+            const double phase = -k * (p->path_m - node_at(&axis[a], low + side));
+            turn[side] = CMPLX(cos(phase), sin(phase));
+        }
     }
     for (int corner = 0; corner < 1 << axes; corner++) {
         double   size = 1;
@@ -88,14 +92,14 @@ static void share_out(RadarPoint *node, const double *lost_np, const Axis axis[a
             i += (corner >> a & 1 && axis[a].nodes > 1) ? stride[a] : 0;
         }
         if (size == 0) continue;
-        const double         phase = -k * (p->path_m - node[i].path_m);
-        const double complex turn = size * exp(lost_np[i] - own_np) * CMPLX(cos(phase), sin(phase));
-        node[i].same += p->same * turn;
-        node[i].other += p->other * turn;
+        if (lost_np[i] != own_np) size *= exp(lost_np[i] - own_np);
+        const double re = size * creal(turn[corner & 1]), im = size * cimag(turn[corner & 1]);
+        node[i].same += CMPLX(creal(p->same) * re - cimag(p->same) * im, creal(p->same) * im + cimag(p->same) * re);
+        node[i].other += CMPLX(creal(p->other) * re - cimag(p->other) * im, creal(p->other) * im + cimag(p->other) * re);
     }
 }
 
-int making_merge(RadarPoint *point, const bool *spins, int count, const Making *m)
+int making_merge(RadarPoint *point, const double (*x)[merge_axes], const bool *spins, int count, const Making *m)
 {
     const Waveform *wave = &m->preset->wave;
     const double    k = 2 * pi_rad * wave->centre_hz / light_mps;
@@ -106,13 +110,11 @@ int making_merge(RadarPoint *point, const bool *spins, int count, const Making *
     int             still = 0;
     for (int a = 0; a < axes; a++) axis[a] = (Axis){INFINITY, -INFINITY, scale[a], 1};
     for (int i = 0; i < count; i++) {
-        double x[axes];
         if (spins[i]) continue;
-        coordinates(x, m, &point[i]);
         still++;
         for (int a = 0; a < axes; a++) {
-            axis[a].low = fmin(axis[a].low, x[a]);
-            axis[a].high = fmax(axis[a].high, x[a]);
+            if (x[i][a] < axis[a].low) axis[a].low = x[i][a];
+            if (x[i][a] > axis[a].high) axis[a].high = x[i][a];
         }
     }
     if (still < 2 || !grid_over(axis, &nodes, still)) return count;
@@ -120,12 +122,11 @@ int making_merge(RadarPoint *point, const bool *spins, int count, const Making *
     double     *lost_np = arena_alloc(m->arena, nodes, sizeof *lost_np);
     if (!node || !lost_np) return count; /* no less right */
     for (size_t i = 0; i < nodes; i++) {
-        double x[axes];
         node[i] = node_of(axis, i, &point[0], m);
-        lost_np[i] = coordinates(x, m, &node[i]);
+        lost_np[i] = lost_on_the_way(m, &node[i]);
     }
     for (int i = 0; i < count; i++)
-        if (!spins[i]) share_out(node, lost_np, axis, m, &point[i]);
+        if (!spins[i]) share_out(node, lost_np, axis, m, &point[i], x[i]);
     int kept = 0;
     for (int i = 0; i < count; i++) /* first those that spin: nodes are fewer than the points that leave room for them */
         if (spins[i]) point[kept++] = point[i];

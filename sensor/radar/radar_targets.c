@@ -148,6 +148,7 @@ typedef struct CentreJob {
     const int           *shown;        /* [points]: the centres in sight */
     RadarPoint          *point;        /* [points] */
     bool                *spins;        /* [points] */
+    double             (*x)[merge_axes];
     double               h_enu[3], v_enu[3];
     int                  count, points;
 } CentreJob;
@@ -197,6 +198,7 @@ static void point_block(void *user, int worker, int task)
         q->widest = m->widest + room_m / job->sight->range_m;
         q->room_m = room_m;
         q->own = m->after_s != 0;
+        memcpy(job->x[i], (double[merge_axes]){q->path_m, q->path_per_pulse_m, to.cos_right, to.cos_down}, sizeof job->x[i]);
     }
 }
 
@@ -223,8 +225,8 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     int         *shown = arena_alloc(m->arena, n, sizeof *shown);
     CentreJob    job = {.making = m, .target = t, .sight = sight, .centre = r->centres.centre, .count = r->centres.count,
                         .view = arena_alloc(m->arena, n, sizeof *job.view), .shown = shown, .point = points_room(&r->points, (int)n),
-                        .spins = arena_alloc(m->arena, n, sizeof *job.spins)};
-    if (!seen || !shown || !job.view || !job.point || !job.spins) return STATUS_NO_MEMORY;
+                        .spins = arena_alloc(m->arena, n, sizeof *job.spins), .x = arena_alloc(m->arena, n, sizeof *job.x)};
+    if (!seen || !shown || !job.view || !job.point || !job.spins || !job.x) return STATUS_NO_MEMORY;
     status = radar_sight_centres(seen, m, t->index, t->p_enu, t->r_enu_from_body, &r->centres);
     if (status != STATUS_OK) return status;
     basis_of(job.h_enu, job.v_enu, t);
@@ -233,7 +235,7 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     for (int i = 0; i < job.count; i++)
         if (seen[i]) shown[job.points++] = i;
     in_blocks(&job, job.points, point_block);
-    r->points.count += m->scene->apart ? job.points : making_merge(job.point, job.spins, job.points, m);
+    r->points.count += m->scene->apart ? job.points : making_merge(job.point, job.x, job.spins, job.points, m);
     return truth->given || !(truth->visible > 0) ? STATUS_OK : making_bounce(m, t, &field, truth);
 }
 

@@ -110,9 +110,10 @@ typedef struct Target {
 /* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. node -1: of none. */
 void making_target_velocity(double v_enu_mps[3], const Target *target, int node, const double p_body[3]);
 
-/* Makes fewer echoes of a target's, where the radar tells few of them apart; returns how many are left. spins: those whose
- * part does. */
-int making_merge(RadarPoint *point, const bool *spins, int count, const Making *making);
+/* Makes fewer echoes of a target's, where the radar tells few of them apart; returns how many are left. x: their paths,
+ * growth of the paths, cosines to the right and down; spins: those whose part does. */
+enum { merge_axes = 4 };
+int making_merge(RadarPoint *point, const double (*x)[merge_axes], const bool *spins, int count, const Making *making);
 
 /* Adds the echoes of an entity by way of the ground, whose field is direct without it (body bases), and their truth. With
  * signatures missing: asks for its own alone. */

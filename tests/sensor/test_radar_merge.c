@@ -9,12 +9,15 @@ static int open_models(void **state)
     FILE *file = scene_obj("boxes", NULL);
     int   first = 1;
     /* unlike, over seven metres along and across, and two up */
-    const double low[5][3] = {{-3.5, -3.2, 0}, {-1.3, 1.8, 0.4}, {0.2, -1.1, 0}, {1.7, 2.6, 1.1}, {2.9, -2.4, 0.3}};
-    for (int i = 0; i < 5; i++) {
-        const double high[3] = {low[i][0] + 0.5 + 0.1 * i, low[i][1] + 0.9 - 0.1 * i, low[i][2] + 0.7 + 0.2 * i};
-        char         name[8];
+    for (int i = 0; i < 16; i++) {
+        double low[3], high[3];
+        for (int k = 0; k < 3; k++) {
+            low[k] = (k < 2 ? -3.5 : 0) + (k < 2 ? 6.5 : 1.5) * random_uniform(1, 0, (uint32_t)i, (uint64_t)k);
+            high[k] = low[k] + 0.3 + 0.2 * random_uniform(1, 1, (uint32_t)i, (uint64_t)k);
+        }
+        char name[8];
         snprintf(name, sizeof name, "box%d", i);
-        first = scene_box(file, name, first, low[i], high);
+        first = scene_box(file, name, first, low, high);
     }
     CHECK(fclose(file) == 0);
     file = scene_obj("sphere", NULL);
@@ -54,7 +57,7 @@ static void few_echoes_make_the_same_map(void **state)
 {
     (void)state;
     /* still; turning, so that range rates differ; turned away from the axis, where the pattern has a slope */
-    static const double rps[3] = {0, 0.004, 0}, north_m[3] = {0, 0, 12};
+    static const double rps[3] = {0, 0.002, 0}, north_m[3] = {0, 0, 12};
     for (int i = 0; i < 3; i++) {
         int merged, apart;
         stage.snapshot.count = 0;
