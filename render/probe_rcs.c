@@ -60,7 +60,9 @@ static const char *take_model(RcsProbe *p, const char *name, double sag_m)
     drop_model(p);
     if (snprintf(p->name, sizeof p->name, "%s", name) >= (int)sizeof p->name) return "the target's name is too long";
     p->sag_m = sag_m;
-    if (given) return given_signature_open(&p->given, given) == STATUS_OK ? NULL : "no such signature, or it is broken (see the log)";
+    if (given)
+        return given_signature_open(&p->given, given) == STATUS_OK ? NULL
+                                                                   : "no such signature, or it is broken (see the log)";
     p->model = calloc(1, sizeof *p->model);
     if (!p->model) return "out of memory";
     if (radar_model_open(p->model, name, &p->materials, sag_m) == STATUS_OK) return NULL;
@@ -79,10 +81,12 @@ static const char *trace(ScatterMatrix *s, RcsProbe *p, const ScatterAntenna *tx
     return total_field_sweep(s, 1, f_hz, 0, &p->field, NULL, NULL, p->pool) == STATUS_OK ? NULL : "out of memory";
 }
 
-static const char *look_up(ScatterMatrix *s, const RcsProbe *p, const ScatterAntenna *antenna, double f_hz, bool bistatic)
+static const char *look_up(ScatterMatrix *s, const RcsProbe *p, const ScatterAntenna *antenna, double f_hz,
+                           bool bistatic)
 {
     if (bistatic) return "a given signature is monostatic: leave rx_az_deg and rx_el_deg empty";
-    if (!given_signature_knows(p->given, antenna, f_hz)) return "the given signature ends before this look and frequency";
+    if (!given_signature_knows(p->given, antenna, f_hz))
+        return "the given signature ends before this look and frequency";
     given_signature_field(s, p->given, antenna, f_hz);
     return NULL;
 }

@@ -26,7 +26,8 @@ typedef struct Centres {
 
 /* out: zeroed, or of an earlier call, whose memory is used again. tx, rx: the antennas now, in the signature's bin. pool
  * may be NULL. */
-Status centres_make(Centres *out, const Signature *signature, const ScatterAntenna *tx, const ScatterAntenna *rx, Pool *pool);
+Status centres_make(Centres *out, const Signature *signature, const ScatterAntenna *tx, const ScatterAntenna *rx,
+                    Pool *pool);
 void   centres_free(Centres *centres);
 /* Their whole field at a frequency of the band. */
 void   centres_field(ScatterMatrix *out, const Centres *centres, double frequency_hz);

@@ -190,7 +190,8 @@ static void draw(ClutterScatterer *out, const ClutterGrid *grid, const ClutterRo
 {
     double normal[normals], p_m[2];
     clutter_place(p_m, grid, cell);
-    random_normals(normal, normals, grid->seed, speckle_stream + (uint32_t)cell->level, (uint32_t)cell->y, first_index(cell));
+    random_normals(normal, normals, grid->seed, speckle_stream + (uint32_t)cell->level, (uint32_t)cell->y,
+                   first_index(cell));
     draw_from(out, row, normal, clutter_texture_at(grid, row, cell->level, p_m));
 }
 
@@ -260,8 +261,8 @@ void clutter_see(ScatterMatrix *out, const ClutterGrid *grid, const ClutterTable
     }
 }
 
-void clutter_see_leaf(ScatterMatrix *out, const ClutterScatterer *scatterer, const ClutterMotion *motion, double sigma_m2,
-                      const double p_enu[3], const ClutterLook *look)
+void clutter_see_leaf(ScatterMatrix *out, const ClutterScatterer *scatterer, const ClutterMotion *motion,
+                      double sigma_m2, const double p_enu[3], const ClutterLook *look)
 {
     const double k2 = 4 * pi_rad * look->frequency_hz / light_mps, size = sqrt(sigma_m2 / (4 * pi_rad));
     double       u[3];

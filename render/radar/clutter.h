@@ -88,8 +88,8 @@ void clutter_see(ScatterMatrix *out, const ClutterGrid *grid, const ClutterTable
 /* One of the scatterers of a crown (render/radar/foliage.h) by its number, and what it returns: as above, but without
  * texture or slope, and <4 pi |S_vv|^2> = sigma_m2. Its place is the caller's. */
 void clutter_draw_leaf(ClutterScatterer *out, const ClutterRow *row, uint64_t seed, uint32_t crown, uint32_t number);
-void clutter_see_leaf(ScatterMatrix *out, const ClutterScatterer *scatterer, const ClutterMotion *motion, double sigma_m2,
-                      const double p_enu[3], const ClutterLook *look);
+void clutter_see_leaf(ScatterMatrix *out, const ClutterScatterer *scatterer, const ClutterMotion *motion,
+                      double sigma_m2, const double p_enu[3], const ClutterLook *look);
 
 /* Texture at a place, mean 1: what multiplies the mean power of a cell of this level there. */
 double clutter_texture_at(const ClutterGrid *grid, const ClutterRow *row, int level, const double p_m[2]);

@@ -143,7 +143,8 @@ static void share_of_hit(Share *out, const TubeHits *h, size_t i, double k)
         out->last[x] = (double)h->last[x][i];
     }
     /* -j k / 2 pi, and the footprint's share */
-    const double share = k / (2 * pi_rad) * scatter_sinc(k * (double)h->slope_m[0][i]) * scatter_sinc(k * (double)h->slope_m[1][i]);
+    const double share =
+        k / (2 * pi_rad) * scatter_sinc(k * (double)h->slope_m[0][i]) * scatter_sinc(k * (double)h->slope_m[1][i]);
     for (int p = 0; p < 4; p++) {
         const double re = (double)h->amplitude[2 * p][i], im = (double)h->amplitude[2 * p + 1][i];
         out->s[p] = CMPLX(share * im, -share * re);
@@ -175,7 +176,7 @@ typedef struct Making {
     const Signature *signature;
     const Model     *model;
     double           k, across_m;      /* side of a cell */
-    double         (*rate)[3];         /* [node_count]: how many cells of range rate it is per metre, body axes; 0: none */
+    double (*rate)[3]; /* [node_count]: how many cells of range rate it is per metre, body axes; 0: none */
     int              times;            /* SignatureCells.weak_times */
     bool             monostatic;
     CellTable        table;
@@ -198,7 +199,8 @@ static Status measure_cells(Making *m, const RadarTarget *target, const Signatur
         for (int at = n; at >= 0; at = m->model->node[at].parent) {
             const ModelNode *of = &m->model->node[at];
             m3_mul_v3(axis, target->pose[at].r_body_from_node, of->axis);
-            v3_add_scaled(turning, turning, of->roll_radius_m > 0 ? rolls_mps / of->roll_radius_m : of->spin_rps_moving, axis);
+            v3_add_scaled(turning, turning, of->roll_radius_m > 0 ? rolls_mps / of->roll_radius_m : of->spin_rps_moving,
+                          axis);
         }
         v3_cross(m->rate[n], turning, ahead); /* -(u_t + u_r) . (w x p), to within what is the same for all p */
         v3_scale(m->rate[n], m->k * cells->interval_s / (4 * cells->spin_phase_rad), m->rate[n]);
@@ -226,11 +228,14 @@ static Key key_of(const Making *m, const Share *share, const Place *at, int time
     const Signature *s = m->signature;
     const int        node = m->model ? m->model->part[share->part].node : 0;
     const double     across_m = times * m->across_m;
-    return (Key){.path = cell_number(share->path_m, times * s->path_step_m), .right = cell_number(at->right_m, across_m),
+    return (Key){.path = cell_number(share->path_m, times * s->path_step_m),
+                 .right = cell_number(at->right_m, across_m),
                  .up = cell_number(at->up_m, across_m),
                  .half_right = m->monostatic ? 0 : cell_number(v3_dot(at->half, s->right), across_m),
                  .half_up = m->monostatic ? 0 : cell_number(v3_dot(at->half, s->up), across_m),
-                 .rate = cell_number(v3_dot(at->middle, m->rate[node]), 1), .node = node, .times = times};
+                 .rate = cell_number(v3_dot(at->middle, m->rate[node]), 1),
+                 .node = node,
+                 .times = times};
 }
 
 /* Before anything is added: how much there will be in each cell. */
@@ -257,7 +262,7 @@ static Status add(Making *m, const Share *share)
     }
     if (!c) return STATUS_NO_MEMORY;
     const double         across_m = key.times * m->across_m;
-    const double         along_m = share->path_m - (key.path + 0.5) * key.times * s->path_step_m, phase = -m->k * along_m;
+    const double along_m = share->path_m - (key.path + 0.5) * key.times * s->path_step_m, phase = -m->k * along_m;
     const double complex turn = CMPLX(cos(phase), sin(phase));
     const double         arm_m[2] = {at.right_m - (key.right + 0.5) * across_m, at.up_m - (key.up + 0.5) * across_m};
     for (int p = 0; p < 4; p++) {
@@ -308,7 +313,8 @@ static bool keep(SignatureCentre *out, const Making *m, const Cell *c)
         power += creal(conj(c->s[q]) * c->s[q]);
     }
     const double wide = c->key.times, middle = wide * (c->key.path + 0.5); /* steps */
-    const double mean = clamp(middle + (power > 0 ? turning / power / s->path_step_m : 0), middle - 0.5 * wide, middle + 0.5 * wide);
+    const double mean =
+        clamp(middle + (power > 0 ? turning / power / s->path_step_m : 0), middle - 0.5 * wide, middle + 0.5 * wide);
     out->path = (int32_t)floor(mean);
     out->path_share = (float)(mean - out->path);
     const double         back = m->k * (out->path + (double)out->path_share - middle) * s->path_step_m;
@@ -383,7 +389,10 @@ Status signature_make(Signature *out, const TotalField *field, const RadarTarget
     out->tx = h->tx;
     out->rx = h->rx;
     signature_axes(out, cells);
-    Making m = {.signature = out, .model = target ? target->model : NULL, .k = 2 * pi_rad * cells->frequency_hz / light_mps, .times = cells->weak_times,
+    Making m = {.signature = out,
+                .model = target ? target->model : NULL,
+                .k = 2 * pi_rad * cells->frequency_hz / light_mps,
+                .times = cells->weak_times,
                 .monostatic = memcmp(&h->tx, &h->rx, sizeof h->tx) == 0};
     Status status = measure_cells(&m, target, cells);
     if (status == STATUS_OK && cells->weak_share > 0) status = each_share(&m, field, weigh);
@@ -397,7 +406,8 @@ Status signature_make(Signature *out, const TotalField *field, const RadarTarget
     }
     out->centre = status == STATUS_OK ? malloc((size_t)(m.table.count + 1) * sizeof *out->centre) : NULL;
     if (!out->centre) status = STATUS_NO_MEMORY;
-    for (int i = 0; i < m.table.count && status == STATUS_OK; i++) out->count += keep(&out->centre[out->count], &m, &m.table.cell[i]);
+    for (int i = 0; i < m.table.count && status == STATUS_OK; i++)
+        out->count += keep(&out->centre[out->count], &m, &m.table.cell[i]);
     free(m.table.cell);
     free(m.table.slot);
     free(m.rate);
@@ -407,12 +417,14 @@ Status signature_make(Signature *out, const TotalField *field, const RadarTarget
 
 bool signature_is_sound(const Signature *s, int parts)
 {
-    if (!(s->tubes_same_m2 >= 0 && s->tubes_same_m2 < 1e18 && s->tubes_cross_m2 >= 0 && s->tubes_cross_m2 < 1e18)) return false;
+    if (!(s->tubes_same_m2 >= 0 && s->tubes_same_m2 < 1e18 && s->tubes_cross_m2 >= 0 && s->tubes_cross_m2 < 1e18))
+        return false;
     for (int i = 0; i < s->count; i++) {
         const SignatureCentre *c = &s->centre[i];
         bool                   good = c->path > -1000000000 && c->path < 1000000000 && c->part < parts && c->zero == 0;
         for (int x = 0; x < 3; x++) good &= fabsf(c->p[x]) < 1e5f && fabsf(c->half[x]) < 1e5f;
-        good &= c->path_share >= 0 && c->path_share <= 1 && c->scale >= 0 && c->scale < 1e9f && c->moment_scale >= 0 && c->moment_scale < 1e9f;
+        good &= c->path_share >= 0 && c->path_share <= 1 && c->scale >= 0 && c->scale < 1e9f && c->moment_scale >= 0 &&
+                c->moment_scale < 1e9f;
         good &= c->weight > 0 && c->weight < 1e9f && c->strongest > 0 && c->strongest <= c->weight * 1.001f;
         if (!good) return false;
     }

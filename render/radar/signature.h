@@ -36,7 +36,8 @@ double signature_cells_error(void);
 
 typedef struct SignatureCentre {
     int32_t  path;         /* cell along the path */
-    float    path_share;   /* 0 .. 1: its path is (path + path_share) path_step_m, that at which its phase turns over the band */
+    float path_share; /* 0 .. 1: its path is (path + path_share) path_step_m, that at which its phase turns over the
+                         band */
     float    p[3];         /* target frame, m: mean of its paths' first and last points, by amplitude */
     float    half[3];      /* from there to the mean of the last points, m */
     float    scale;        /* m: s[i] scale / 32767: real and imaginary of hh, hv, vh, vv along that path */
@@ -54,7 +55,8 @@ typedef struct Signature {
     double           frequency_hz, bandwidth_hz;
     double           path_step_m;
     double           right[3], up[3];    /* across the line of sight */
-    double           tubes_same_m2, tubes_cross_m2; /* squares of the hits' own fields, added up: mean of HH and VV, of HV and VH */
+    double tubes_same_m2,
+        tubes_cross_m2; /* squares of the hits' own fields, added up: mean of HH and VV, of HV and VH */
     int              count;
     SignatureCentre *centre;             /* in the order in which hits, then edges meet their cells */
 } Signature;

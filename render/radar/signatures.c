@@ -158,7 +158,8 @@ static Kept *find_kept(Signatures *s, const Kept *like)
 
 static SignatureKey key_of(const Signatures *s, const Kept *k)
 {
-    return (SignatureKey){.model = catalog_model(s->catalog, k->model), .joint = k->joint, .damage = k->damage, .look = k->middle};
+    return (SignatureKey){
+        .model = catalog_model(s->catalog, k->model), .joint = k->joint, .damage = k->damage, .look = k->middle};
 }
 
 /* ---- making one ------------------------------------------------------------------------------------- */
@@ -168,8 +169,8 @@ static Status make(Kept *out, SignatureCounters *counters, const Signatures *s, 
     const double        begun_s = wall_clock_s();
     const Model        *of = catalog_model(s->catalog, out->model);
     const SignatureLook *look = &out->middle;
-    const SignatureCells cells = signature_default_cells(s->config.frequency_hz, s->config.bandwidth_hz, s->config.aspect_rad,
-                                                         s->config.interval_s);
+    const SignatureCells cells = signature_default_cells(s->config.frequency_hz, s->config.bandwidth_hz,
+                                                         s->config.aspect_rad, s->config.interval_s);
     TubeConfig          config = tubes_default_config(s->config.frequency_hz);
     Status              status = STATUS_OK;
     config.rays_per_wavelength = s->config.rays_per_wavelength;

@@ -112,8 +112,8 @@ static void describe(const FrameFile *file)
             at += snprintf(bands + at, sizeof bands - (size_t)at, "%s%s", at ? "," : "", band_name((Band)b));
     text_escape(host, sizeof host, file->host, strlen(file->host));
     text_escape(version, sizeof version, file->version, strlen(file->version));
-    log_print("frame %d of host %s at %.3f s, %s; made by pitviper %s%s\n", file->frame, host, file->time_s, utc, version,
-            strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : ", this is " PITVIPER_VERSION);
+    log_print("frame %d of host %s at %.3f s, %s; made by pitviper %s%s\n", file->frame, host, file->time_s, utc,
+              version, strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : ", this is " PITVIPER_VERSION);
     log_print("picture: %d x %d, %s; %d entities of %d models, %d puffs of smoke and dust\n", r->view.width,
             r->view.height, bands, file->snapshot.count, file->model_count, file->snapshot.puff_count);
     describe_ground(&file->ground);
@@ -166,7 +166,8 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
 static Status write_radar(const char *out, const FrameFile *file, const FrameScene *s, const RadarFrame *radar)
 {
     Consumer *consumer;
-    Frame     frame = {.number = file->frame, .time_s = file->time_s, .unix_s = file->unix_s + file->time_s, .radar = radar};
+    Frame frame = {
+        .number = file->frame, .time_s = file->time_s, .unix_s = file->unix_s + file->time_s, .radar = radar};
     snprintf(frame.host, sizeof frame.host, "%s", file->host);
     Status status = consume_radar(&consumer, &(PictureFiles){.out = out, .config = &s->config});
     if (status != STATUS_OK) return status;
@@ -206,7 +207,8 @@ static Status write_products(const FrameOptions *o, const FrameFile *file, Frame
         frame_expose(&noise, chain, &again->picture, &s->config);
         status = frame_files_write(hash, &files, pool);
     }
-    if (status == STATUS_OK && again->picture.target) status = write_truth(o->out, file, s, again, &noise, radar, arena);
+    if (status == STATUS_OK && again->picture.target)
+        status = write_truth(o->out, file, s, again, &noise, radar, arena);
     if (status == STATUS_OK && radar) status = write_radar(o->out, file, s, radar);
     if (status == STATUS_OK) log_print("its pictures are in %s/frames\n", o->out);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chain[b]);

@@ -30,10 +30,13 @@ static const char help[] =
     "  --elevation DEG      upwards, -90 .. 90 (10)\n"
     "  --range M            from the body's origin; without it the far field\n"
     "  --rays N             ray tubes a wavelength, 0.25 .. 16 (1.25); the error of one number falls slowly with it\n"
-    "  --splits N           how often a tube at an edge is divided in four, 0 .. 5 (2); each costs twice the time or more\n"
-    "  --warp MM            surfaces uneven by that height, rms, over 0.5 m, 0 .. 20 (0): built-in models are truer to\n"
+    "  --splits N           how often a tube at an edge is divided in four, 0 .. 5 (2); each costs twice the time or "
+    "more\n"
+    "  --warp MM            surfaces uneven by that height, rms, over 0.5 m, 0 .. 20 (0): built-in models are truer "
+    "to\n"
     "                       plane and right angle than vehicles are, and far too bright at 35 and 94 GHz without it\n"
-    "  --joint NAME=VALUE   where a joint stands, deg, of one that slides m; at most 32. Others are at rest. `pitviper\n"
+    "  --joint NAME=VALUE   where a joint stands, deg, of one that slides m; at most 32. Others are at rest. "
+    "`pitviper\n"
     "                       model info` lists them\n"
     "  --no-edges           without the diffraction at edges\n"
     "  --no-polygons        by ray tubes alone; else flat faces are in closed form on targets of at most 64 of them\n"
@@ -100,7 +103,8 @@ static bool read_joint(RcsConfig *config, const char *text)
 {
     RcsJoint   *joint = &config->joint[config->joints];
     const char *equals = text ? strchr(text, '=') : NULL;
-    if (!equals || config->joints == rcs_most_joints || equals == text || equals - text >= (int)sizeof joint->name) return false;
+    if (!equals || config->joints == rcs_most_joints || equals == text || equals - text >= (int)sizeof joint->name)
+        return false;
     snprintf(joint->name, sizeof joint->name, "%.*s", (int)(equals - text), text);
     config->joints++;
     return in_range(&joint->value, equals + 1, -3600, 3600);
@@ -155,7 +159,8 @@ static int parse(RcsOptions *o, int argc, char **argv)
         } else if (strcmp(option, "--warp") == 0) {
             if (!in_range(&c->warp_mm, value, 0, 20)) return refuse(option, "needs a height in 0 .. 20 mm");
         } else if (strcmp(option, "--joint") == 0) {
-            if (!read_joint(c, value)) return refuse(option, "needs NAME=VALUE, in -3600 .. 3600 deg or m, at most 32 times");
+            if (!read_joint(c, value))
+                return refuse(option, "needs NAME=VALUE, in -3600 .. 3600 deg or m, at most 32 times");
         } else if (strcmp(option, "--cell") == 0) {
             if (!in_range(&c->resolution_m, value, 0.01, 10)) return refuse(option, "needs a length in 0.01 .. 10 m");
         } else if (strcmp(option, "--image") == 0) {

@@ -7,7 +7,10 @@ enum { checked_looks = 8 }; /* those computed with another grid of tubes as well
 
 double rcs_look_deg(const RcsConfig *config, int look) { return config->from_deg + look * config->step_deg; }
 
-const char *rcs_target_name(const RcsSweep *sweep) { return sweep->given ? sweep->config.name : sweep->model.model.name; }
+const char *rcs_target_name(const RcsSweep *sweep)
+{
+    return sweep->given ? sweep->config.name : sweep->model.model.name;
+}
 
 static double highest_hz(const RcsConfig *config)
 {
@@ -22,7 +25,8 @@ static void list_joints(char *text, size_t size, const Model *model)
     size_t at = 0;
     *text = 0;
     for (int n = 0; n < model->node_count && at < size; n++)
-        if (model->node[n].joint != JOINT_FIXED) at += (size_t)snprintf(text + at, size - at, "%s%s", at ? ", " : "", model->node[n].name);
+        if (model->node[n].joint != JOINT_FIXED)
+            at += (size_t)snprintf(text + at, size - at, "%s%s", at ? ", " : "", model->node[n].name);
 }
 
 static Status set_joint(double *value, const Model *model, const RcsJoint *joint)
@@ -34,8 +38,8 @@ static Status set_joint(double *value, const Model *model, const RcsJoint *joint
         const double scale = node->joint == JOINT_ROTATION ? rad_per_deg : 1;
         value[n] = joint->value * scale;
         if (node->low <= node->high && !(value[n] >= node->low && value[n] <= node->high)) {
-            log_error("rcs: --joint %s: %g is outside its limits, %g .. %g", joint->name, joint->value, node->low / scale,
-                      node->high / scale);
+            log_error("rcs: --joint %s: %g is outside its limits, %g .. %g", joint->name, joint->value,
+                      node->low / scale, node->high / scale);
             return STATUS_BAD_VALUE;
         }
         return STATUS_OK;
@@ -51,7 +55,8 @@ static Status pose(RcsSweep *sweep)
     double      *value = calloc((size_t)model->node_count + 1, sizeof *value);
     NodePose    *at = calloc((size_t)model->node_count + 1, sizeof *at);
     Status       status = value && at ? STATUS_OK : STATUS_NO_MEMORY;
-    for (int j = 0; j < sweep->config.joints && status == STATUS_OK; j++) status = set_joint(value, model, &sweep->config.joint[j]);
+    for (int j = 0; j < sweep->config.joints && status == STATUS_OK; j++)
+        status = set_joint(value, model, &sweep->config.joint[j]);
     if (status == STATUS_OK) {
         model_pose(at, model, value);
         radar_target_pose(sweep->model.target, sweep->config.joints > 0 ? at : NULL, 0);
@@ -159,8 +164,10 @@ Status rcs_sweep_run(RcsSweep *sweep)
     if (status == STATUS_OK && !sweep->given) status = check_grid(sweep);
     log_status(NULL);
     if (sweep->unknown > 0)
-        log_warn("rcs: %s ends before %lld of these looks and frequencies, whose rows are empty; see --azimuth, --elevation and "
-                 "--frequency", sweep->config.name, sweep->unknown);
+        log_warn("rcs: %s ends before %lld of these looks and frequencies, whose rows are empty; see --azimuth, "
+                 "--elevation and "
+                 "--frequency",
+                 sweep->config.name, sweep->unknown);
     return status;
 }
 

@@ -41,7 +41,7 @@ typedef struct RcsSweep {
     TotalField     field;                /* of the last look */
     ScatterMatrix *s;                    /* [looks][frequencies] */
     long long      rays, hit_count, unknown; /* unknown: looks and frequencies that the given signature lacks */
-    double         grid_db;              /* error by another grid of tubes, of the power, some looks; NaN: none, or no difference */
+    double grid_db; /* error by another grid of tubes, of the power, some looks; NaN: none, or no difference */
 } RcsSweep;
 
 /* Logs what fails. A name given:FILE is a signature of given_signature.h, without a picture. */

@@ -59,7 +59,8 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
 static Status look(FrameView *view, const Session *s, const RenderRequest *request, const Air *air,
                    const double r_host_from_enu[9], Arena *arena)
 {
-    const Status status = render(&view->picture, s->shared->world, &view->snapshot, request, air, s->shared->pool, arena);
+    const Status status =
+        render(&view->picture, s->shared->world, &view->snapshot, request, air, s->shared->pool, arena);
     if (status != STATUS_OK) return status;
     if (view->picture.normal[0]) turn_normals(&view->picture, r_host_from_enu);
     view->plane_count = frame_planes(view->plane, &view->picture, request);
@@ -87,9 +88,16 @@ static Status measure(Frame *f, Session *s, const Eye *eye)
     }
     const LocalFrame *frame = &s->shared->world->frame;
     const Weather     weather = frame_weather_at(s->shared->config, s->shared->world, f->unix_s);
-    RadarScene        scene = {.world = s->shared->world, .snapshot = &f->seen.snapshot, .view = &eye->view, .hidden = eye->hidden,
-                               .reference_m = NAN, .t_s = f->time_s, .weather = &weather, .number = (uint32_t)f->number,
-                               .range_m = f->seen.picture.range_m, .entity = f->seen.picture.entity};
+    RadarScene scene = {.world = s->shared->world,
+                        .snapshot = &f->seen.snapshot,
+                        .view = &eye->view,
+                        .hidden = eye->hidden,
+                        .reference_m = NAN,
+                        .t_s = f->time_s,
+                        .weather = &weather,
+                        .number = (uint32_t)f->number,
+                        .range_m = f->seen.picture.range_m,
+                        .entity = f->seen.picture.entity};
     m3_tmul_v3(scene.v_enu_mps, frame->r_ecef_from_enu, eye->state.v_ecef_mps);
     const int aim = dis_entity_id_is_none(s->plan.aim) ? -1 : snapshot_find(&f->seen.snapshot, s->plan.aim);
     if (eye->aim_known) {
@@ -97,7 +105,8 @@ static Status measure(Frame *f, Session *s, const Eye *eye)
         v3_sub(to_aim, eye->p_aim_ecef, eye->state.p_ecef);
         scene.reference_m = v3_length(to_aim);
     }
-    if (aim >= 0) m3_tmul_v3(scene.reference_v_enu_mps, frame->r_ecef_from_enu, f->seen.snapshot.entity[aim].v_ecef_mps);
+    if (aim >= 0)
+        m3_tmul_v3(scene.reference_v_enu_mps, frame->r_ecef_from_enu, f->seen.snapshot.entity[aim].v_ecef_mps);
     const Status status = seeker_radar_measure(&f->radar, s->radar, &scene, s->shared->pool, f->arena);
     if (status != STATUS_OK || f->radar) return status;
     s->result.radar_left_out++;
@@ -123,9 +132,10 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
                                     &noise);
     r->target       = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
     if (!r->target) return STATUS_NO_MEMORY;
-    if (s->wants & WANT_ERROR && frame_error(&f->error, &seen->picture, shared->world, &seen->snapshot, &f->request,
-                                             target, r->target_count, shared->config->models.sag_m,
-                                             shared->contact == GROUND_CONTACT_ALL, world_air_k(shared->world, f->unix_s)))
+    if (s->wants & WANT_ERROR &&
+        frame_error(&f->error, &seen->picture, shared->world, &seen->snapshot, &f->request, target, r->target_count,
+                    shared->config->models.sag_m, shared->contact == GROUND_CONTACT_ALL,
+                    world_air_k(shared->world, f->unix_s)))
         r->error = &f->error;
     if (s->wants & WANT_ERROR && f->request.budget && f->radar) {
         radar_error(&f->radar_error, f->radar, &seen->snapshot);
@@ -181,7 +191,8 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     Air            air;
     double         r_host_from_enu[9] = {0};
     const double  *p_ecef = eye.state.p_ecef;
-    const FrameEye at = {f->unix_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &eye.view, shared->bands, &f->seen.snapshot.marks};
+    const FrameEye at = {
+        f->unix_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &eye.view, shared->bands, &f->seen.snapshot.marks};
     status = frame_light(&air, &f->sun, r_host_from_enu, shared->world, shared->config, &at, shared->pool, f->arena);
     make_request(&f->request, s, &eye, t_s);
     const double posed_s = wall_clock_s();
@@ -250,7 +261,9 @@ static Status open_vehicles(Session *s)
     if (status != STATUS_OK) return status;
     return world_vehicles_create(&s->vehicles, shared->world,
                                  &(WorldVehiclesConfig){.step_s = shared->config->heat.vehicle_step_s,
-                                                        .window_us = vehicle_window_us, .given = s->given, .kept = s->kept});
+                                                        .window_us = vehicle_window_us,
+                                                        .given = s->given,
+                                                        .kept = s->kept});
 }
 
 static Status open_radar(Session *s)
@@ -385,17 +398,19 @@ static void report_crowd(Session *s, int left_out)
     DisEntityId           sender;
     if (given_up > s->given_up_reported && !(now_s - s->given_up_reported_s < remind_s)) {
         const int most = entity_table_largest_sender(&sender, s->table);
-        log_warn("host %s: the table of %d entities is full: %llu gave way to others, %llu were not taken in; %u:%u has "
-                 "the most, %d; near the host, and what goes on reporting, stays (entities.capacity)",
-                 s->host_text, config->entities.capacity, (unsigned long long)c->evicted, (unsigned long long)c->refused,
-                 sender.site, sender.application, most);
+        log_warn(
+            "host %s: the table of %d entities is full: %llu gave way to others, %llu were not taken in; %u:%u has "
+            "the most, %d; near the host, and what goes on reporting, stays (entities.capacity)",
+            s->host_text, config->entities.capacity, (unsigned long long)c->evicted, (unsigned long long)c->refused,
+            sender.site, sender.application, most);
         s->given_up_reported   = given_up;
         s->given_up_reported_s = now_s;
     }
     if (left_out == 0) return;
     if (!(now_s - s->left_out_reported_s < remind_s)) {
-        log_warn("host %s: %d entities are not in the pictures, the farthest from it; the nearest %d are (entities.shown)",
-                 s->host_text, left_out, config->entities.shown);
+        log_warn(
+            "host %s: %d entities are not in the pictures, the farthest from it; the nearest %d are (entities.shown)",
+            s->host_text, left_out, config->entities.shown);
         s->left_out_reported_s = now_s;
     }
     s->result.frames_crowded++;
@@ -454,7 +469,8 @@ static void report_vehicles(const Session *s)
         log_detail("heat of vehicles: %llu times a neighbour was one too many for another entity's heat",
                    (unsigned long long)c->neighbours_left_out);
     if (c->left_out > 0)
-        log_warn("heat of vehicles: too many entities: those with the highest ids were as warm as the air (entities.shown)");
+        log_warn(
+            "heat of vehicles: too many entities: those with the highest ids were as warm as the air (entities.shown)");
     if (c->failed > 0)
         log_warn("heat of vehicles: %llu steps were given up, and temperatures kept; look at etc/heat.csv and "
                  "etc/heat_machines.csv for extreme values", (unsigned long long)c->failed);

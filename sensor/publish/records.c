@@ -149,7 +149,8 @@ static json_t *target_json(const TargetRecord *t)
     set_number(target, "dt_k", t->dt_k);
     if (t->patches > 0) {
         json_t *patches = json_array();
-        for (int k = 0; k < t->patches; k++) json_array_append_new(patches, json_real(round(100 * (double)t->patch_k[k]) / 100));
+        for (int k = 0; k < t->patches; k++)
+            json_array_append_new(patches, json_real(round(100 * (double)t->patch_k[k]) / 100));
         json_object_set_new(target, "patch_temp_k", patches);
     }
     set_number(target, "age_s", t->age_s);
@@ -162,7 +163,8 @@ static json_t *target_json(const TargetRecord *t)
 static void set_error(json_t *error, const char *of, const double share[error_sources],
                       const double same[error_sources], const char *unit)
 {
-    static const char *const name[error_sources] = {"sampling", "level_of_detail", "table", "heat", "dead_reckoning", "total"};
+    static const char *const name[error_sources] = {"sampling", "level_of_detail", "table",
+                                                    "heat",     "dead_reckoning",  "total"};
     json_t *band = json_object();
     char    key[32];
     for (int s = 0; s < error_sources; s++) {

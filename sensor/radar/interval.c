@@ -60,7 +60,8 @@ Status interval_plan_create(IntervalPlan **out, const Waveform *wave, const Wind
         if (!rows || !columns) status = STATUS_NO_MEMORY;
         /* a longer path turns samples backwards: exp(-j): undone forwards */
         if (status == STATUS_OK) status = transform_create(&p->over_samples[c], TRANSFORM_ROWS_BACK, n, m, rows, rows);
-        if (status == STATUS_OK) status = transform_create(&p->over_pulses[c], TRANSFORM_ROWS_BACK, m, n, columns, columns);
+        if (status == STATUS_OK)
+            status = transform_create(&p->over_pulses[c], TRANSFORM_ROWS_BACK, m, n, columns, columns);
     }
     if (status == STATUS_OK) *out = p;
     else interval_plan_destroy(p);
@@ -139,7 +140,10 @@ static void run(Job *job, int channels, Pool *pool)
     else for (int c = 0; c < channels; c++) process_channel(job, 0, c);
 }
 
-void interval_compress(IntervalPlan *p, const Interval *in, int channels, Pool *pool) { run(&(Job){p, in, NULL}, channels, pool); }
+void interval_compress(IntervalPlan *p, const Interval *in, int channels, Pool *pool)
+{
+    run(&(Job){p, in, NULL}, channels, pool);
+}
 
 void interval_process(RangeDoppler *out, IntervalPlan *p, const Interval *in, Pool *pool)
 {
@@ -158,8 +162,8 @@ double interval_lobe(const IntervalPlan *p, bool doppler, double cells)
     const double  at = fmin(fabs(cells), 1.5) * lobe_steps;
     const int     first = (int)at;
     const double *of = p->lobe[doppler] + first, t = at - first; /* of[1] lies at first */
-    return of[0] * t * (t - 1) * (2 - t) / 6 + of[1] * (t + 1) * (t - 1) * (t - 2) / 2 + of[2] * (t + 1) * t * (2 - t) / 2 +
-           of[3] * (t + 1) * t * (t - 1) / 6;
+    return of[0] * t * (t - 1) * (2 - t) / 6 + of[1] * (t + 1) * (t - 1) * (t - 2) / 2 +
+           of[2] * (t + 1) * t * (2 - t) / 2 + of[3] * (t + 1) * t * (t - 1) / 6;
 }
 
 const double *interval_pulses(const IntervalPlan *p, int channel) { return p->rows[channel]; }
@@ -175,5 +179,6 @@ void interval_profile(double *profile, const IntervalPlan *p, int channel)
     const double *row = p->rows[channel];
     for (int m = 0; m < p->samples; m++) profile[m] = 0;
     for (int n = 0; n < p->pulses; n++, row += 2 * (size_t)p->samples)
-        for (int m = 0; m < p->samples; m++) profile[m] += (row[2 * m] * row[2 * m] + row[2 * m + 1] * row[2 * m + 1]) / p->pulses;
+        for (int m = 0; m < p->samples; m++)
+            profile[m] += (row[2 * m] * row[2 * m] + row[2 * m + 1] * row[2 * m + 1]) / p->pulses;
 }

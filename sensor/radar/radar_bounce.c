@@ -108,7 +108,7 @@ static void add_amplitudes(double complex amplitude[interval_channels], const Ma
                            const Way *back, const ScatterMatrix *s)
 {
     const RadarPreset   *p = m->preset;
-    const RadarLink      link = {p->power_w, 1, 1, p->antenna.wavelength_m, sqrt(out->range_m * back->range_m), p->loss};
+    const RadarLink link = {p->power_w, 1, 1, p->antenna.wavelength_m, sqrt(out->range_m * back->range_m), p->loss};
     const double         lost_np = m->air_np_m * (out->range_m + back->range_m) + out->volume_np + back->volume_np;
     const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-lost_np));
     const double complex same = unit * out->gain.sum * (p->transmits_h ? s->hh : s->vv);

@@ -12,7 +12,7 @@
 
 /* What the ground near an entity adds by mirroring (render/radar/ground_bounce.h); hh, vv, hv, m^2, as if wholly visible. */
 typedef struct RadarBounceTruth {
-    double coherence;                  /* share of the amplitude that the ground mirrors, the larger polarisation; 0: left out */
+    double coherence; /* share of the amplitude that the ground mirrors, the larger polarisation; 0: left out */
     double once_m2[3], twice_m2[3];    /* by the ground one way (both ways round together), by the ground both ways */
     double rcs_m2[3];                  /* of all paths together, the direct one included */
 } RadarBounceTruth;
@@ -30,14 +30,14 @@ enum { radar_strongest = 8 };
 typedef struct RadarTruth {
     int    entity;                     /* index in the snapshot */
     double range_m, range_rate_mps;    /* of the origin of its model */
-    double appears_m;                  /* range at which its echo is on the profile: folded over, coupled to its range rate */
+    double appears_m; /* range at which its echo is on the profile: folded over, coupled to its range rate */
     double cos_right, cos_down;
     bool   given;                      /* by a signature of radar.given, else by its model */
-    double visible;                    /* share of its centres' power that relief, plants and other entities leave in sight */
-    double rcs_m2[3];                  /* hh, vv, hv, at the centre frequency, as if wholly visible and without ground */
-    double rcs_error_db[3];            /* standard deviation, by the grid of tubes (render/radar/signature_error.h); NAN: given */
-    double map_error;                  /* error of the map's cells over its centres' power: tubes, and what centres leave out */
-    double snr;                        /* by the radar equation, of the centres in sight, in one cell of the map; 0: there is none */
+    double visible;         /* share of its centres' power that relief, plants and other entities leave in sight */
+    double rcs_m2[3];       /* hh, vv, hv, at the centre frequency, as if wholly visible and without ground */
+    double rcs_error_db[3]; /* standard deviation, by the grid of tubes (render/radar/signature_error.h); NAN: given */
+    double map_error;       /* error of the map's cells over its centres' power: tubes, and what centres leave out */
+    double snr; /* by the radar equation, of the centres in sight, in one cell of the map; 0: there is none */
     int    centres;                    /* scattering centres that it was summed from */
     int    strongest_count;
     RadarScatterer strongest[radar_strongest]; /* of them, by the mean of hh and vv */
@@ -49,13 +49,14 @@ typedef struct RadarFrame {
     double          reference_m, reference_rate_mps; /* the middle of the range window, and how it moves */
     WaveformTiming  timing;
     double          ground_rate_mps;   /* of still ground on the axis */
-    double          notch_mps;         /* detections so near to the ground's range rate in their direction count as ground */
-    double          v_enu_mps[3], aim_m, aim_v_enu_mps[3]; /* as in its RadarScene: of the antenna; to the aim, NAN: none; of it */
+    double notch_mps; /* detections so near to the ground's range rate in their direction count as ground */
+    double v_enu_mps[3], aim_m,
+        aim_v_enu_mps[3];              /* as in its RadarScene: of the antenna; to the aim, NAN: none; of it */
     uint32_t        number;            /* likewise: for its noise */
     double          air_db;            /* one way, over the reference range */
     RangeDoppler    map;
-    double complex *profile;           /* [2][samples]: range profiles of the middle pulse, sqrt(W): the transmitted polarisation, the
-                                        * other */
+    double complex *profile; /* [2][samples]: range profiles of the middle pulse, sqrt(W): the transmitted polarisation,
+                              * the other */
     double         *profile_w;         /* [samples]: sum channel, mean power of all pulses */
     double         *mti_w;             /* [samples]: the same behind the canceller, its gain for noise being 1 */
     int             detections, detections_in_all; /* the strongest; how many passed the threshold */

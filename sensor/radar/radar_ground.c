@@ -7,7 +7,8 @@ static const double sight_slack_m = 0.5; /* ground met so much before a scattere
 
 void making_lit_rectangle(double low_m[2], double high_m[2], const Making *m)
 {
-    const double *p = m->scene->view->p_enu, reach = m->frame->reference_m, lobe_rad = asin(fmin(m->reach * making_null(m), 1));
+    const double *p = m->scene->view->p_enu, reach = m->frame->reference_m,
+                 lobe_rad = asin(fmin(m->reach * making_null(m), 1));
     const double  below_m = p[2] - m->base_m;
     const double  level = hypot(m->ahead[0], m->ahead[1]), azimuth = atan2(m->ahead[1], m->ahead[0]);
     const double  turn = atan2(tan(fmin(m->scan_half_rad, 1.5)), fmax(level, 0.05));
@@ -16,9 +17,11 @@ void making_lit_rectangle(double low_m[2], double high_m[2], const Making *m)
     low_m[0] = low_m[1] = INFINITY;
     high_m[0] = high_m[1] = -INFINITY;
     for (int end = 0; end < 2; end++) {
-        const double plan_m = sqrt(fmax(range_m[end] * range_m[end] - below_m * below_m, 0)) + (end ? margin_m : -margin_m);
+        const double plan_m =
+            sqrt(fmax(range_m[end] * range_m[end] - below_m * below_m, 0)) + (end ? margin_m : -margin_m);
         for (int i = -4; i <= 4; i++) {
-            const double a = azimuth + wide * i / 4, at[2] = {p[0] + fmax(plan_m, 0) * cos(a), p[1] + fmax(plan_m, 0) * sin(a)};
+            const double a = azimuth + wide * i / 4,
+                         at[2] = {p[0] + fmax(plan_m, 0) * cos(a), p[1] + fmax(plan_m, 0) * sin(a)};
             for (int k = 0; k < 2; k++) {
                 low_m[k] = fmin(low_m[k], at[k]);
                 high_m[k] = fmax(high_m[k], at[k]);
@@ -146,7 +149,8 @@ static void scatter_block(void *user, int worker, int task)
 Status making_ground(Making *m)
 {
     SeekerRadar  *r = m->radar;
-    const double *p = m->scene->view->p_enu, widest = fmin(m->reach * making_null(m), 1), lobe_rad = asin(making_null(m));
+    const double *p = m->scene->view->p_enu, widest = fmin(m->reach * making_null(m), 1),
+                 lobe_rad = asin(making_null(m));
     double        low_m[2], high_m[2];
     making_lit_rectangle(low_m, high_m, m);
 

@@ -33,7 +33,8 @@ static bool grid_over(Axis axis[axes], size_t *nodes, int count)
 
 static double node_at(const Axis *axis, int i)
 {
-    return axis->nodes == 1 ? 0.5 * (axis->low + axis->high) : axis->low + (axis->high - axis->low) * i / (axis->nodes - 1);
+    return axis->nodes == 1 ? 0.5 * (axis->low + axis->high)
+                            : axis->low + (axis->high - axis->low) * i / (axis->nodes - 1);
 }
 
 /* Where nothing is on it yet: like a point of the target, at the node's place. */
@@ -95,7 +96,8 @@ static void share_out(RadarPoint *node, const double *lost_np, const Axis axis[a
         if (lost_np[i] != own_np) size *= exp(lost_np[i] - own_np);
         const double re = size * creal(turn[corner & 1]), im = size * cimag(turn[corner & 1]);
         node[i].same += CMPLX(creal(p->same) * re - cimag(p->same) * im, creal(p->same) * im + cimag(p->same) * re);
-        node[i].other += CMPLX(creal(p->other) * re - cimag(p->other) * im, creal(p->other) * im + cimag(p->other) * re);
+        node[i].other +=
+            CMPLX(creal(p->other) * re - cimag(p->other) * im, creal(p->other) * im + cimag(p->other) * re);
     }
 }
 
@@ -128,7 +130,8 @@ int making_merge(RadarPoint *point, const double (*x)[merge_axes], const bool *s
     for (int i = 0; i < count; i++)
         if (!spins[i]) share_out(node, lost_np, axis, m, &point[i], x[i]);
     int kept = 0;
-    for (int i = 0; i < count; i++) /* first those that spin: nodes are fewer than the points that leave room for them */
+    for (int i = 0; i < count;
+         i++) /* first those that spin: nodes are fewer than the points that leave room for them */
         if (spins[i]) point[kept++] = point[i];
     for (size_t i = 0; i < nodes; i++)
         if (node[i].same != 0 || node[i].other != 0) point[kept++] = node[i];

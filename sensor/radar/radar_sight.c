@@ -59,8 +59,8 @@ static int make_cells(int *of, double (*middle)[3], double *weight, int32_t *gri
     return count;
 }
 
-Status radar_sight_centres(bool *seen, const Making *m, int entity, const double p_enu[3], const double r_enu_from_body[9],
-                           const Centres *centres)
+Status radar_sight_centres(bool *seen, const Making *m, int entity, const double p_enu[3],
+                           const double r_enu_from_body[9], const Centres *centres)
 {
     const size_t n = (size_t)centres->count + 1;
     int         *of = arena_alloc(m->arena, n, sizeof *of);

@@ -18,7 +18,9 @@ static void basis_of(double h_enu[3], double v_enu[3], const Target *t)
 static double spin_of(const Target *t, int node, double forward_mps)
 {
     const ModelNode *of = &t->of->node[node];
-    return of->roll_radius_m > 0 ? forward_mps / of->roll_radius_m : t->entity->drives.engine > 0 ? of->spin_rps_moving : 0;
+    return of->roll_radius_m > 0          ? forward_mps / of->roll_radius_m
+           : t->entity->drives.engine > 0 ? of->spin_rps_moving
+                                          : 0;
 }
 
 /* It, or what it is on. */
@@ -80,7 +82,8 @@ static void add_error(RadarTruth *truth, const Centres *centres, const double co
     SignatureError error;
     signature_error(&error, centres);
     for (int p = 0; p < 3; p++)
-        truth->rcs_error_db[p] = truth->given ? NAN : signature_error_db(field[p], p == 2 ? error.cross_m2 : error.same_m2);
+        truth->rcs_error_db[p] =
+            truth->given ? NAN : signature_error_db(field[p], p == 2 ? error.cross_m2 : error.same_m2);
     truth->map_error = truth->given ? NAN : 8 * pi_rad * error.same_m2 / power_m2 + signature_cells_error();
 }
 
@@ -96,7 +99,8 @@ static void add_truth(RadarTruth *truth, ScatterMatrix *field, const Making *m, 
         const ScatterCentre *c = &centres->centre[i];
         add_turned(field, &c->s, view[i].wave);
         if (seen[i]) add_turned(&in_sight, &c->s, view[i].wave);
-        const RadarScatterer one = {view[i].hh_m2, view[i].vv_m2, {c->p[0], c->p[1], c->p[2]}, c->bounce, c->part, seen[i]};
+        const RadarScatterer one = {view[i].hh_m2, view[i].vv_m2, {c->p[0], c->p[1], c->p[2]},
+                                    c->bounce,     c->part,       seen[i]};
         power += one.hh_m2 + one.vv_m2;
         if (seen[i]) seen_power += one.hh_m2 + one.vv_m2;
         note_strongest(truth, &one);
@@ -130,7 +134,8 @@ static Status find_centres(bool *found, Making *m, Target *t, RadarTruth *truth)
     *found = true;
     truth->given = given && given_signature_knows(given, &t->antenna, centre_hz);
     if (truth->given) return given_signature_centres(&r->centres, given, &t->antenna, centre_hz);
-    const Status status = signatures_find(&signature, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &direct, m->pool);
+    const Status status =
+        signatures_find(&signature, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &direct, m->pool);
     if (status != STATUS_OK) return status;
     *found = signature != NULL;
     t->pose = signatures_pose(r->signatures);
@@ -198,7 +203,8 @@ static void point_block(void *user, int worker, int task)
         q->widest = m->widest + room_m / job->sight->range_m;
         q->room_m = room_m;
         q->own = m->after_s != 0;
-        memcpy(job->x[i], (double[merge_axes]){q->path_m, q->path_per_pulse_m, to.cos_right, to.cos_down}, sizeof job->x[i]);
+        memcpy(job->x[i], (double[merge_axes]){q->path_m, q->path_per_pulse_m, to.cos_right, to.cos_down},
+               sizeof job->x[i]);
     }
 }
 
@@ -219,13 +225,21 @@ static Status add_target(Making *m, Target *t, const Sight *sight, RadarTruth *t
     Status status = find_centres(&found, m, t, truth);
     if (status != STATUS_OK) return status;
     if (!found) m->missing++;
-    if (m->missing > 0) return truth->given ? STATUS_OK : making_bounce(m, t, NULL, truth); /* the rest is asked for alone */
+    if (m->missing > 0)
+        return truth->given ? STATUS_OK : making_bounce(m, t, NULL, truth); /* the rest is asked for alone */
     const size_t n = (size_t)r->centres.count + 1;
     bool        *seen = arena_alloc(m->arena, n, sizeof *seen);
     int         *shown = arena_alloc(m->arena, n, sizeof *shown);
-    CentreJob    job = {.making = m, .target = t, .sight = sight, .centre = r->centres.centre, .count = r->centres.count,
-                        .view = arena_alloc(m->arena, n, sizeof *job.view), .shown = shown, .point = points_room(&r->points, (int)n),
-                        .spins = arena_alloc(m->arena, n, sizeof *job.spins), .x = arena_alloc(m->arena, n, sizeof *job.x)};
+    CentreJob job = {.making = m,
+                     .target = t,
+                     .sight = sight,
+                     .centre = r->centres.centre,
+                     .count = r->centres.count,
+                     .view = arena_alloc(m->arena, n, sizeof *job.view),
+                     .shown = shown,
+                     .point = points_room(&r->points, (int)n),
+                     .spins = arena_alloc(m->arena, n, sizeof *job.spins),
+                     .x = arena_alloc(m->arena, n, sizeof *job.x)};
     if (!seen || !shown || !job.view || !job.point || !job.spins || !job.x) return STATUS_NO_MEMORY;
     status = radar_sight_centres(seen, m, t->index, t->p_enu, t->r_enu_from_body, &r->centres);
     if (status != STATUS_OK) return status;
@@ -262,7 +276,8 @@ static Status take_target(bool *taken, Making *m, Target *t, Sight *sight)
     t->joint = arena_alloc(m->arena, (size_t)t->of->node_count + 1, sizeof *t->joint);
     if (!pose || !t->joint) return STATUS_NO_MEMORY;
     snapshot_pose(pose, t->joint, m->scene->snapshot, t->index, t->of);
-    if (m->scene->joint) memcpy(t->joint, m->scene->joint + e->first_node, (size_t)t->of->node_count * sizeof *t->joint);
+    if (m->scene->joint)
+        memcpy(t->joint, m->scene->joint + e->first_node, (size_t)t->of->node_count * sizeof *t->joint);
     *taken = true;
     return STATUS_OK;
 }

@@ -122,7 +122,8 @@ Status making_points(Making *m, int tasks, int each, VolumeMake make, void *user
     else for (int t = 0; t < tasks; t++) volume_task(&job, 0, t);
     RadarPoints *points = &m->radar->points;
     for (int t = 0; t < tasks; t++) {
-        memmove(points->point + points->count, job.point + (size_t)t * (size_t)each, (size_t)job.kept[t] * sizeof *job.point);
+        memmove(points->point + points->count, job.point + (size_t)t * (size_t)each,
+                (size_t)job.kept[t] * sizeof *job.point);
         points->count += job.kept[t];
     }
     return STATUS_OK;
@@ -149,7 +150,8 @@ static bool place_drop(VolumePoint *out, const Making *m, const Rain *rain, int 
     random_normals(n, 7, m->radar->seed, stream_rain + 2, rain->key, 7 * at);
     const double range_m = rain->from_m + (slice + u[0]) * rain->slice_m;
     const double square = rain->null * rain->null * (stratum / sectors + u[1]) / rings;
-    const double sine = sqrt(square), along = sqrt(1 - square), turn = 2 * pi_rad * (stratum % sectors + u[2]) / sectors;
+    const double sine = sqrt(square), along = sqrt(1 - square),
+                 turn = 2 * pi_rad * (stratum % sectors + u[2]) / sectors;
     for (int k = 0; k < 3; k++) d[k] = along * m->ahead[k] + sine * (cos(turn) * m->right[k] + sin(turn) * m->down[k]);
     const double p[3] = {m->p_enu[0] + range_m * d[0], m->p_enu[1] + range_m * d[1],
                          m->p_enu[2] + range_m * d[2]};

@@ -23,7 +23,8 @@ static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
     if (status != STATUS_OK) return status;
     r->in_band = clutter_band_of(&r->band, r->preset.wave.centre_hz);
     if (!r->in_band && config->ground) {
-        log_error("radar: %s: no ground is known at %g GHz (etc/radar/clutter.csv: 12-18, 27-40, 75-110); set radar.ground: false",
+        log_error("radar: %s: no ground is known at %g GHz (etc/radar/clutter.csv: 12-18, 27-40, 75-110); set "
+                  "radar.ground: false",
                   r->preset.name, 1e-9 * r->preset.wave.centre_hz);
         return STATUS_BAD_VALUE;
     }
@@ -31,19 +32,25 @@ static Status open_tables(SeekerRadar *r, const SeekerRadarConfig *config)
     status = clutter_table_open(&r->clutter, path);
     if (status == STATUS_OK) status = radar_materials_load(&r->materials);
     if (status == STATUS_OK)
-        status = etc_path(path, sizeof path, "radar/ground.csv") ? ground_table_open(&r->mirror, path) : STATUS_BAD_VALUE;
+        status =
+            etc_path(path, sizeof path, "radar/ground.csv") ? ground_table_open(&r->mirror, path) : STATUS_BAD_VALUE;
     if (status != STATUS_OK) return status;
-    if (!etc_path(path, sizeof path, "radar/oxygen_lines.csv") || !etc_path(water, sizeof water, "radar/water_lines.csv"))
+    if (!etc_path(path, sizeof path, "radar/oxygen_lines.csv") ||
+        !etc_path(water, sizeof water, "radar/water_lines.csv"))
         return STATUS_BAD_VALUE;
     return gas_lines_read(&r->gases, path, water);
 }
 
 SignaturesConfig seeker_radar_signatures(const RadarPreset *preset, double warp_m, const char *isa)
 {
-    return (SignaturesConfig){.frequency_hz = preset->wave.centre_hz, .bandwidth_hz = preset->wave.bandwidth_hz,
-                              .aspect_rad = 0.3 * rad_per_deg, .interval_s = preset->wave.pulses / preset->wave.repeat_hz,
-                              .rays_per_wavelength = 0.5, .warp_m = warp_m,
-                              .most_octets = (size_t)1 << 30, .isa = isa};
+    return (SignaturesConfig){.frequency_hz = preset->wave.centre_hz,
+                              .bandwidth_hz = preset->wave.bandwidth_hz,
+                              .aspect_rad = 0.3 * rad_per_deg,
+                              .interval_s = preset->wave.pulses / preset->wave.repeat_hz,
+                              .rays_per_wavelength = 0.5,
+                              .warp_m = warp_m,
+                              .most_octets = (size_t)1 << 30,
+                              .isa = isa};
 }
 
 Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
@@ -138,13 +145,15 @@ double making_appears_m(const Making *m, const Sight *sight, double range_rate_m
     return middle_m + waveform_appears_m(&m->preset->wave, sight->range_m - middle_m, range_rate_mps - followed_mps);
 }
 
-void making_amplitudes(double complex amplitude[interval_channels], const Making *m, const Sight *sight, const ScatterMatrix *s)
+void making_amplitudes(double complex amplitude[interval_channels], const Making *m, const Sight *sight,
+                       const ScatterMatrix *s)
 {
     const RadarPreset   *p = m->preset;
     const AntennaGain    gain = antenna_gain(&p->antenna, sight->cos_right, sight->cos_down);
     const RadarLink      link = {p->power_w, 1, 1, p->antenna.wavelength_m, sight->range_m, p->loss};
     const double         through_np = m->air_np_m * sight->range_m + making_volume_np(m, sight);
-    const double         unit = sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-2 * through_np)) * waveform_share(&p->wave, sight->range_m);
+    const double unit =
+        sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-2 * through_np)) * waveform_share(&p->wave, sight->range_m);
     const double complex same = unit * gain.sum * (p->transmits_h ? s->hh : s->vv);
     const double complex other = unit * gain.sum * (p->transmits_h ? s->vh : s->hv);
     amplitude[CHANNEL_SUM] = same * gain.sum;
@@ -187,7 +196,8 @@ static void aim_window(Making *m)
     v3_sub(v, m->scene->reference_v_enu_mps, m->scene->v_enu_mps);
     f->reference_rate_mps = v3_dot(v, m->ahead);
     v3_add_scaled(end, m->scene->view->p_enu, f->reference_m, m->ahead);
-    if (m->scene->world->landscape) ground_m = elevation_height(&m->scene->world->landscape->elevation, end[0], end[1], NULL);
+    if (m->scene->world->landscape)
+        ground_m = elevation_height(&m->scene->world->landscape->elevation, end[0], end[1], NULL);
     m->base_m = isfinite(ground_m) ? ground_m : 0;
     m->aim_m = f->reference_m;
     m->reference_rate_mps = f->reference_rate_mps;
@@ -309,7 +319,8 @@ static Status make(Making *m)
     visibility_materials(visibility, &scene->world->materials);
     m->visibility = visibility;
     m->radar->points.count = 0;
-    interval.sample = arena_alloc(m->arena, interval_channels * (size_t)wave->pulses * (size_t)wave->samples, sizeof *interval.sample);
+    interval.sample = arena_alloc(m->arena, interval_channels * (size_t)wave->pulses * (size_t)wave->samples,
+                                  sizeof *interval.sample);
     if (!interval.sample) return STATUS_NO_MEMORY;
     aim_window(m);
     follow(m);
@@ -332,7 +343,8 @@ static Status make(Making *m)
     return status == STATUS_OK && m->radar->scan_pulse ? making_scan(m, &interval) : status;
 }
 
-Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool, Arena *arena)
+Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool,
+                            Arena *arena)
 {
     const double      begun_s = wall_clock_s();
     const RadarPreset *p = &radar->preset;

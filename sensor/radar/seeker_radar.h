@@ -44,7 +44,7 @@ typedef struct SeekerRadarConfig {
     double      chaff_dipoles; /* resonant ones in a cloud of chaff; 0: chaff is not seen */
     uint64_t    seed;
     const char  *library;        /* folder of signatures, read and added to; NULL or empty: none */
-    bool         background;     /* signatures that are missing are made in a thread of their own; the update is left out */
+    bool background; /* signatures that are missing are made in a thread of their own; the update is left out */
 } SeekerRadarConfig;
 
 typedef struct SeekerRadar SeekerRadar;
@@ -74,7 +74,8 @@ typedef struct RadarScene {
 SignaturesConfig seeker_radar_signatures(const RadarPreset *preset, double warp_m, const char *isa);
 
 /* *out in the arena. NULL: left out, as signatures are still being made in the background. */
-Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool, Arena *arena);
+Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool,
+                            Arena *arena);
 SignatureCounters seeker_radar_counters(const SeekerRadar *radar);
 
 #endif

@@ -121,8 +121,8 @@ Status making_bounce(Making *making, const Target *target, const ScatterMatrix *
 /* Which centres of an entity of the snapshot the antenna sees: seen[centres->count]. Centres share a sight line within
  * cells of a 47th of their extent, of 0.05 m at least, so that the edge of a shadow is as fine as that; a line that
  * meets the entity itself first is clear. Those of many mirrors stand for the middle of their path. */
-Status radar_sight_centres(bool *seen, const Making *making, int entity, const double p_enu[3], const double r_enu_from_body[9],
-                           const Centres *centres);
+Status radar_sight_centres(bool *seen, const Making *making, int entity, const double p_enu[3],
+                           const double r_enu_from_body[9], const Centres *centres);
 /* Where relief, a plant or an entity is met more than slack_m[i] before the place that sight[i] leads to from from_enu.
  * own: snapshot index of an entity that is in nothing's way, -1: none. count: up to hits_capacity. */
 void making_hidden(bool *hidden, const Making *making, const double from_enu[3], const Sight *sight,

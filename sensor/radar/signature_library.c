@@ -45,7 +45,8 @@ size_t signature_to_octets(uint8_t *out, const Signature *s, const char key[sha2
     return head_octets + body + hash_octets;
 }
 
-Status signature_from_octets(Signature *out, const uint8_t *octets, size_t count, const char key[sha256_text_size], int parts)
+Status signature_from_octets(Signature *out, const uint8_t *octets, size_t count, const char key[sha256_text_size],
+                             int parts)
 {
     uint32_t counts[2];
     char     sum[sha256_text_size];
@@ -82,16 +83,28 @@ static bool add_text(Sha256 *d, const char *text) { return sha256_add(d, text, s
 
 static Status hash_settings(char out[sha256_text_size], const SignaturesConfig *c, const RadarMaterials *materials)
 {
-    const SignatureCells cells = signature_default_cells(c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->interval_s);
-    const double numbers[] = {computation, c->splits, c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->rays_per_wavelength, c->warp_m,
-                              cells.turn_rad, cells.path_phase_rad, cells.across_phase_rad, cells.interval_s, cells.spin_phase_rad,
-                              cells.weak_share, cells.weak_times};
+    const SignatureCells cells =
+        signature_default_cells(c->frequency_hz, c->bandwidth_hz, c->aspect_rad, c->interval_s);
+    const double numbers[] = {computation,
+                              c->splits,
+                              c->frequency_hz,
+                              c->bandwidth_hz,
+                              c->aspect_rad,
+                              c->rays_per_wavelength,
+                              c->warp_m,
+                              cells.turn_rad,
+                              cells.path_phase_rad,
+                              cells.across_phase_rad,
+                              cells.interval_s,
+                              cells.spin_phase_rad,
+                              cells.weak_share,
+                              cells.weak_times};
     Sha256 *d = sha256_begin();
     bool    ok = d && sha256_add(d, numbers, sizeof numbers);
     for (int i = 0; i < materials->count && ok; i++) {
         const RadarMaterial *m = &materials->material[i];
-        ok = add_text(d, m->name) && add_int(d, (int)m->kind) && add_double(d, m->thick_m) && add_double(d, m->rough_m) &&
-             add_int(d, m->points);
+        ok = add_text(d, m->name) && add_int(d, (int)m->kind) && add_double(d, m->thick_m) &&
+             add_double(d, m->rough_m) && add_int(d, m->points);
         for (int p = 0; p < m->points && ok; p++)
             ok = add_double(d, m->frequency_hz[p]) && add_double(d, m->e1[p]) && add_double(d, m->e2[p]);
     }
@@ -108,8 +121,8 @@ static bool add_node(Sha256 *d, const ModelNode *n)
 
 static bool add_part(Sha256 *d, const ModelPart *p)
 {
-    bool ok = add_int(d, p->node) && add_text(d, p->material) && add_int(d, p->first_triangle) && add_int(d, p->triangle_count) &&
-              add_int(d, p->damage_hidden);
+    bool ok = add_int(d, p->node) && add_text(d, p->material) && add_int(d, p->first_triangle) &&
+              add_int(d, p->triangle_count) && add_int(d, p->damage_hidden);
     for (int state = 0; state < model_damage_states && ok; state++) ok = add_text(d, p->damage_material[state]);
     return ok;
 }
@@ -275,8 +288,8 @@ Status signature_library_open(SignatureLibrary **out, const char *folder, const 
 {
     struct stat about;
     if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        log_error("radar: cannot make the library's folder %s: %s; the folder above it must exist and be writable", folder,
-                  strerror(errno));
+        log_error("radar: cannot make the library's folder %s: %s; the folder above it must exist and be writable",
+                  folder, strerror(errno));
         return STATUS_IO;
     }
     if (stat(folder, &about) != 0 || !S_ISDIR(about.st_mode)) {
@@ -304,7 +317,10 @@ void signature_library_close(SignatureLibrary *l)
     free(l);
 }
 
-SignatureStore signature_library_store(SignatureLibrary *l) { return (SignatureStore){.user = l, .fetch = fetch, .keep = keep}; }
+SignatureStore signature_library_store(SignatureLibrary *l)
+{
+    return (SignatureStore){.user = l, .fetch = fetch, .keep = keep};
+}
 
 SignatureLibraryCounters signature_library_counters(SignatureLibrary *l)
 {

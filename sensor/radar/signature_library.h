@@ -34,7 +34,8 @@ typedef struct SignatureLibraryCounters {
 SignatureLibraryCounters signature_library_counters(SignatureLibrary *library);
 
 /* A file's octets; parts: of the model. Fills count and centre of out. STATUS_BAD_VALUE: anything is wrong. */
-Status signature_from_octets(Signature *out, const uint8_t *octets, size_t count, const char key[sha256_text_size], int parts);
+Status signature_from_octets(Signature *out, const uint8_t *octets, size_t count, const char key[sha256_text_size],
+                             int parts);
 /* Its length, and the octets where out is not NULL. */
 size_t signature_to_octets(uint8_t *out, const Signature *signature, const char key[sha256_text_size]);
 

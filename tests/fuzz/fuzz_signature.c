@@ -14,8 +14,16 @@ static const char name[sha256_text_size] = "00112233445566778899aabbccddeeff0011
 
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
-    SignatureCentre centre[4] = {{.path = -12, .path_share = 0.25f, .p = {1, -2, 0.5f}, .scale = 0.1f, .moment_scale = 0.01f, .weight = 0.2f,
-                                  .strongest = 0.1f, .s = {32767, -5, 3, 0, 0, 1, -32767, 9}, .part = 2, .bounce = 3}};
+    SignatureCentre centre[4] = {{.path = -12,
+                                  .path_share = 0.25f,
+                                  .p = {1, -2, 0.5f},
+                                  .scale = 0.1f,
+                                  .moment_scale = 0.01f,
+                                  .weight = 0.2f,
+                                  .strongest = 0.1f,
+                                  .s = {32767, -5, 3, 0, 0, 1, -32767, 9},
+                                  .part = 2,
+                                  .bounce = 3}};
     for (int i = 1; i < 4; i++) centre[i] = centre[0], centre[i].path += i, centre[i].half[i - 1] = (float)i;
     const Signature s = {.count = (int)(index % 5), .centre = centre};
     return signature_to_octets(out, &s, name);
@@ -32,7 +40,8 @@ static void try_octets(const uint8_t *data, size_t size)
     if (centres_make(&centres, &s, &moved, &moved, NULL) != STATUS_OK) abort();
     for (int i = 0; i < centres.count; i++) {
         const ScatterCentre *c = &centres.centre[i];
-        if (!isfinite(c->path_m + c->p[0] + c->p[1] + c->p[2] + creal(c->s.vv) + cimag(c->s.hh)) || c->part >= parts) abort();
+        if (!isfinite(c->path_m + c->p[0] + c->p[1] + c->p[2] + creal(c->s.vv) + cimag(c->s.hh)) || c->part >= parts)
+            abort();
     }
     centres_free(&centres);
     signature_free(&s);

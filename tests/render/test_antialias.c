@@ -114,10 +114,11 @@ static void the_error_and_its_price(void **state)
     print_message("rays a pixel: 1, %.2f adaptive, 16\n", (double)adaptive.counters.rays_primary / pixels);
     for (int k = 0; k < 3; k++) {
         double       most[3];
-        const double before = rms(&plain, &best, planes[k], &most[0]), after = rms(&adaptive, &best, planes[k], &most[1]);
+        const double before = rms(&plain, &best, planes[k], &most[0]),
+                     after = rms(&adaptive, &best, planes[k], &most[1]);
         const double all = rms(&full, &best, planes[k], &most[2]);
-        print_message("plane %d: rms off 8 x 8: %.4f with 1, %.4f adaptive, %.4f with 16; most %.3f %.3f %.3f\n", planes[k],
-                      before, after, all, most[0], most[1], most[2]);
+        print_message("plane %d: rms off 8 x 8: %.4f with 1, %.4f adaptive, %.4f with 16; most %.3f %.3f %.3f\n",
+                      planes[k], before, after, all, most[0], most[1], most[2]);
         /* the bound of this priced skip: no more than half of the error is left (a third, as measured) */
         CHECK(after < 0.5 * before);
     }
@@ -209,9 +210,12 @@ static void a_mast_between_the_pixels_is_seen(void **state)
         CHECK(area >= 20); /* 22 rows, the ends by parts */
         missed += by_one == 0;
         const double want = 0.06 * 8 * 500 * 500 / (180.0 * 180.0);
-        worst = fmax(worst, fabs(hand_irradiance(&picture, &view, picture_lwir, 0) * 250000 / hand_emitted(BAND_LWIR) / want - 1));
+        worst =
+            fmax(worst,
+                 fabs(hand_irradiance(&picture, &view, picture_lwir, 0) * 250000 / hand_emitted(BAND_LWIR) / want - 1));
     }
-    print_message("mast: area off by up to %.1f %%; one ray a pixel misses it at %d of 40 places\n", 100 * worst, missed);
+    print_message("mast: area off by up to %.1f %%; one ray a pixel misses it at %d of 40 places\n", 100 * worst,
+                  missed);
     CHECK(missed > 20);
     CHECK(worst < 0.5); /* one of sixteen columns of samples more or less, of 2.7: 37 %; and its nearer face is wider */
 }
@@ -239,8 +243,8 @@ static void an_edge_has_its_places(void **state)
             const double edge_px = 8 + (n + 0.5) / steps, aside_m = (edge_px + 12 - 0.5 * side) / 240 * range_m;
             double       p_enu[3], r[9], row = 0;
             for (int i = 0; i < 3; i++)
-                p_enu[i] = eye_enu[i] + range_m * view.r_enu_from_cam[3 * i + 2] + aside_m * view.r_enu_from_cam[3 * i] +
-                           1.0 * view.r_enu_from_cam[3 * i + 1];
+                p_enu[i] = eye_enu[i] + range_m * view.r_enu_from_cam[3 * i + 2] +
+                           aside_m * view.r_enu_from_cam[3 * i] + 1.0 * view.r_enu_from_cam[3 * i + 1];
             for (int i = 0; i < 3; i++) { /* faces the eye: forward against the boresight, right to its left, down */
                 r[3 * i]     = -view.r_enu_from_cam[3 * i + 2];
                 r[3 * i + 1] = -view.r_enu_from_cam[3 * i];

@@ -5,7 +5,8 @@
 static void same_planes(const Picture *a, const Picture *b, unsigned bands)
 {
     const size_t n = (size_t)a->width * (size_t)a->height;
-    static const Band band_of[picture_plane_count] = {BAND_OPTICAL, BAND_OPTICAL, BAND_OPTICAL, BAND_MWIR, BAND_LWIR, BAND_RADAR};
+    static const Band band_of[picture_plane_count] = {BAND_OPTICAL, BAND_OPTICAL, BAND_OPTICAL,
+                                                      BAND_MWIR,    BAND_LWIR,    BAND_RADAR};
     for (int plane = 0; plane < picture_plane_count; plane++)
         if (picture_plane(a, plane) && bands >> band_of[plane] & 1)
             assert_memory_equal(picture_plane(a, plane), picture_plane(b, plane), n * sizeof(float));

@@ -28,7 +28,8 @@ static TubeHits some_hits(void)
         part[i] = (uint16_t)(i % 7);
         for (int x = 0; x < 3; x++) {
             first[x][i] = (float)(size_m[x] * (random_uniform(1, (uint32_t)x, 0, (uint64_t)i) - 0.5));
-            last[x][i] = bounce[i] == 1 ? first[x][i] : first[x][i] + (float)(0.1 * random_uniform(2, (uint32_t)x, 0, (uint64_t)i));
+            last[x][i] = bounce[i] == 1 ? first[x][i]
+                                        : first[x][i] + (float)(0.1 * random_uniform(2, (uint32_t)x, 0, (uint64_t)i));
             a[x] = (double)first[x][i], b[x] = (double)last[x][i];
         }
         path_m[i] = scatter_path(way, &antenna, a) + scatter_path(way, &antenna, b) + (bounce[i] == 1 ? 0 : 0.3);
@@ -114,8 +115,8 @@ static void centres_have_the_field_of_their_hits(void **state)
         static const double phase_rad[4] = {0.1, 0.3, 0.6, 0.9};
         int                 count;
         error_at(phase_rad[i], &of_band[i], &of_bin[i], &count);
-        printf("cells of %.1f rad: %d centres of %d hits: %.4f over the band, %.4f at the edge of the bin\n", phase_rad[i], count,
-               hits, of_band[i], of_bin[i]);
+        printf("cells of %.1f rad: %d centres of %d hits: %.4f over the band, %.4f at the edge of the bin\n",
+               phase_rad[i], count, hits, of_band[i], of_bin[i]);
         CHECK(of_band[i] < 1.4 * phase_rad[i] / 3 && of_bin[i] < 1.2 * 0.375 * phase_rad[i] * phase_rad[i]);
     }
     CHECK(of_bin[2] > 3 * of_bin[1] && of_bin[2] < 5 * of_bin[1]); /* of second order: four times */

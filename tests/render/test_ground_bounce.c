@@ -68,7 +68,8 @@ static void a_mirror_has_no_field_along_it(void **state)
         const GroundPlane plane = tilted(i);
         double            right[3] = {random_uniform(5, i, 0, 0) - 0.5, random_uniform(5, i, 0, 1) - 0.5,
                                       random_uniform(5, i, 0, 2) - 0.5};
-        ScatterAntenna    a = antenna_at(360 * random_uniform(4, i, 0, 0), 75 * random_uniform(4, i, 0, 1) + 14, INFINITY), image;
+        ScatterAntenna a = antenna_at(360 * random_uniform(4, i, 0, 0), 75 * random_uniform(4, i, 0, 1) + 14, INFINITY),
+                       image;
         GroundLeg         leg, direct;
         double            h[3], v[3], axis[2][3];
         if (i % 10 == 0) for (int c = 0; c < 3; c++) a.u[c] = plane.n[c]; /* straight above */
@@ -182,7 +183,8 @@ static void a_point_has_the_two_ray_pattern(void **state)
     double              peak = 0, null = 1, worst_db = 0, worst_flat_db = 0;
     for (int g = 0; g < 4; g++)
         for (double h = 0.2; h < 40; h += 0.05) {
-            const double         up = antenna_m - h, range_m = hypot(away_m, up), sine = (antenna_m + h) / hypot(away_m, antenna_m + h);
+            const double up = antenna_m - h, range_m = hypot(away_m, up),
+                         sine = (antenna_m + h) / hypot(away_m, antenna_m + h);
             const ScatterAntenna a = {{away_m / range_m, 0, -up / range_m}, range_m};
             const GroundPlane    plane = level(h);
             const GroundSurface  surface = {ground[g].eps, ground[g].rms_m, false};
@@ -208,8 +210,8 @@ static void a_point_has_the_two_ray_pattern(void **state)
             peak = fmax(peak, got);
             null = fmin(null, got);
         }
-    printf("a point over ground: %.1e dB of the two-ray formula, %.3f dB of 16 sin^4; lobes %.3f dB, nulls %.0f dB\n", worst_db,
-           worst_flat_db, decibels(peak), decibels(null));
+    printf("a point over ground: %.1e dB of the two-ray formula, %.3f dB of 16 sin^4; lobes %.3f dB, nulls %.0f dB\n",
+           worst_db, worst_flat_db, decibels(peak), decibels(null));
     CHECK(worst_db < 1e-5 && worst_flat_db < 0.1);
     CHECK_NEAR(decibels(peak), 20 * log10(4), 0.01);
     CHECK(decibels(null) < -60);
@@ -224,8 +226,8 @@ typedef struct Paths {
     double         seen_deepest_m; /* x of the hit of the image that lies lowest along x */
 } Paths;
 
-static ScatterMatrix trace(RadarStage *s, const ScatterAntenna *tx, const ScatterAntenna *rx, const GroundPlane *plane, bool edges,
-                           const bool image[2], double *least_x)
+static ScatterMatrix trace(RadarStage *s, const ScatterAntenna *tx, const ScatterAntenna *rx, const GroundPlane *plane,
+                           bool edges, const bool image[2], double *least_x)
 {
     TotalField    field = {0};
     ScatterMatrix m;
@@ -237,8 +239,8 @@ static ScatterMatrix trace(RadarStage *s, const ScatterAntenna *tx, const Scatte
     return m;
 }
 
-static void trace_paths(Paths *p, RadarStage *s, const ScatterAntenna *a, const GroundPlane *plane, const GroundSurface *surface,
-                        bool edges)
+static void trace_paths(Paths *p, RadarStage *s, const ScatterAntenna *a, const GroundPlane *plane,
+                        const GroundSurface *surface, bool edges)
 {
     const double extra_m = ground_image(&p->i, a, plane), k = wave_number(s->config.frequency_hz);
     double       h[3], v[3];
@@ -259,8 +261,8 @@ static double rms_of(const ScatterMatrix *s)
 
 /* Physical optics of a plate, A along y and B along z about the origin, normal x, for any two far antennas:
  * -j k / (2 pi) A B q . (n x (d x p)) sinc sinc. */
-static double complex plate_optics(const ScatterAntenna *tx, const ScatterAntenna *rx, int received, int transmitted, double a_m,
-                                   double b_m, double k)
+static double complex plate_optics(const ScatterAntenna *tx, const ScatterAntenna *rx, int received, int transmitted,
+                                   double a_m, double b_m, double k)
 {
     double              q[2][3], p[2][3], d[3], h[3], j[3];
     static const double n[3] = {1, 0, 0};
@@ -297,7 +299,8 @@ static void a_standing_plate_is_a_dihedral(void **state)
         for (int c = 0; c < 2; c++) {
             const double turn = c == 0 ? -1 : 1;
             want[c] = plate_optics(&a, &a, c, c, a_m, b_m, k) + turn * e * plate_optics(&p.i, &a, c, c, a_m, b_m, k) +
-                      turn * e * plate_optics(&a, &p.i, c, c, a_m, b_m, k) + e * e * plate_optics(&p.i, &p.i, c, c, a_m, b_m, k);
+                      turn * e * plate_optics(&a, &p.i, c, c, a_m, b_m, k) +
+                      e * e * plate_optics(&p.i, &p.i, c, c, a_m, b_m, k);
         }
         const double peak = 2 * a_m * b_m * cos(el * rad_per_deg) / wavelength_m;
         worst = fmax(worst, fmax(cabs(sum.hh - want[0]), cabs(sum.vv - want[1])) / peak);
@@ -307,8 +310,8 @@ static void a_standing_plate_is_a_dihedral(void **state)
         worst_edge_db = fmax(worst_edge_db, fabs(2 * decibels(2 * cabs(p.s.once.hh) / peak)));
         worst_edge_db = fmax(worst_edge_db, fabs(2 * decibels(2 * cabs(p.s.once.vv) / peak)));
     }
-    printf("a plate on a mirror: %.4f of its peak from image theory; dihedral %.3f dB, with edges %.3f dB\n", worst, worst_peak_db,
-           worst_edge_db);
+    printf("a plate on a mirror: %.4f of its peak from image theory; dihedral %.3f dB, with edges %.3f dB\n", worst,
+           worst_peak_db, worst_edge_db);
     CHECK(worst < 0.01 && worst_peak_db < 0.05 && worst_edge_db < 0.3);
     stage_close(&s);
 }
@@ -329,7 +332,8 @@ static void a_standing_cylinder_is_a_top_hat(void **state)
         const double want_m2 = 4 * k * radius_m * long_m * long_m * cos(el * rad_per_deg);
         const double hh_db = decibels(4 * pi_rad * pow(2 * cabs(p.s.once.hh), 2) / want_m2);
         const double vv_db = decibels(4 * pi_rad * pow(2 * cabs(p.s.once.vv), 2) / want_m2);
-        printf("a cylinder on a mirror at %.0f degrees: %.2f dBsm, %+.3f %+.3f dB\n", el, decibels(want_m2), hh_db, vv_db);
+        printf("a cylinder on a mirror at %.0f degrees: %.2f dBsm, %+.3f %+.3f dB\n", el, decibels(want_m2), hh_db,
+               vv_db);
         CHECK_NEAR(hh_db, 0, 0.2);
         CHECK_NEAR(vv_db, 0, 0.2);
     }
@@ -380,7 +384,8 @@ static void a_sphere_above_a_mirror(void **state)
     mie(one, 0.01, 1, 0);
     CHECK_NEAR(cabs(one[0]) / (1.5e-6), 1, 1e-3);
     s = (RadarStage){0};
-    CHECK(shape_build(&s.model, "sphere:0.3", 1e-5) == STATUS_OK); /* finer: facets lie within the sphere by 0.1 rad otherwise */
+    CHECK(shape_build(&s.model, "sphere:0.3", 1e-5) ==
+          STATUS_OK); /* finer: facets lie within the sphere by 0.1 rad otherwise */
     stage_target(&s, x_hz);
     for (int i = 0; i < 6; i++) {
         const double         el = 5 + 5 * i, height_m = 2 + 0.0031 * i;
@@ -401,10 +406,11 @@ static void a_sphere_above_a_mirror(void **state)
         const GroundFields exact = {{one[0], 0, 0, one[1]}, {both[0], 0, 0, both[1]}, {one[0], 0, 0, one[1]}};
         ground_sum(&sum_of_exact, &exact, &p.direct, &p.image, k);
         CHECK(cabs(sum_of_exact.hh - hh) < 1e-6 * a_m && cabs(sum_of_exact.vv - vv) < 1e-6 * a_m);
-        printf("a sphere above a mirror, %2.0f degrees: %.2f %.2f dBsm, exact %.2f %.2f; %.4f of the lobe\n", el, rcs_dbsm(sum.hh),
-               rcs_dbsm(sum.vv), rcs_dbsm(hh), rcs_dbsm(vv), error);
+        printf("a sphere above a mirror, %2.0f degrees: %.2f %.2f dBsm, exact %.2f %.2f; %.4f of the lobe\n", el,
+               rcs_dbsm(sum.hh), rcs_dbsm(sum.vv), rcs_dbsm(hh), rcs_dbsm(vv), error);
     }
-    CHECK(worst[0] < 0.03 && worst[1] < 0.04); /* to 15 and to 30 degrees: physical optics 30 and 60 degrees off backscatter */
+    CHECK(worst[0] < 0.03 &&
+          worst[1] < 0.04); /* to 15 and to 30 degrees: physical optics 30 and 60 degrees off backscatter */
     stage_close(&s);
 }
 
@@ -426,7 +432,8 @@ static void a_roof_hides_its_own_ground(void **state)
         Paths                p;
         trace_paths(&p, &s, &a, &plane, &mirror, false);
         const double strip_m = 1 - p.seen_deepest_m, want_m = 2 * high_m / tan(el * rad_per_deg);
-        printf("a roof at %.0f degrees: %.3f m of its underside lit, %.3f by the ray past its edge\n", el, strip_m, want_m);
+        printf("a roof at %.0f degrees: %.3f m of its underside lit, %.3f by the ray past its edge\n", el, strip_m,
+               want_m);
         CHECK_NEAR(strip_m, want_m, 0.02);
     }
     /* sunk by half: what is beneath the ground does not count, for any path */
@@ -435,7 +442,8 @@ static void a_roof_hides_its_own_ground(void **state)
     const ScatterAntenna a = antenna_at(0, 20, INFINITY);
     Paths                p;
     trace_paths(&p, &s, &a, &half, &mirror, false);
-    const double want = 2 * 1 * cos(20 * rad_per_deg) / (light_mps / 3e9); /* one leg of a plate of half the area, 2 m2 */
+    const double want =
+        2 * 1 * cos(20 * rad_per_deg) / (light_mps / 3e9); /* one leg of a plate of half the area, 2 m2 */
     CHECK_NEAR(2 * decibels(cabs(p.s.once.hh) / want), 0, 0.2);
     stage_close(&s);
 }
@@ -448,7 +456,8 @@ static void open_truck(RadarStage *s, Catalog **catalog, RadarMaterials *materia
     Origin                     origin;
     char                       path[4096];
     *s = (RadarStage){0};
-    CHECK(etc_path(path, sizeof path, "catalog.csv") && catalog_open(catalog, path, radar_sag_m(truck_hz)) == STATUS_OK);
+    CHECK(etc_path(path, sizeof path, "catalog.csv") &&
+          catalog_open(catalog, path, radar_sag_m(truck_hz)) == STATUS_OK);
     CHECK(radar_materials_load(materials) == STATUS_OK);
     const Model *model = catalog_model(*catalog, catalog_find(*catalog, truck, &origin, NULL));
     CHECK(radar_target_create(&s->target, model, materials, "avx2") == STATUS_OK);
@@ -480,13 +489,14 @@ static void a_truck_on_the_ground(void **state)
         ground_sum(&smooth, &p.s, &p.direct, &p.image, k);
         added_db += 2 * decibels(rms_of(&smooth) / rms_of(&p.s.direct)) / looks;
         const ScatterMatrix back = trace(&s, &p.i, &p.a, &plane, true, (bool[]){true, false}, NULL);
-        apart += pow(cabs(back.hh - p.s.once.hh), 2) + pow(cabs(back.vv - p.s.once.vv), 2) + pow(cabs(back.hv - p.s.once.vh), 2) +
-                 pow(cabs(back.vh - p.s.once.hv), 2);
+        apart += pow(cabs(back.hh - p.s.once.hh), 2) + pow(cabs(back.vv - p.s.once.vv), 2) +
+                 pow(cabs(back.hv - p.s.once.vh), 2) + pow(cabs(back.vh - p.s.once.hv), 2);
         power += pow(rms_of(&p.s.once), 2);
 
         scatter_basis(h, v, a.u);
         const double extra_m = p.image.extra_m, sine = -v3_dot(plane.n, p.i.u);
-        rough.rms_m = sqrt(-0.5 * log(ground_least_coherence / p.image.coherence)) / (k * sine) * (1 + 1e-9); /* just left out */
+        rough.rms_m =
+            sqrt(-0.5 * log(ground_least_coherence / p.image.coherence)) / (k * sine) * (1 + 1e-9); /* just left out */
         CHECK(ground_leg_image(&p.image, &a, &p.i, extra_m, &plane, &rough, k, h));
         CHECK_NEAR(p.image.coherence / ground_least_coherence, 1, 1e-6);
         CHECK(p.image.coherence < ground_least_coherence);
@@ -496,8 +506,10 @@ static void a_truck_on_the_ground(void **state)
         worst = fmax(worst, rms_of(&sum) / bound);
         worst_db = fmax(worst_db, 2 * decibels(1 + rms_of(&sum) / rms_of(&p.s.direct)));
     }
-    printf("a truck at 3 GHz, 12 degrees: smooth loam adds %.1f dB on average; ways round differ by %.1f dB; left out at the least "
-           "coherence: %.3f of the bound, %.4f dB\n", added_db, decibels(apart / power), worst, worst_db);
+    printf("a truck at 3 GHz, 12 degrees: smooth loam adds %.1f dB on average; ways round differ by %.1f dB; left out "
+           "at the least "
+           "coherence: %.3f of the bound, %.4f dB\n",
+           added_db, decibels(apart / power), worst, worst_db);
     CHECK(worst <= 1 && worst > 0.1 && worst_db < 0.1);
     CHECK(decibels(apart / power) < -6);
 
@@ -512,11 +524,13 @@ static void a_truck_on_the_ground(void **state)
         CHECK(total_field_trace(field, s.target, &image, &image, &s.config, true, pool) == STATUS_OK);
         const size_t whole = field->hits.count;
         CHECK(ground_hide(field, s.target, &plane, (bool[]){true, true}, pool) == STATUS_OK);
-        CHECK(field->hits.count < whole && field->hits.count > 1000 && field->hits.amplitude[0][field->hits.count] == 0);
+        CHECK(field->hits.count < whole && field->hits.count > 1000 &&
+              field->hits.amplitude[0][field->hits.count] == 0);
         pool_destroy(pool);
         CHECK(field->hits.count == first.hits.count && field->edges.count == first.edges.count);
         CHECK(memcmp(field->hits.path_m, first.hits.path_m, first.hits.count * sizeof(double)) == 0);
-        CHECK(memcmp(field->edges.segment, first.edges.segment, (size_t)first.edges.count * sizeof *first.edges.segment) == 0);
+        CHECK(memcmp(field->edges.segment, first.edges.segment,
+                     (size_t)first.edges.count * sizeof *first.edges.segment) == 0);
     }
     total_field_free(&first);
     total_field_free(&other);

@@ -50,12 +50,14 @@ static double normalised_error(const Case *c, double *rms_db, double *said_db, d
         CHECK(total_field_sweep(&want, 1, hz, 0, &finer, NULL, NULL, pool) == STATUS_OK);
         const double complex of[2][2] = {{got.hh, want.hh}, {got.vv, want.vv}};
         for (int p = 0; p < 2; p++) {
-            const double off_db = rcs_dbsm(of[p][0]) - rcs_dbsm(of[p][1]), sigma_db = signature_error_db(of[p][0], error.same_m2);
+            const double off_db = rcs_dbsm(of[p][0]) - rcs_dbsm(of[p][1]),
+                         sigma_db = signature_error_db(of[p][0], error.same_m2);
             sum += pow(off_db / sigma_db, 2) / (2 * looks);
             actual += off_db * off_db / (2 * looks);
             said += sigma_db * sigma_db / (2 * looks);
         }
-        cross_sum += pow((rcs_dbsm(got.hv) - rcs_dbsm(want.hv)) / signature_error_db(got.hv, error.cross_m2), 2) / looks;
+        cross_sum +=
+            pow((rcs_dbsm(got.hv) - rcs_dbsm(want.hv)) / signature_error_db(got.hv, error.cross_m2), 2) / looks;
     }
     *rms_db = sqrt(actual);
     *said_db = sqrt(said);
@@ -71,12 +73,14 @@ static double normalised_error(const Case *c, double *rms_db, double *said_db, d
 static void estimates_are_within_a_factor_of_two(void **state)
 {
     (void)state;
-    static const Case cases[] = {{"tank", 10, true}, {"truck", 16.5, false}, {"helicopter", 6, false}, {"truck", 6, false}};
+    static const Case cases[] = {
+        {"tank", 10, true}, {"truck", 16.5, false}, {"helicopter", 6, false}, {"truck", 6, false}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         double       rms_db, said_db, cross;
         const double ratio = normalised_error(&cases[i], &rms_db, &said_db, &cross);
-        print_message("%s at %g GHz%s: error %.2f dB rms, estimate %.2f; error over estimate %.2f, cross-polarised %.2f\n", cases[i].model, cases[i].ghz,
-                      cases[i].fitted ? " (fitted)" : "", rms_db, said_db, ratio, cross);
+        print_message(
+            "%s at %g GHz%s: error %.2f dB rms, estimate %.2f; error over estimate %.2f, cross-polarised %.2f\n",
+            cases[i].model, cases[i].ghz, cases[i].fitted ? " (fitted)" : "", rms_db, said_db, ratio, cross);
         CHECK(ratio > 0.5 && ratio < 2);
         CHECK(cross > 0.5 && cross < 2);
     }

@@ -23,15 +23,17 @@ static void bins_are_about_their_middles(void **state)
     (void)state;
     double farthest = 0;
     for (int i = 0; i < 20000; i++) {
-        const ScatterAntenna a = at(360 * random_uniform(1, 0, 0, (uint64_t)i) - 180, 180 * random_uniform(1, 1, 0, (uint64_t)i) - 90,
-                                    pow(10, 1 + 4 * random_uniform(1, 2, 0, (uint64_t)i)));
+        const ScatterAntenna a =
+            at(360 * random_uniform(1, 0, 0, (uint64_t)i) - 180, 180 * random_uniform(1, 1, 0, (uint64_t)i) - 90,
+               pow(10, 1 + 4 * random_uniform(1, 2, 0, (uint64_t)i)));
         ScatterAntenna middle, again;
         double         across[3];
         signature_bin(&middle, &a, aspect_rad);
         signature_bin(&again, &middle, aspect_rad);
         v3_cross(across, middle.u, a.u);
         farthest = fmax(farthest, v3_length(across));
-        CHECK(memcmp(&middle, &again, sizeof middle) == 0 || fabs(middle.u[2]) > 1 - 1e-5); /* near a pole azimuths differ by rounding */
+        CHECK(memcmp(&middle, &again, sizeof middle) == 0 ||
+              fabs(middle.u[2]) > 1 - 1e-5); /* near a pole azimuths differ by rounding */
         CHECK(fabs(log2(middle.range_m / a.range_m)) <= 0.125 + 1e-12);
         CHECK_NEAR(v3_length(middle.u), 1, 1e-14);
     }
@@ -41,12 +43,17 @@ static void bins_are_about_their_middles(void **state)
 static Signatures *open(Catalog **catalog, int *model, RadarMaterials *materials, size_t most_octets)
 {
     static const DisEntityType truck = {1, 1, 225, 7, 1, 0, 0};
-    const SignaturesConfig     config = {.frequency_hz = frequency_hz, .bandwidth_hz = 5e8, .aspect_rad = aspect_rad, .rays_per_wavelength = 1,
-                                         .most_octets = most_octets, .isa = "avx2"};
+    const SignaturesConfig config = {.frequency_hz = frequency_hz,
+                                     .bandwidth_hz = 5e8,
+                                     .aspect_rad = aspect_rad,
+                                     .rays_per_wavelength = 1,
+                                     .most_octets = most_octets,
+                                     .isa = "avx2"};
     Signatures *s;
     Origin      origin;
     char        path[4096];
-    CHECK(etc_path(path, sizeof path, "catalog.csv") && catalog_open(catalog, path, radar_sag_m(frequency_hz)) == STATUS_OK);
+    CHECK(etc_path(path, sizeof path, "catalog.csv") &&
+          catalog_open(catalog, path, radar_sag_m(frequency_hz)) == STATUS_OK);
     *model = catalog_find(*catalog, truck, &origin, NULL);
     CHECK(radar_materials_load(materials) == STATUS_OK);
     CHECK(signatures_create(&s, &config, *catalog, materials) == STATUS_OK);
@@ -73,8 +80,12 @@ static void lists_are_reused_and_change_no_bit(void **state)
     RadarMaterials materials;
     int            model;
     Signatures    *s = open(&catalog, &model, &materials, 1), *roomy; /* one list alone, or all */
-    SignaturesConfig config = {.frequency_hz = frequency_hz, .bandwidth_hz = 5e8, .aspect_rad = aspect_rad, .rays_per_wavelength = 1,
-                              .most_octets = 1 << 30, .isa = "avx2"};
+    SignaturesConfig config = {.frequency_hz = frequency_hz,
+                               .bandwidth_hz = 5e8,
+                               .aspect_rad = aspect_rad,
+                               .rays_per_wavelength = 1,
+                               .most_octets = 1 << 30,
+                               .isa = "avx2"};
     CHECK(signatures_create(&roomy, &config, catalog, &materials) == STATUS_OK);
     ScatterMatrix first[6], again[6], other[6];
     for (int i = 0; i < 6; i++) {
@@ -130,7 +141,8 @@ static void looks_are_told_apart(void **state)
     SignatureLook  look_of[7];
     const ScatterAntenna a = at(20, 15, 2000), below = at(20, -15, 2000);
     for (int i = 0; i < 7; i++)
-        look_of[i] = (SignatureLook){.tx = a, .rx = i == 0 ? a : below, .image = {false, i > 1}, .plane = {{0, 0, -1}, 0.5}};
+        look_of[i] =
+            (SignatureLook){.tx = a, .rx = i == 0 ? a : below, .image = {false, i > 1}, .plane = {{0, 0, -1}, 0.5}};
     look_of[3].plane.height_m = 0.505;
     look_of[4].plane.height_m = 0.55;
     look_of[5].plane.n[0] = sin(3 * rad_per_deg), look_of[5].plane.n[2] = -cos(3 * rad_per_deg);
@@ -155,8 +167,13 @@ static void background_makes_the_same(void **state)
     RadarMaterials   materials;
     int              model;
     Signatures      *s = open(&catalog, &model, &materials, 1 << 30), *later;
-    SignaturesConfig config = {.frequency_hz = frequency_hz, .bandwidth_hz = 5e8, .aspect_rad = aspect_rad, .rays_per_wavelength = 1,
-                               .most_octets = 1 << 30, .isa = "avx2", .background = true};
+    SignaturesConfig config = {.frequency_hz = frequency_hz,
+                               .bandwidth_hz = 5e8,
+                               .aspect_rad = aspect_rad,
+                               .rays_per_wavelength = 1,
+                               .most_octets = 1 << 30,
+                               .isa = "avx2",
+                               .background = true};
     const Signature *want[3], *got = NULL;
     CHECK(signatures_create(&later, &config, catalog, &materials) == STATUS_OK);
     for (int round = 0; round < 2; round++)

@@ -273,7 +273,8 @@ static inline void judge_tables(Tally *tally, const ErrorCase *c)
     static Rays  rays;
     static const AirBand air_of[radiance_bands + 2] = {AIR_R, AIR_G, AIR_B, AIR_MWIR, AIR_LWIR};
     RenderRequest request = c->request;
-    request.edge_samples = request.target_samples = 0, request.budget = true; /* one ray: what a pixel shows is its truth's */
+    request.edge_samples = request.target_samples = 0,
+    request.budget = true; /* one ray: what a pixel shows is its truth's */
     TrialFrame       frame = frame_of(&c->coarse, &request, 1);
     const FrameError error = error_of(&frame);
     const Picture   *p = &frame.picture;
@@ -286,7 +287,8 @@ static inline void judge_tables(Tally *tally, const ErrorCase *c)
         const float *value = picture_plane(p, plane < 3    ? picture_optical + plane
                                               : plane == 3 ? picture_mwir
                                                            : picture_lwir);
-        const double  warmer = thermal ? air->light.thermal_scale[b - AIR_MWIR] : 1; /* air of another temperature than the model's */
+        const double warmer =
+            thermal ? air->light.thermal_scale[b - AIR_MWIR] : 1; /* air of another temperature than the model's */
         double        square = 0, sum = 0;
         hits.count = rays.count = 1;
         for (int i = 0; i < width_px * height_px; i++) {

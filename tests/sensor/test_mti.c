@@ -7,8 +7,13 @@
 
 enum { samples = 128, pulses = 256, all = samples * pulses, echoes = 12000 };
 static const double   light = 299792458.0;
-static const Waveform wave = {.kind = WAVEFORM_PULSE_DOPPLER, .centre_hz = 16.5e9, .bandwidth_hz = 12.8e6, .pulse_s = 1e-6,
-                              .repeat_hz = 1e5, .samples = samples, .pulses = pulses};
+static const Waveform wave = {.kind = WAVEFORM_PULSE_DOPPLER,
+                              .centre_hz = 16.5e9,
+                              .bandwidth_hz = 12.8e6,
+                              .pulse_s = 1e-6,
+                              .repeat_hz = 1e5,
+                              .samples = samples,
+                              .pulses = pulses};
 static double complex sample[interval_channels * all];
 
 /* Mean power over the columns, before and behind each canceller. */
@@ -51,8 +56,8 @@ static void clutter_is_cancelled_as_on_paper(void **state)
         const double turn = 4 * pi_rad * sigma_mps / wave.repeat_hz / wave_m;
         const double rho1 = exp(-turn * turn / 2), rho2 = exp(-2 * turn * turn);
         const double two_db = -10 * log10(1 - rho1), three_db = 10 * log10(3 / (3 - 4 * rho1 + rho2));
-        printf("clutter of %g m/s: improvement %.2f and %.2f dB, on paper %.2f and %.2f\n", sigma_mps, 10 * log10(got[1] / got[2]),
-               10 * log10(got[1] / got[3]), two_db, three_db);
+        printf("clutter of %g m/s: improvement %.2f and %.2f dB, on paper %.2f and %.2f\n", sigma_mps,
+               10 * log10(got[1] / got[2]), 10 * log10(got[1] / got[3]), two_db, three_db);
         CHECK_NEAR(10 * log10(got[1] / got[2]), two_db, 0.3);
         CHECK_NEAR(10 * log10(got[1] / got[3]), three_db, 0.3);
         if (wide == 0) { /* narrow: (PRF / (2 pi s_f))^2 and half its square (Skolnik) */
@@ -71,12 +76,14 @@ static void targets_pass_but_for_blind_speeds(void **state)
 {
     (void)state;
     for (int i = -40; i <= 40; i++) {
-        const double rate = 45.42309967 * i, x = pi_rad * i / 20, path_m = 2 * rate / wave.repeat_hz, s2 = sin(x) * sin(x);
+        const double rate = 45.42309967 * i, x = pi_rad * i / 20, path_m = 2 * rate / wave.repeat_hz,
+                     s2 = sin(x) * sin(x);
         CHECK_NEAR(mti_gain(&wave, 2, path_m), 2 * s2, 1e-6);
         CHECK_NEAR(mti_gain(&wave, 3, path_m), 8 * s2 * s2 / 3, 1e-6);
         CHECK(mti_moves(rate + 11, 11, 20, 908.4619939) == (i % 20 != 0));
     }
-    CHECK(!mti_moves(30, 11, 20, 908.46) && mti_moves(32, 11, 20, 908.46) && !mti_moves(11 - 908.46 + 19, 11, 20, 908.46));
+    CHECK(!mti_moves(30, 11, 20, 908.46) && mti_moves(32, 11, 20, 908.46) &&
+          !mti_moves(11 - 908.46 + 19, 11, 20, 908.46));
     /* of a target alone, through the samples */
     EchoGrid *grid;
     double    got[4];
@@ -85,7 +92,8 @@ static void targets_pass_but_for_blind_speeds(void **state)
     echo_sum(sample, grid);
     powers(got, 2 * 20 / wave.repeat_hz);
     for (int rows = 2; rows <= 3; rows++)
-        CHECK_NEAR(got[rows] / got[1] / mti_gain(&wave, rows, 2 * 130 / wave.repeat_hz), 1, 1e-4); /* a moving echo's gridding */
+        CHECK_NEAR(got[rows] / got[1] / mti_gain(&wave, rows, 2 * 130 / wave.repeat_hz), 1,
+                   1e-4); /* a moving echo's gridding */
     echo_grid_destroy(grid);
 }
 
@@ -93,9 +101,11 @@ static void noise_keeps_its_power(void **state)
 {
     (void)state;
     double got[4];
-    for (int i = 0; i < all; i++) sample[i] = random_normal(3, 0, 0, 4 * (uint64_t)i) + I * random_normal(3, 0, 0, 4 * (uint64_t)i + 2);
+    for (int i = 0; i < all; i++)
+        sample[i] = random_normal(3, 0, 0, 4 * (uint64_t)i) + I * random_normal(3, 0, 0, 4 * (uint64_t)i + 2);
     powers(got, 1e-3);
-    for (int rows = 2; rows <= 3; rows++) CHECK_NEAR(got[rows] / got[1], 1, 0.03); /* of 32768 exponential draws, weighted */
+    for (int rows = 2; rows <= 3; rows++)
+        CHECK_NEAR(got[rows] / got[1], 1, 0.03); /* of 32768 exponential draws, weighted */
 }
 
 int main(void)

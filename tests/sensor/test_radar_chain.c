@@ -31,7 +31,10 @@ static void add_points(Interval *interval, const Point *point, int count)
         const AntennaGain g = antenna_gain(&dish, p->cos_right, p->cos_down);
         const RadarLink   link = {power_w, 1, 1, dish.wavelength_m, reference_m + p->range_m, loss};
         const double complex a = sqrt(radar_received_w(&link, p->rcs_m2)) * g.sum * cexp(I * p->phase_rad);
-        echo_add(grid, &(Echo){2 * p->range_m, 2 * p->range_rate_mps / wave.repeat_hz, {a * g.sum, a * g.right, a * g.down, 0}}, 1, NULL);
+        echo_add(
+            grid,
+            &(Echo){2 * p->range_m, 2 * p->range_rate_mps / wave.repeat_hz, {a * g.sum, a * g.right, a * g.down, 0}}, 1,
+            NULL);
     }
     echo_sum(interval->sample, grid);
     echo_grid_destroy(grid);
@@ -109,7 +112,8 @@ static void points_are_measured(void **state)
             /* noise moves them by some snr^-0.5 of a cell; the others' side lobes, 60 dB down and more, by less */
             const double some = 3 / sqrt(got[k].snr);
             /* a pulse of 20 us over 500 MHz at 94 GHz: 3.76 ms of range rate farther */
-            CHECK_NEAR(got[k].range_m - reference_m, point[i].range_m + 3.76e-3 * point[i].range_rate_mps, some * map.metre_per_column);
+            CHECK_NEAR(got[k].range_m - reference_m, point[i].range_m + 3.76e-3 * point[i].range_rate_mps,
+                       some * map.metre_per_column);
             CHECK_NEAR(got[k].range_rate_mps + 220, point[i].range_rate_mps, some * map.mps_per_row);
             /* three times Barton's width / (1.6 (2 snr)^0.5) of monopulse */
             const double angle = 3 * antenna_width_rad(&dish) / (1.6 * sqrt(2 * got[k].snr));

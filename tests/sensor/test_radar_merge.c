@@ -63,8 +63,8 @@ static void few_echoes_make_the_same_map(void **state)
         stage.snapshot.count = 0;
         scene_add(0, 0, north_m[i], 0)->w_body_rps[2] = rps[i];
         const double off = changed(&merged, &apart, "search_ku");
-        printf("boxes %g m off the axis, turning by %g rad/s: %d echoes of %d, %.2f %% of the map\n", north_m[i], rps[i], merged,
-               apart, 100 * off);
+        printf("boxes %g m off the axis, turning by %g rad/s: %d echoes of %d, %.2f %% of the map\n", north_m[i],
+               rps[i], merged, apart, 100 * off);
         CHECK(merged < apart / 2 && off < 0.02 && off > 1e-9);
     }
 }
@@ -91,7 +91,8 @@ static void what_is_resolved_stays(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(few_echoes_make_the_same_map), cmocka_unit_test(one_echo_of_what_nothing_resolves),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(few_echoes_make_the_same_map),
+                                       cmocka_unit_test(one_echo_of_what_nothing_resolves),
                                        cmocka_unit_test(what_is_resolved_stays)};
     return cmocka_run_group_tests(tests, open_models, close_models);
 }

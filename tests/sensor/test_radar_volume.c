@@ -59,13 +59,16 @@ static int open_stage(void **state)
     config.relief_m = 0;
     if (!etc_path(stage.catalog_path, sizeof stage.catalog_path, "catalog.csv")) return -1;
     if (!etc_path(path, sizeof path, "radar/clutter.csv") || clutter_table_open(&table, path) != STATUS_OK) return -1;
-    if (catalog_open(&stage.catalog, stage.catalog_path, 0.01) != STATUS_OK || local_frame_at(&frame, &origin) != STATUS_OK) return -1;
+    if (catalog_open(&stage.catalog, stage.catalog_path, 0.01) != STATUS_OK ||
+        local_frame_at(&frame, &origin) != STATUS_OK)
+        return -1;
     if (landscape_create(&stage.landscape, &config, &frame, NULL, 0, NULL, 0) != STATUS_OK) return -1;
     if (world_open(&stage.world, stage.catalog, &stage.landscape, &frame, "avx2") != STATUS_OK) return -1;
     if (atmosphere_open(&stage.world.atmosphere, "us1976") != STATUS_OK) return -1;
     stand_woods();
     stage.woods_world = stage.world;
-    if (forest_create(&stage.woods_world.forest, &stage.woods, &hand_plants, &(ForestConfig){.leaves = true}, "avx2") != STATUS_OK)
+    if (forest_create(&stage.woods_world.forest, &stage.woods, &hand_plants, &(ForestConfig){.leaves = true}, "avx2") !=
+        STATUS_OK)
         return -1;
     stage.arena = arena_create();
     return stage.arena && pool_create(&stage.pool, 2) == STATUS_OK ? 0 : -1;
@@ -87,7 +90,8 @@ static int close_stage(void **state)
 static RadarScene look(double elevation_rad, double height_m, uint32_t number, const Weather *weather)
 {
     const double ground_m = elevation_height(&stage.landscape.elevation, 0, 0, NULL), level = cos(elevation_rad);
-    const double ahead[3] = {level * sqrt(0.5), level * sqrt(0.5), sin(elevation_rad)}, right[3] = {sqrt(0.5), -sqrt(0.5), 0};
+    const double ahead[3] = {level * sqrt(0.5), level * sqrt(0.5), sin(elevation_rad)},
+                 right[3] = {sqrt(0.5), -sqrt(0.5), 0};
     double       below[3];
     v3_cross(below, ahead, right);
     stage.view = (View){.p_enu = {0, 0, ground_m + height_m}, .width = 64, .height = 64, .focal_px = 1000};
@@ -105,8 +109,12 @@ static const char *preset = "seeker_35";
 static SeekerRadar *open_radar(uint64_t seed, bool ground)
 {
     SeekerRadar *radar;
-    CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = preset, .catalog = stage.catalog_path, .isa = "avx2",
-                                                           .ground = ground, .seed = seed, .chaff_dipoles = 1e6}) == STATUS_OK);
+    CHECK(seeker_radar_create(&radar, &(SeekerRadarConfig){.preset = preset,
+                                                           .catalog = stage.catalog_path,
+                                                           .isa = "avx2",
+                                                           .ground = ground,
+                                                           .seed = seed,
+                                                           .chaff_dipoles = 1e6}) == STATUS_OK);
     return radar;
 }
 
@@ -133,7 +141,8 @@ static double power_w(const RadarFrame *frame)
 {
     const WindowFigures figures = range_figures(frame);
     double              sum_w = 0;
-    for (int i = 0; i < 512; i++) sum_w += (frame->profile_w[i] - frame->receiver.noise_w * figures.noise_bins / 512) / figures.noise_bins;
+    for (int i = 0; i < 512; i++)
+        sum_w += (frame->profile_w[i] - frame->receiver.noise_w * figures.noise_bins / 512) / figures.noise_bins;
     return sum_w;
 }
 
@@ -149,7 +158,8 @@ static double unit_w(const RadarFrame *frame, const double p_enu[3])
     v3_scale(d, 1 / range_m, d);
     const double right = d[0] * r[0] + d[1] * r[3] + d[2] * r[6], down = d[0] * r[1] + d[1] * r[4] + d[2] * r[7];
     const double gain = antenna_gain(&p->antenna, right, down).sum, air_db = frame->air_db * range_m / reference_m;
-    return radar_received_w(&(RadarLink){p->power_w, gain * gain, gain * gain, p->antenna.wavelength_m, range_m, p->loss}, 1) *
+    return radar_received_w(
+               &(RadarLink){p->power_w, gain * gain, gain * gain, p->antenna.wavelength_m, range_m, p->loss}, 1) *
            pow(10, -0.2 * air_db);
 }
 
@@ -170,7 +180,10 @@ static double rain_by_hand(double *mean_mps, double *variance, double f_ghz, dou
     return back;
 }
 
-static int by_value(const void *a, const void *b) { return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b); }
+static int by_value(const void *a, const void *b)
+{
+    return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b);
+}
 
 static void rain_has_the_power_of_its_integral(void **state)
 {
@@ -196,17 +209,22 @@ static void rain_has_the_power_of_its_integral(void **state)
         if (seed == 1) eta = rain_by_hand(&mean, &variance, 35, atmosphere_temp_k(stage.world.atmosphere, 0), 10);
         CHECK_NEAR(frame->rain_1_m / eta, 1, 2e-3);
         const WindowFigures figures = range_figures(frame);
-        const double window_m = 0.5 * 512 * frame->map.metre_per_column, wavelength_m = frame->preset->antenna.wavelength_m;
+        const double window_m = 0.5 * 512 * frame->map.metre_per_column,
+                     wavelength_m = frame->preset->antenna.wavelength_m;
         double       pattern = 0, along = 0;
-        for (double a = 1e-4; a < 0.5; a += 2e-4) pattern += 2 * pi_rad * sin(a) * 2e-4 * pow(antenna_gain(&frame->preset->antenna, sin(a), 0).sum, 4);
-        for (double r = reference_m - window_m + 0.5; r < reference_m + window_m; r++) along += pow(10, -0.2 * frame->air_db * r / reference_m) / (r * r);
-        want_w += frame->preset->power_w * wavelength_m * wavelength_m / pow(4 * pi_rad, 3) / frame->preset->loss * eta * pattern * along;
+        for (double a = 1e-4; a < 0.5; a += 2e-4)
+            pattern += 2 * pi_rad * sin(a) * 2e-4 * pow(antenna_gain(&frame->preset->antenna, sin(a), 0).sum, 4);
+        for (double r = reference_m - window_m + 0.5; r < reference_m + window_m; r++)
+            along += pow(10, -0.2 * frame->air_db * r / reference_m) / (r * r);
+        want_w += frame->preset->power_w * wavelength_m * wavelength_m / pow(4 * pi_rad, 3) / frame->preset->loss *
+                  eta * pattern * along;
         /* intensities of one pulse, over their means */
         for (int i = 0; i < 512; i += every) {
             const double r = reference_m + (i - 256) * frame->map.metre_per_column;
-            const double mean_w = frame->preset->power_w * wavelength_m * wavelength_m / pow(4 * pi_rad, 3) / frame->preset->loss * eta * pattern *
-                                  pow(10, -0.2 * frame->air_db * r / reference_m) / (r * r) * frame->map.metre_per_column *
-                                  figures.noise_bins;
+            const double mean_w = frame->preset->power_w * wavelength_m * wavelength_m / pow(4 * pi_rad, 3) /
+                                  frame->preset->loss * eta * pattern *
+                                  pow(10, -0.2 * frame->air_db * r / reference_m) / (r * r) *
+                                  frame->map.metre_per_column * figures.noise_bins;
             const double noise_w = frame->receiver.noise_w * figures.noise_bins / 512;
             const double complex z = frame->profile[i];
             sample[samples++] = creal(z * conj(z)) / (mean_w + noise_w);
@@ -215,7 +233,8 @@ static void rain_has_the_power_of_its_integral(void **state)
         double       floor_w = frame->receiver.noise_w * frame->map.noise_share;
         for (size_t c = 0; c < cells; c++) {
             const double complex z = frame->map.cell[c], x = frame->map.cell[CHANNEL_CROSS * cells + c];
-            const double         w = creal(z * conj(z)) - floor_w, at = (double)(c / (size_t)frame->map.columns) - frame->map.rows / 2;
+            const double w = creal(z * conj(z)) - floor_w,
+                         at = (double)(c / (size_t)frame->map.columns) - frame->map.rows / 2;
             power += w, row += w * at, row2 += w * at * at;
             cross += creal(x * conj(x)) - floor_w;
         }
@@ -265,7 +284,8 @@ static void rain_folds_over(void **state)
         CHECK(p->wave.samples == 128 && window_weights(weight, 128, &p->range_window) == STATUS_OK);
         CHECK(window_figures(&figures, weight, 128) == STATUS_OK);
         for (int i = 0; i < 128; i++)
-            got_w += (frame->profile_w[i] - frame->receiver.noise_w * figures.noise_bins / 128) / figures.noise_bins / seeds;
+            got_w +=
+                (frame->profile_w[i] - frame->receiver.noise_w * figures.noise_bins / 128) / figures.noise_bins / seeds;
         if (seed == 1) {
             const double temp_k = atmosphere_temp_k(stage.world.atmosphere, 0), wavelength_m = p->antenna.wavelength_m;
             const double eta = rain_by_hand(&mean, &variance, 16.5, temp_k, 10);
@@ -273,8 +293,8 @@ static void rain_folds_over(void **state)
                 pattern += 2 * pi_rad * sin(a) * 1e-4 * pow(antenna_gain(&p->antenna, sin(a), 0).sum, 4);
             for (double r = 10 + 0.5 * step_m; r < 20000; r += step_m) {
                 const double at_m = fmod(r, repeat_m), heard = fmin(fmin(at_m, repeat_m - at_m) / pulse_m, 1);
-                const double w = p->power_w * wavelength_m * wavelength_m / pow(4 * pi_rad, 3) / p->loss * eta * pattern *
-                                 pow(10, -0.2 * frame->air_db * r / 5000) / (r * r) * heard * heard * step_m;
+                const double w = p->power_w * wavelength_m * wavelength_m / pow(4 * pi_rad, 3) / p->loss * eta *
+                                 pattern * pow(10, -0.2 * frame->air_db * r / 5000) / (r * r) * heard * heard * step_m;
                 want_w += w;
                 if (fabs(r - 5000) < 0.5 * repeat_m) inside_w += w;
             }
@@ -282,7 +302,8 @@ static void rain_folds_over(void **state)
         seeker_radar_destroy(radar);
     }
     preset = "seeker_35";
-    printf("rain that folds over: %.3f dB over its integral, %.1f dB of it not folded\n", db(got_w / want_w), db(inside_w / want_w));
+    printf("rain that folds over: %.3f dB over its integral, %.1f dB of it not folded\n", db(got_w / want_w),
+           db(inside_w / want_w));
     CHECK_NEAR(db(got_w / want_w), 0, 0.6); /* speckle of some thirty cells, twelve draws */
     CHECK(inside_w < 0.05 * want_w);
 }
@@ -301,7 +322,9 @@ static void rain_and_fog_take_what_itu_says(void **state)
     weather.rain_mm_h = 0;
     weather.visibility_m = 200;
     const double fog_db = measure(radar, &scene)->air_db - clear_db;
-    CHECK_NEAR(fog_db / (0.9 * fog_liquid_g_m3(200) * cloud_attenuation(35, atmosphere_temp_k(stage.world.atmosphere, 100))), 1, 0.01);
+    CHECK_NEAR(fog_db /
+                   (0.9 * fog_liquid_g_m3(200) * cloud_attenuation(35, atmosphere_temp_k(stage.world.atmosphere, 100))),
+               1, 0.01);
     scene = look(0, 320, 1, &weather); /* above the fog */
     CHECK(fabs(measure(radar, &scene)->air_db - clear_db) < 0.01);
     seeker_radar_destroy(radar);
@@ -371,7 +394,8 @@ static double canopy_by_integral(const RadarFrame *frame)
     for (int i = 0; i < plants; i++) {
         double axis[3][3], scale[2], middle[3];
         plant_axes(axis, scale, &plant[i], NULL);
-        for (int k = 0; k < 3; k++) middle[k] = stage.woods.origin_enu[k] + (double)plant[i].p_m[k] + 0.7 * scale[1] * axis[2][k];
+        for (int k = 0; k < 3; k++)
+            middle[k] = stage.woods.origin_enu[k] + (double)plant[i].p_m[k] + 0.7 * scale[1] * axis[2][k];
         if (unit_w(frame, middle) == 0) continue;
         const SurfaceClass class = plant[i].kind == PLANT_PINE      ? SURFACE_FOREST_CONIFER
                                    : plant[i].kind < PLANT_TREES ? SURFACE_FOREST_BROADLEAF
@@ -403,12 +427,13 @@ static double ground_by_integral(const RadarFrame *frame)
             if (unit == 0) continue;
             int surface = landscape_surface(&stage.landscape, at[0], at[1]);
             const bool inside = at[0] >= o[0] && at[1] >= o[1] && at[0] < o[0] + 320 && at[1] < o[1] + 320;
-            if (inside && (surface == SURFACE_FOREST_BROADLEAF || surface == SURFACE_FOREST_CONIFER || surface == SURFACE_SCRUB))
+            if (inside &&
+                (surface == SURFACE_FOREST_BROADLEAF || surface == SURFACE_FOREST_CONIFER || surface == SURFACE_SCRUB))
                 surface = SURFACE_GRASS;
             v3_sub(d, stage.view.p_enu, at);
             v3_normalize(d, d);
-            sum_w += unit * clutter_sigma0(&table.row[surface][CLUTTER_KA], asin(v3_dot(d, n)), 1) * step_m * step_m / n[2] *
-                     pow(10, -0.2 * march_db(at));
+            sum_w += unit * clutter_sigma0(&table.row[surface][CLUTTER_KA], asin(v3_dot(d, n)), 1) * step_m * step_m /
+                     n[2] * pow(10, -0.2 * march_db(at));
         }
     return sum_w;
 }
@@ -432,8 +457,8 @@ static void woods_have_the_power_of_their_integral(void **state)
         if (seed == 1) printf("woods of %d plants in sight: %.2f s\n", frame->crowns, frame->spent_s);
         seeker_radar_destroy(radar);
     }
-    printf("woods: %.3f dB over the integral; of it the ground %.1f dB (bare: %.1f dB)\n", db(got_w / (canopy_w + ground_w)),
-           db(ground_w / (canopy_w + ground_w)), db(bare_w / (canopy_w + ground_w)));
+    printf("woods: %.3f dB over the integral; of it the ground %.1f dB (bare: %.1f dB)\n",
+           db(got_w / (canopy_w + ground_w)), db(ground_w / (canopy_w + ground_w)), db(bare_w / (canopy_w + ground_w)));
     CHECK_NEAR(db(got_w / (canopy_w + ground_w)), 0, 0.3);
 }
 
@@ -463,7 +488,8 @@ static void add_moments(Moments *to, const RadarFrame *frame)
         const double         w = creal(z * conj(z)) - floor_w;
         to->power += w, to->cross += creal(x * conj(x)) - floor_w;
         to->rate_mps += w * ((double)(c / (size_t)frame->map.columns) - frame->map.rows / 2) * frame->map.mps_per_row;
-        to->range_m += w * ((double)(c % (size_t)frame->map.columns) - frame->map.columns / 2) * frame->map.metre_per_column;
+        to->range_m +=
+            w * ((double)(c % (size_t)frame->map.columns) - frame->map.columns / 2) * frame->map.metre_per_column;
     }
 }
 
@@ -492,13 +518,13 @@ static void chaff_has_its_cross_section(void **state)
         for (double s = 0.01; s < 6 * radius; s += 0.02)
             mean += s * 0.02 / (radius * radius) * exp(-0.5 * s * s / radius / radius) *
                     pow(antenna_gain(&frame->preset->antenna, s / reference_m, 0).sum, 4);
-        want_w += radar_received_w(&(RadarLink){frame->preset->power_w, 1, 1, l, reference_m, frame->preset->loss}, 1) * mean *
-                  pow(10, -0.2 * frame->air_db) * 0.1515 * l * l * 1e6;
+        want_w += radar_received_w(&(RadarLink){frame->preset->power_w, 1, 1, l, reference_m, frame->preset->loss}, 1) *
+                  mean * pow(10, -0.2 * frame->air_db) * 0.1515 * l * l * 1e6;
         power += power_w(frame);
         add_moments(&got, frame);
     }
-    printf("chaff of %.1f m2: %.3f dB of its mean cross section; cross-polarised %.2f dB, %.2f m/s\n", 1e6 * 0.1515 * l * l,
-           db(power / want_w), db(got.cross / got.power), got.rate_mps / got.power);
+    printf("chaff of %.1f m2: %.3f dB of its mean cross section; cross-polarised %.2f dB, %.2f m/s\n",
+           1e6 * 0.1515 * l * l, db(power / want_w), db(got.cross / got.power), got.rate_mps / got.power);
     CHECK_NEAR(db(power / want_w), 0, 0.3);
     CHECK_NEAR(got.cross / got.power, 1.0 / 3, 0.03);
     CHECK_NEAR(got.rate_mps / got.power, 12, 0.2);
@@ -522,7 +548,8 @@ static void chaff_at_rest_is_left_to_the_wind(void **state)
         arena_reset(stage.arena);
         add_moments(&got, measure(radar, &scene));
     }
-    printf("chaff in the wind: %.2f m/s, %.1f m from where it should be\n", got.rate_mps / got.power, got.range_m / got.power);
+    printf("chaff in the wind: %.2f m/s, %.1f m from where it should be\n", got.rate_mps / got.power,
+           got.range_m / got.power);
     CHECK_NEAR(got.rate_mps / got.power, 3, 0.2);
     CHECK_NEAR(got.range_m / got.power, 0, 1.5);
     seeker_radar_destroy(radar);
@@ -569,13 +596,17 @@ static void corners_return_what_the_handbook_says(void **state)
     SnapshotChaff chaff;
     RadarScene    scene = look(-up, reference_m * sin(up) + 200, 1, &weather);
     radar = open_radar(1, false);
-    CHECK(seeker_radar_create(&thick, &(SeekerRadarConfig){.preset = "seeker_35", .catalog = stage.catalog_path, .isa = "avx2", .seed = 1,
+    CHECK(seeker_radar_create(&thick, &(SeekerRadarConfig){.preset = "seeker_35",
+                                                           .catalog = stage.catalog_path,
+                                                           .isa = "avx2",
+                                                           .seed = 1,
                                                            .chaff_dipoles = 4.5e7}) == STATUS_OK);
     put_corner(&corner);
     scene.snapshot = &corner.snapshot;
     arena_reset(stage.arena);
     const RadarFrame *frame = measure(radar, &scene);
-    const double      l = frame->preset->antenna.wavelength_m, want = 4 * pi_rad * pow(0.5, 4) / (3 * l * l), got = strongest_m2(frame);
+    const double l = frame->preset->antenna.wavelength_m, want = 4 * pi_rad * pow(0.5, 4) / (3 * l * l),
+                 got = strongest_m2(frame);
     printf("trihedral of 0.5 m: %.2f dB of 4 pi a^4 / 3 lambda^2 = %.1f dBsm\n", db(got / want), db(want));
     CHECK_NEAR(db(got / want), 0, 0.5);
     /* behind a cloud of chaff, 300 m before it */
@@ -611,8 +642,10 @@ static void the_same_bits(void **state)
     scene.number = 7;
     CHECK(seeker_radar_measure(&alone, radar, &scene, NULL, stage.arena) == STATUS_OK);
     CHECK(seeker_radar_measure(&again, other, &scene, stage.pool, stage.arena) == STATUS_OK);
-    const size_t octets = interval_channels * (size_t)first->map.rows * (size_t)first->map.columns * sizeof *first->map.cell;
-    CHECK(memcmp(first->map.cell, alone->map.cell, octets) == 0 && memcmp(first->map.cell, again->map.cell, octets) == 0);
+    const size_t octets =
+        interval_channels * (size_t)first->map.rows * (size_t)first->map.columns * sizeof *first->map.cell;
+    CHECK(memcmp(first->map.cell, alone->map.cell, octets) == 0 &&
+          memcmp(first->map.cell, again->map.cell, octets) == 0);
     seeker_radar_destroy(radar);
     seeker_radar_destroy(other);
 }

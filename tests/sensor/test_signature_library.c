@@ -15,8 +15,13 @@ static int            model;
 
 static SignaturesConfig config_of(double warp_m)
 {
-    return (SignaturesConfig){.frequency_hz = 5e9, .bandwidth_hz = 1e8, .aspect_rad = 0.3 * rad_per_deg, .rays_per_wavelength = 0.5,
-                              .warp_m = warp_m, .most_octets = 1 << 30, .isa = "avx2"};
+    return (SignaturesConfig){.frequency_hz = 5e9,
+                              .bandwidth_hz = 1e8,
+                              .aspect_rad = 0.3 * rad_per_deg,
+                              .rays_per_wavelength = 0.5,
+                              .warp_m = warp_m,
+                              .most_octets = 1 << 30,
+                              .isa = "avx2"};
 }
 
 static int open_all(void **state)
@@ -26,7 +31,8 @@ static int open_all(void **state)
     char   path[4096];
     (void)state;
     snprintf(folder, sizeof folder, "/tmp/pitviper-library-%d", (int)getpid());
-    if (!etc_path(path, sizeof path, "catalog.csv") || catalog_open(&catalog, path, radar_sag_m(5e9)) != STATUS_OK) return -1;
+    if (!etc_path(path, sizeof path, "catalog.csv") || catalog_open(&catalog, path, radar_sag_m(5e9)) != STATUS_OK)
+        return -1;
     model = catalog_find(catalog, truck, &origin, NULL);
     return radar_materials_load(&materials) == STATUS_OK ? 0 : -1;
 }
@@ -108,7 +114,8 @@ static void a_file_has_the_bits_of_its_making(void **state)
     (void)state;
     look(&plain, 30, NULL, 1e-3, false);
     look(&first, 30, NULL, 1e-3, true);
-    CHECK(first.counters.made == 1 && first.counters.fetched == 0 && first.files.written == 1 && empty_folder(false) == 1);
+    CHECK(first.counters.made == 1 && first.counters.fetched == 0 && first.files.written == 1 &&
+          empty_folder(false) == 1);
     look(&again, 30, NULL, 1e-3, true);
     CHECK(again.counters.made == 0 && again.counters.fetched == 1 && again.files.written == 0);
     CHECK(same(&plain, &first) && same(&plain, &again));
@@ -178,8 +185,16 @@ static void numbers_are_checked(void **state)
     (void)state;
     char             key[sha256_text_size];
     static uint8_t   octets[4096];
-    SignatureCentre  centre[2] = {{.path = 3, .path_share = 0.5f, .scale = 1, .moment_scale = 1, .weight = 2, .strongest = 1, .part = 1, .bounce = 1},
-                                  {.path = -7, .path_share = 0, .scale = 0, .moment_scale = 0, .weight = 2, .strongest = 2}};
+    SignatureCentre centre[2] = {
+        {.path = 3,
+         .path_share = 0.5f,
+         .scale = 1,
+         .moment_scale = 1,
+         .weight = 2,
+         .strongest = 1,
+         .part = 1,
+         .bounce = 1},
+        {.path = -7, .path_share = 0, .scale = 0, .moment_scale = 0, .weight = 2, .strongest = 2}};
     const SignatureCentre good[2] = {centre[0], centre[1]};
     memset(key, 'a', sizeof key - 1);
     key[sizeof key - 1] = 0;

@@ -28,7 +28,8 @@ static void open_chain(Chain *chain, const char *name, const char *range_window,
     w->uncompensated = uncompensated;
     const size_t all = interval_channels * (size_t)w->samples * (size_t)w->pulses;
     CHECK(!window_parse(&range, range_window) && !window_parse(&doppler, "rect"));
-    CHECK(echo_grid_create(&chain->grid, w) == STATUS_OK && interval_plan_create(&chain->plan, w, &range, &doppler) == STATUS_OK);
+    CHECK(echo_grid_create(&chain->grid, w) == STATUS_OK &&
+          interval_plan_create(&chain->plan, w, &range, &doppler) == STATUS_OK);
     chain->interval = (Interval){.wave = *w, .sample = calloc(all, sizeof *chain->interval.sample)};
     chain->map.cell = calloc(all, sizeof *chain->map.cell);
     CHECK(chain->interval.sample && chain->map.cell);
@@ -98,7 +99,7 @@ static void points_respond_as_their_window(void **state)
                 const double x = pi_rad * (k + shift), want = x != 0 ? sin(x) / (samples * sin(x / samples)) : 1;
                 error = fmax(error, fabs(cabs(sharp[k]) - fabs(want)));
                 const double complex v[2] = {sharp[k], soft[k]};
-                const double         main_lobe[2] = {1, 1.83}; /* cells to the first null; Taylor's: s (A^2 + 1/4)^(1/2) */
+                const double main_lobe[2] = {1, 1.83}; /* cells to the first null; Taylor's: s (A^2 + 1/4)^(1/2) */
                 for (int w = 0; w < 2; w++) {
                     if (power_of(v[w]) >= 0.5) half[w] += 1 / 64.0;
                     if (fabs(k + shift) > main_lobe[w]) side[w] = fmax(side[w], power_of(v[w]));
@@ -136,7 +137,8 @@ static void rates_move_echoes_in_range(void **state)
                 const double want_m = at_m + sign * (shift_m[kind] + rate_mps[kind] * t_s);
                 CHECK_NEAR(waveform_appears_m(w, at_m, sign * rate_mps[kind]), at_m + sign * shift_m[kind], 1e-6);
                 /* delays are in steps of what the band's ends part by 2e-3 rad */
-                CHECK_NEAR(peak_near(&chain, row, want_m, 1.5 * c_mps / (2 * w->bandwidth_hz)), want_m, 2e-3 * c_mps / (2 * w->bandwidth_hz));
+                CHECK_NEAR(peak_near(&chain, row, want_m, 1.5 * c_mps / (2 * w->bandwidth_hz)), want_m,
+                           2e-3 * c_mps / (2 * w->bandwidth_hz));
             }
             WaveformTiming timing;
             waveform_timing(&timing, w);
@@ -153,7 +155,10 @@ static double bent(double q, double offset_m, double bandwidth_hz)
     double complex sum = 0;
     for (int i = 0; i <= panels; i++) {
         const double u = 2.0 * i / panels - 1;
-        sum += (i == 0 || i == panels ? 1 : i % 2 ? 4 : 2) * cexp(I * u * (2 * pi_rad * bandwidth_hz / c_mps * offset_m - q * u)) / (3.0 * panels);
+        sum += (i == 0 || i == panels ? 1
+                : i % 2               ? 4
+                                      : 2) *
+               cexp(I * u * (2 * pi_rad * bandwidth_hz / c_mps * offset_m - q * u)) / (3.0 * panels);
     }
     return power_of(sum);
 }
@@ -168,10 +173,12 @@ static void a_burst_smears_unless_followed(void **state)
         Chain chain;
         open_chain(&chain, "stepped_35", "rect", 16, uncompensated);
         const Waveform *w = &chain.preset.wave;
-        const double    turn = pi_rad * w->centre_hz * 2 * rate_mps / c_mps * w->pulse_s, within = pow(sin(turn) / turn, 2);
-        const double    window_m = c_mps * 256 / (2 * 512e6), row_s = 0.5 * 2.56e-3; /* row 8 of 16 is half a row late */
+        const double turn = pi_rad * w->centre_hz * 2 * rate_mps / c_mps * w->pulse_s,
+                     within = pow(sin(turn) / turn, 2);
+        const double window_m = c_mps * 256 / (2 * 512e6), row_s = 0.5 * 2.56e-3; /* row 8 of 16 is half a row late */
         const double    middle_m = 2 + uncompensated * (rate_mps * (row_s + 35e9 * 2.56e-3 / 512e6) + window_m);
-        CHECK_NEAR(waveform_appears_m(w, 2, uncompensated * rate_mps), middle_m - uncompensated * rate_mps * row_s, 1e-3);
+        CHECK_NEAR(waveform_appears_m(w, 2, uncompensated * rate_mps), middle_m - uncompensated * rate_mps * row_s,
+                   1e-3);
         const double    peak = uncompensated ? bent(q, 0, 512e6) : 1, left = uncompensated ? within : 1;
         echo_unfollowed(chain.grid, uncompensated ? 2 * rate_mps / w->repeat_hz : 0);
         (void)map_of(&chain, 2, 0);
@@ -179,7 +186,8 @@ static void a_burst_smears_unless_followed(void **state)
         double edge[2][2] = {{0}};
         for (int k = -1500; k <= 1500; k++)
             for (int paper = 0; paper < 2; paper++) {
-                const double at_m = k * 1e-3, power = paper ? bent(uncompensated * q, at_m, 512e6) : response(&chain, 8, middle_m + at_m) / left;
+                const double at_m = k * 1e-3, power = paper ? bent(uncompensated * q, at_m, 512e6)
+                                                            : response(&chain, 8, middle_m + at_m) / left;
                 if (power < 0.5 * peak) continue;
                 if (edge[paper][0] == 0) edge[paper][0] = at_m;
                 edge[paper][1] = at_m;
@@ -204,7 +212,8 @@ static void pulse_doppler_folds_over_and_is_deaf(void **state)
     const double    cell_m = 11.71064, row_mps = 908.4619939 / rows, fold_m = 1498.96229, blind_mps = 908.4619939;
     for (int folds = -2; folds <= 7; folds++)
         for (int blind = -1; blind <= 2; blind++) {
-            const double complex *cell = map_of(&chain, 20 * cell_m + folds * fold_m, -30 * row_mps + blind * blind_mps);
+            const double complex *cell =
+                map_of(&chain, 20 * cell_m + folds * fold_m, -30 * row_mps + blind * blind_mps);
             size_t               peak = 0;
             for (size_t i = 0; i < (size_t)samples * (size_t)rows; i++)
                 if (power_of(cell[i]) > power_of(cell[peak])) peak = i;
@@ -216,7 +225,8 @@ static void pulse_doppler_folds_over_and_is_deaf(void **state)
             CHECK_NEAR(10 * log10(power_of(cell[peak]) / pow(sin(turn) / turn, 2)), 0, 0.05 + walk * walk);
         }
     /* distance, share of a pulse of 149.9 m that arrives past the transmitter's */
-    const double at[][2] = {{0, 0}, {74.95, 0.5}, {149.9, 1}, {1000, 1}, {1349, 1}, {1424.01, 0.5}, {1498.96, 0}, {1573.91, 0.5}, {5000, 1}};
+    const double at[][2] = {{0, 0},         {74.95, 0.5}, {149.9, 1},     {1000, 1}, {1349, 1},
+                            {1424.01, 0.5}, {1498.96, 0}, {1573.91, 0.5}, {5000, 1}};
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) CHECK_NEAR(waveform_share(w, at[i][0]), at[i][1], 1e-3);
     close_chain(&chain);
 }
@@ -235,7 +245,8 @@ static void fmcw_beats(void **state)
     CHECK_NEAR(timing.window_m, 2046.58, 0.01);
     CHECK_NEAR(timing.beat_hz_m * timing.window_m, 2048 / 100e-6, 1);
     CHECK_NEAR(waveform_share(w, 1500), 0.899930, 1e-5);
-    (void)map_of(&chain, 100, 0); /* farther than the reference: its phase falls, at 1.000692 MHz, from sample to sample */
+    (void)map_of(&chain, 100,
+                 0); /* farther than the reference: its phase falls, at 1.000692 MHz, from sample to sample */
     const double complex step = chain.interval.sample[1001] / chain.interval.sample[1000];
     CHECK_NEAR(carg(step), -2 * pi_rad * 1000692.0 * 100e-6 / 2048, 1e-5);
     close_chain(&chain);
@@ -254,20 +265,25 @@ static void signal_to_noise_is_the_radar_equations(void **state)
         const Receiver     receiver = {.noise_figure = p->receiver.noise_figure};
         const size_t       plane = (size_t)p->wave.samples * (size_t)p->wave.pulses;
         const double       range_m = 1200, rcs_m2 = 10, wave_m = c_mps / p->wave.centre_hz;
-        const double       gain = 0.75 * pow(pi_rad * p->antenna.diameter_m / wave_m, 2); /* of a dish tapered to 0.75 */
+        const double gain = 0.75 * pow(pi_rad * p->antenna.diameter_m / wave_m, 2); /* of a dish tapered to 0.75 */
         ReceiverReport     report;
         receiver_apply(&report, &chain.interval, &receiver, 5, 0, 0);
         interval_process(&chain.map, chain.plan, &chain.interval, NULL);
         double floor_w = 0;
-        for (size_t i = 0; i < interval_channels * plane; i++) floor_w += power_of(chain.map.cell[i]) / (double)(interval_channels * plane);
+        for (size_t i = 0; i < interval_channels * plane; i++)
+            floor_w += power_of(chain.map.cell[i]) / (double)(interval_channels * plane);
         const AntennaGain at = antenna_gain(&p->antenna, 0, 0);
         const RadarLink   link = {p->power_w, 1, 1, wave_m, range_m, p->loss};
-        const double      amplitude = sqrt(radar_received_w(&link, rcs_m2)) * at.sum * at.sum * waveform_share(&p->wave, range_m);
-        const double      peak_w = power_of(map_of(&chain, 0, 0)[(size_t)p->wave.pulses / 2 * (size_t)p->wave.samples + (size_t)p->wave.samples / 2]);
+        const double amplitude =
+            sqrt(radar_received_w(&link, rcs_m2)) * at.sum * at.sum * waveform_share(&p->wave, range_m);
+        const double peak_w = power_of(
+            map_of(&chain, 0, 0)[(size_t)p->wave.pulses / 2 * (size_t)p->wave.samples + (size_t)p->wave.samples / 2]);
         const double      got_db = 10 * log10(peak_w * amplitude * amplitude / floor_w);
-        const double      received_w = p->power_w * gain * gain * wave_m * wave_m * rcs_m2 / (pow(4 * pi_rad, 3) * pow(range_m, 4) * p->loss);
-        const double      want_db = 10 * log10(received_w * on_air_s[kind] / (1.380649e-23 * 290 * p->receiver.noise_figure)) -
-                               (kind == WAVEFORM_FMCW ? 0.7248 : 0);
+        const double received_w =
+            p->power_w * gain * gain * wave_m * wave_m * rcs_m2 / (pow(4 * pi_rad, 3) * pow(range_m, 4) * p->loss);
+        const double want_db =
+            10 * log10(received_w * on_air_s[kind] / (1.380649e-23 * 290 * p->receiver.noise_figure)) -
+            (kind == WAVEFORM_FMCW ? 0.7248 : 0);
         printf("%s: %.2f dB, on paper %.2f\n", waveform_name[kind], got_db, want_db);
         CHECK_NEAR(got_db, want_db, 0.1);
         close_chain(&chain);

@@ -15,7 +15,8 @@ enum { day_looks = 144 };
 static HeatConfig config_of(const HeatDay *day, double step_s, int facets, double begin_h)
 {
     HeatConfig c = heat_default_config();
-    c.step_s = step_s, c.facets = facets, c.unix_s = heat_day_unix_s + 3600 * begin_h, c.weather = heat_day, c.user = day;
+    c.step_s = step_s, c.facets = facets, c.unix_s = heat_day_unix_s + 3600 * begin_h, c.weather = heat_day,
+    c.user = day;
     return c;
 }
 
@@ -57,7 +58,8 @@ static void run_day(void *user)
             at_s += s->step_s;
             w[0] = w[1];
             for (; i < day_looks && i * look_s <= at_s + 1e-3; i++)
-                s->temp_k[k][i] = column.state.temp_k[0] + (at_s - i * look_s) / s->step_s * (last_k - column.state.temp_k[0]);
+                s->temp_k[k][i] =
+                    column.state.temp_k[0] + (at_s - i * look_s) / s->step_s * (last_k - column.state.temp_k[0]);
         }
     }
     bench_keep(s->temp_k);
@@ -91,17 +93,22 @@ static void knob_step(Bench *bench, const GroundKinds *kinds)
         set[k] = (DaySet){.kinds = kinds, .grid = ground_grid_default, .step_s = step_s[k]};
         run_day(&set[k]);
         work[k]  = (BenchWork){run_day, &set[k], 2 * (ground_kinds - 1)};
-        point[k] = (BenchSetting){.setting = name[k], .also_is = "rms, K", .is_default = step_s[k] == heat_default_config().step_s};
+        point[k] = (BenchSetting){
+            .setting = name[k], .also_is = "rms, K", .is_default = step_s[k] == heat_default_config().step_s};
         compare_days(&point[k], &set[k], &fine);
     }
-    bench_tunable(bench, &(BenchTunable){"steps of the ground's heat", "heat.step_s", "a day of one column", "K",
-                                         "largest, of all kinds over a day, steps of 30 s to 0.001 K", 0.1}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"steps of the ground's heat", "heat.step_s", "a day of one column", "K",
+                                  "largest, of all kinds over a day, steps of 30 s to 0.001 K", 0.1},
+                  work, point, settings);
 }
 
 static void knob_elements(Bench *bench, const GroundKinds *kinds)
 {
     enum { settings = 7 };
-    static const struct { double first_m, growth; } grid[settings] = {{0.04, 1.8}, {0.02, 1.6}, {0.01, 1.5}, {0.005, 1.4}, {0.003, 1.3}, {0.002, 1.2}, {0.001, 1.15}};
+    static const struct {
+        double first_m, growth;
+    } grid[settings] = {{0.04, 1.8}, {0.02, 1.6}, {0.01, 1.5}, {0.005, 1.4}, {0.003, 1.3}, {0.002, 1.2}, {0.001, 1.15}};
     static char   name[settings][64];
     static DaySet set[settings], fine;
     BenchWork     work[settings];
@@ -113,13 +120,17 @@ static void knob_elements(Bench *bench, const GroundKinds *kinds)
         set[k] = (DaySet){.kinds = kinds, .grid = ground_grid_default, .step_s = 600};
         set[k].grid.first_m = grid[k].first_m, set[k].grid.growth = grid[k].growth;
         run_day(&set[k]);
-        snprintf(name[k], sizeof name[k], "%g mm, growing by %g: %d of soil", 1e3 * grid[k].first_m, grid[k].growth, set[k].nodes - 1);
+        snprintf(name[k], sizeof name[k], "%g mm, growing by %g: %d of soil", 1e3 * grid[k].first_m, grid[k].growth,
+                 set[k].nodes - 1);
         work[k]  = (BenchWork){run_day, &set[k], 2 * (ground_kinds - 1)};
-        point[k] = (BenchSetting){.setting = name[k], .also_is = "rms, K", .is_default = grid[k].first_m == ground_grid_default.first_m};
+        point[k] = (BenchSetting){
+            .setting = name[k], .also_is = "rms, K", .is_default = grid[k].first_m == ground_grid_default.first_m};
         compare_days(&point[k], &set[k], &fine);
     }
-    bench_tunable(bench, &(BenchTunable){"elements of the ground's heat", "render/heat/ground_column.h", "a day of one column", "K",
-                                         "largest, of all kinds over a day, elements from 0.7 mm", 0.1}, work, point, settings);
+    bench_tunable(bench,
+                  &(BenchTunable){"elements of the ground's heat", "render/heat/ground_column.h", "a day of one column",
+                                  "K", "largest, of all kinds over a day, elements from 0.7 mm", 0.1},
+                  work, point, settings);
 }
 
 /* ---- slopes ------------------------------------------------------------------------------------- */
@@ -148,12 +159,14 @@ static void step_heat(void *user)
 /* Up to 45 degrees, then to walls. */
 static void slope_normal(double n_enu[3], int i)
 {
-    const double up = i < slopes / 2 ? 0.7071 + 0.2929 * random_uniform(19, 0, 0, (uint64_t)i) : 0.7071 * random_uniform(19, 0, 0, (uint64_t)i);
+    const double up = i < slopes / 2 ? 0.7071 + 0.2929 * random_uniform(19, 0, 0, (uint64_t)i)
+                                     : 0.7071 * random_uniform(19, 0, 0, (uint64_t)i);
     const double turn = 2 * pi_rad * random_uniform(19, 1, 0, (uint64_t)i);
     n_enu[0] = sqrt(1 - up * up) * cos(turn), n_enu[1] = sqrt(1 - up * up) * sin(turn), n_enu[2] = up;
 }
 
-static Status slopes_by_themselves(double temp_k[slope_kinds][slopes][slope_times], const GroundKinds *kinds, const HeatConfig *config)
+static Status slopes_by_themselves(double temp_k[slope_kinds][slopes][slope_times], const GroundKinds *kinds,
+                                   const HeatConfig *config)
 {
     static HeatPiece piece;
     for (int k = 0; k < slope_kinds; k++)
@@ -162,7 +175,8 @@ static Status slopes_by_themselves(double temp_k[slope_kinds][slopes][slope_time
             slope_normal(n_enu, i);
             const Status status = heat_piece_begin(&piece, &kinds->kind[shown_kinds[k]], config, n_enu, lit_all_day_h);
             if (status != STATUS_OK) return status;
-            for (int t = 0; t < slope_times; t++) temp_k[k][i][t] = heat_piece_at(&piece, heat_day_unix_s + 3600 * slope_time_h(t));
+            for (int t = 0; t < slope_times; t++)
+                temp_k[k][i][t] = heat_piece_at(&piece, heat_day_unix_s + 3600 * slope_time_h(t));
         }
     return STATUS_OK;
 }
@@ -202,12 +216,15 @@ static Status knob_facets(Bench *bench, const GroundKinds *kinds, Pool *pool)
         }
         point[f].error = sqrt(point[f].error), point[f].also = sqrt(point[f].also);
         work[f] = (BenchWork){step_heat, &set[f], 1};
-        point[f].setting = name[f], point[f].also_is = "rms, steeper, K", point[f].is_default = facets[f] == heat_default_config().facets;
+        point[f].setting = name[f], point[f].also_is = "rms, steeper, K",
+        point[f].is_default = facets[f] == heat_default_config().facets;
         point[f].bytes = (double)heat_bytes(set[f].heat);
     }
     if (status == STATUS_OK)
-        bench_tunable(bench, &(BenchTunable){"slopes of the ground's heat", "heat.facets", "a step of all kinds", "K",
-                                             "rms, slopes up to 45 degrees run by themselves", 1.2}, work, point, count);
+        bench_tunable(bench,
+                      &(BenchTunable){"slopes of the ground's heat", "heat.facets", "a step of all kinds", "K",
+                                      "rms, slopes up to 45 degrees run by themselves", 1.2},
+                      work, point, count);
     for (int f = 0; f < count; f++) {
         heat_destroy(set[f].heat);
         arena_destroy(set[f].arena);
@@ -231,7 +248,8 @@ typedef struct ShadeSet {
 static void groves(ShadowStand *out, const void *user, double x_m, double y_m)
 {
     (void)user;
-    const double wave = sin(x_m / 23) + sin(y_m / 31) + sin((x_m + 2 * y_m) / 57), hedge = fabs(fmod(fabs(x_m + 0.3 * y_m), 180) - 90);
+    const double wave = sin(x_m / 23) + sin(y_m / 31) + sin((x_m + 2 * y_m) / 57),
+                 hedge = fabs(fmod(fabs(x_m + 0.3 * y_m), 180) - 90);
     const bool   grove = wave > 1.3, row = hedge < 4;
     *out = grove ? (ShadowStand){4, 2, 14, 0.3f} : row ? (ShadowStand){5, 0, 5, 0.5f} : (ShadowStand){0, 0, 0, 1};
 }
@@ -246,15 +264,18 @@ static void cast(void *user)
 }
 
 /* rms, and share of places off by more than 1 K. */
-static void compare_shade(BenchSetting *point, const ShadeSet *a, const ShadeSet *fine, const HeatNow *now, double half_m)
+static void compare_shade(BenchSetting *point, const ShadeSet *a, const ShadeSet *fine, const HeatNow *now,
+                          double half_m)
 {
     enum { places = 20000 };
     const HeatScene scene[2] = {{now, a->map, NULL}, {now, fine->map, NULL}};
     double          sum = 0;
     for (int i = 0; i < places; i++) {
-        const double p_enu[3] = {half_m * (2 * random_uniform(23, 0, 0, (uint64_t)i) - 1), half_m * (2 * random_uniform(23, 1, 0, (uint64_t)i) - 1), 0};
+        const double p_enu[3] = {half_m * (2 * random_uniform(23, 0, 0, (uint64_t)i) - 1),
+                                 half_m * (2 * random_uniform(23, 1, 0, (uint64_t)i) - 1), 0};
         double       lifted_k, temp_k[2], n_enu[3] = {0, 0, 1};
-        for (int k = 0; k < 2; k++) temp_k[k] = heat_scene_ground_k(&lifted_k, &scene[k], SURFACE_GRASS, p_enu, n_enu, 1);
+        for (int k = 0; k < 2; k++)
+            temp_k[k] = heat_scene_ground_k(&lifted_k, &scene[k], SURFACE_GRASS, p_enu, n_enu, 1);
         sum += (temp_k[0] - temp_k[1]) * (temp_k[0] - temp_k[1]);
         point->also += (fabs(temp_k[0] - temp_k[1]) > 1) * 100.0 / places;
     }
@@ -298,7 +319,8 @@ static Status knob_shade(Bench *bench, const GroundKinds *kinds, Pool *pool)
         status = set[k].status;
         if (status != STATUS_OK) break;
         compare_shade(&point[k], &set[k], &fine, now, 0.48 * wide_m);
-        point[k].setting = name[k], point[k].also_is = "of the places off by over 1 K, %", point[k].is_default = cell_m[k] == 16;
+        point[k].setting = name[k], point[k].also_is = "of the places off by over 1 K, %",
+        point[k].is_default = cell_m[k] == 16;
         point[k].bytes = (double)shadow_map_bytes(set[k].map);
         work[k] = (BenchWork){cast, &set[k], 1};
     }
@@ -344,7 +366,8 @@ static Status shade_rows(Bench *bench, const GroundKinds *kinds, Pool *pool)
     const HeatDay day = heat_day_default();
     HeatConfig    c = config_of(&day, 600, 3, 8);
     const double  level[3] = {0, 0, 1};
-    double        worst_k[slope_kinds][shade_windows][2] = {{{0}}}, lowered_k[slope_kinds][shade_windows][2] = {{{0}}}, worst_bits = 0;
+    double worst_k[slope_kinds][shade_windows][2] = {{{0}}}, lowered_k[slope_kinds][shade_windows][2] = {{{0}}},
+           worst_bits = 0;
     Heat         *heat = NULL;
     Arena        *arena = arena_create();
     bench_progress(bench, "shade of past hours");
@@ -362,11 +385,13 @@ static Status shade_rows(Bench *bench, const GroundKinds *kinds, Pool *pool)
             for (int w = 0; w < shade_windows; w++) {
                 uint8_t shadow[heat_day_slots];
                 shade_slots(shadow, &day, windows[w].from_to_h);
-                const double taken = heat_taken(now, shown_kinds[k], level, shadow), want_k = heat_piece_at(&piece[k][w], unix_s);
+                const double taken = heat_taken(now, shown_kinds[k], level, shadow),
+                             want_k = heat_piece_at(&piece[k][w], unix_s);
                 const double lit_k = piece[k][w].level.state.temp_k[0];
                 if (hour <= windows[w].from_to_h[0]) continue;
                 const bool after = hour > windows[w].from_to_h[1];
-                bench_worst(&worst_k[k][w][after], fabs(heat_ground_k(now, shown_kinds[k], level, taken, 1, 1) - want_k));
+                bench_worst(&worst_k[k][w][after],
+                            fabs(heat_ground_k(now, shown_kinds[k], level, taken, 1, 1) - want_k));
                 bench_worst(&lowered_k[k][w][after], lit_k - want_k);
                 bench_worst(&worst_bits, fabs(heat_ground_k(now, shown_kinds[k], level, 0, 1, 1) - lit_k));
             }
@@ -375,8 +400,8 @@ static Status shade_rows(Bench *bench, const GroundKinds *kinds, Pool *pool)
         for (int w = 0; w < 2 * shade_windows; w++) {
             char      what[96];
             const int window = w / 2, after = w % 2;
-            snprintf(what, sizeof what, "shade of the %s, %s, %s: colder by", windows[window].name, after ? "afterwards" : "in it",
-                     kinds->kind[shown_kinds[k]].name);
+            snprintf(what, sizeof what, "shade of the %s, %s, %s: colder by", windows[window].name,
+                     after ? "afterwards" : "in it", kinds->kind[shown_kinds[k]].name);
             BenchRow row = bench_row(what);
             row.median = lowered_k[k][window][after], row.unit = "K";
             row.error = worst_k[k][window][after], row.error_limit = limit_k[k][after], row.error_unit = "K";
@@ -384,7 +409,8 @@ static Status shade_rows(Bench *bench, const GroundKinds *kinds, Pool *pool)
             bench_add(bench, &row);
         }
     if (status == STATUS_OK)
-        bench_stress(bench, "shade of past hours: ground that was never shaded", worst_bits, 1e-4, "K", "the same columns run by themselves");
+        bench_stress(bench, "shade of past hours: ground that was never shaded", worst_bits, 1e-4, "K",
+                     "the same columns run by themselves");
     heat_destroy(heat);
     arena_destroy(arena);
     return status;

@@ -71,8 +71,12 @@ static Status crowd_open(CrowdFrame *c, const Landscape *landscape, int vehicles
     c->scene.table = NULL;
     status = entity_table_create(&c->scene.table, &config, c->scene.catalog);
     for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
-        const TrialPlace at = {.type = tank_type, .number = k + 1, .appearance = 1u << 22, .east_m = 40.0 * (k % 5) - 80,
-                               .north_m = 40.0 * (k / 5) - 60, .turn_rad = 2 * pi_rad * crowd_dice(6, k)};
+        const TrialPlace at = {.type = tank_type,
+                               .number = k + 1,
+                               .appearance = 1u << 22,
+                               .east_m = 40.0 * (k % 5) - 80,
+                               .north_m = 40.0 * (k / 5) - 60,
+                               .turn_rad = 2 * pi_rad * crowd_dice(6, k)};
         status = trial_scene_place(&c->scene, &at);
     }
     for (int k = 0; k < more && status == STATUS_OK; k++) status = add_tank(&c->scene, k, place);
@@ -115,7 +119,8 @@ static Status time_tree(Crowds *all, const TrialScene *scene)
         status = entity_table_snapshot(&s, scene->table, scene->sun_now_s + 0.5, all->arena);
         const double t1 = thread_s();
         if (status == STATUS_OK)
-            status = visibility_create(&v, scene->world.tracer, &all->landscape, &all->landscape.frame, &s, 0, all->arena);
+            status =
+                visibility_create(&v, scene->world.tracer, &all->landscape, &all->landscape.frame, &s, 0, all->arena);
         snapshot.item_s[r] = t1 - t0;
         tree.item_s[r]     = thread_s() - t1;
     }
@@ -133,7 +138,8 @@ static Status time_world(Crowds *all)
 {
     CrowdFrame few = {0}, many = {0};
     Status     status = crowd_open(&few, &all->landscape, in_view, 0, NULL);
-    if (status == STATUS_OK) status = crowd_open(&many, &all->landscape, in_view, world_entities - in_view, behind_the_eye);
+    if (status == STATUS_OK)
+        status = crowd_open(&many, &all->landscape, in_view, world_entities - in_view, behind_the_eye);
     CrowdFrame *const both[2] = {&few, &many};
     const int rounds = bench_quick(all->bench) ? 3 : 9;
     BenchTime time[2] = {{.rounds = rounds}, {.rounds = rounds}};
@@ -155,7 +161,8 @@ static Status time_world(Crowds *all)
     if (status == STATUS_OK) {
         for (int k = 0; k < 2; k++) bench_time_finish(&time[k]);
         bench_time_finish(&prepare);
-        BenchRow row = bench_row_of("crowd: frame of 320 x 216 beside its snapshot, 20 tanks in view", &time[0], "frames/s", 1);
+        BenchRow row =
+            bench_row_of("crowd: frame of 320 x 216 beside its snapshot, 20 tanks in view", &time[0], "frames/s", 1);
         bench_add(all->bench, &row);
         row = bench_row_of("crowd: the same, 100,000 in the world", &time[1], "frames/s", 1);
         row.ratio = bench_ratio(&time[1], &time[0]), row.to = "the 20 alone";
@@ -177,7 +184,8 @@ static Status time_stack(Crowds *all, int count, double back_m, double hfov_rad,
     BenchTime  time = {.rounds = 3};
     if (status == STATUS_OK) {
         const View view = trial_view(&stack.scene, back_m, 0.1 * back_m, hfov_rad, 160, 108);
-        stack.frame = (TrialFrame){.scene = &stack.scene, .request = crowd_request(&view), .pool = all->pool, .arena = all->arena};
+        stack.frame = (TrialFrame){
+            .scene = &stack.scene, .request = crowd_request(&view), .pool = all->pool, .arena = all->arena};
     }
     for (int r = 0; r < time.rounds && status == STATUS_OK; r++) {
         trial_frame(&stack.frame);

@@ -105,8 +105,8 @@ static Status knob_rays(Precision *p)
     for (int k = 0; k < ray_settings; k++) point[k].also = point[k].error;
     point[0].also_is = "of 8-12 um, K";
     snprintf(against, sizeof against, "rms, 16 x 16 rays; worst: %s", precision_shot_name[worst_shot(point, rms)]);
-    bench_tunable(p->bench, &(BenchTunable){"rays a pixel", "sensor.samples, sensor.edge_samples", of, "%", against, 6}, work,
-               point, ray_settings);
+    bench_tunable(p->bench, &(BenchTunable){"rays a pixel", "sensor.samples, sensor.edge_samples", of, "%", against, 6},
+                  work, point, ray_settings);
     for (int k = 0; k < ray_settings; k++) point[k].also = point[k].error;
     point[0].also_is = "of radiance, %";
     snprintf(against, sizeof against, "rms, 16 x 16 rays; worst: %s", precision_shot_name[worst_shot(point, rms_k)]);
@@ -291,8 +291,8 @@ static Status knob_sky(Precision *p)
     snprintf(of, sizeof of, "a picture of %d x %d, three bands", width, height);
     snprintf(against, sizeof against, "rms, %d directions and two bounces; worst: %s", finest,
              precision_shot_name[sky_shot[worst]]);
-    bench_tunable(p->bench, &(BenchTunable){"light from all around", "sensor.sky_samples", of, "%", against, 25}, work, point,
-               sky_settings);
+    bench_tunable(p->bench, &(BenchTunable){"light from all around", "sensor.sky_samples", of, "%", against, 25}, work,
+                  point, sky_settings);
     return p->status;
 }
 

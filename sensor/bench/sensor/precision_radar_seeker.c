@@ -48,8 +48,11 @@ static Status compare(Bench *bench, TrialScene *scene, SeekerRadar *radar, Arena
     BenchSetting  point[settings];
     Status        status = STATUS_OK;
     for (int i = 0; i < tanks && status == STATUS_OK && !ground; i++)
-        status = trial_scene_place(scene, &(TrialPlace){.type = tank_type, .number = 100 + i, .east_m = 20 * (i % 4) - 30,
-                                                        .north_m = 25 * (i / 4), .turn_rad = 0.6});
+        status = trial_scene_place(scene, &(TrialPlace){.type = tank_type,
+                                                        .number = 100 + i,
+                                                        .east_m = 20 * (i % 4) - 30,
+                                                        .north_m = 25 * (i / 4),
+                                                        .turn_rad = 0.6});
     if (status == STATUS_OK) status = entity_table_snapshot(&snapshot, scene->table, scene->sun_now_s + 0.5, arena[2]);
     const View    view = trial_view(scene, ground ? 2500 : 4000, 400, 3 * rad_per_deg, 64, 64);
     if (ground) snapshot.count = 0;
@@ -65,13 +68,16 @@ static Status compare(Bench *bench, TrialScene *scene, SeekerRadar *radar, Arena
     if (status != STATUS_OK) return status;
     for (int k = 0; k < settings; k++) {
         const RadarFrame *f = way[k].frame;
-        if (ground) snprintf(name[k], sizeof name[k], k ? "to the main lobe's null: %d" : "2.5 times as far: %d scatterers", f->ground_cells);
+        if (ground)
+            snprintf(name[k], sizeof name[k], k ? "to the main lobe's null: %d" : "2.5 times as far: %d scatterers",
+                     f->ground_cells);
         else snprintf(name[k], sizeof name[k], k ? "%d echoes" : "each centre: %d echoes", f->echoes);
-        point[k] = (BenchSetting){.setting = name[k], .error = k ? apart(way[1].frame, way[0].frame) : 0, .is_default = k == 1};
+        point[k] = (BenchSetting){
+            .setting = name[k], .error = k ? apart(way[1].frame, way[0].frame) : 0, .is_default = k == 1};
     }
     const BenchTunable tunable[2] = {
-        {"echoes of targets hardly resolved", "sensor/radar/radar_merge.c", "search_ku, twelve tanks 4 km away, no ground", "%",
-         "map of four channels, of each centre's own", 2},
+        {"echoes of targets hardly resolved", "sensor/radar/radar_merge.c",
+         "search_ku, twelve tanks 4 km away, no ground", "%", "map of four channels, of each centre's own", 2},
         {"ground off a radar's axis", "sensor/radar/radar_ground.c", "seeker_35, open ground 2.5 km away", "%",
          "map of four channels, of ground 2.5 times as far off the axis", 5}};
     bench_tunable(bench, &tunable[ground], work, point, settings);
@@ -98,7 +104,9 @@ Status precision_radar_seeker(Bench *bench)
     if (status == STATUS_OK) status = trial_scene_open(&scene, &landscape, catalog, &tank_type, 1, 0);
     for (int ground = 0; ground < 2 && status == STATUS_OK; ground++) {
         status = seeker_radar_create(&radar[ground], &(SeekerRadarConfig){.preset = ground ? "seeker_35" : "search_ku",
-                                                                          .catalog = catalog, .ground = ground, .warp_m = 1e-3,
+                                                                          .catalog = catalog,
+                                                                          .ground = ground,
+                                                                          .warp_m = 1e-3,
                                                                           .seed = 1});
         if (status == STATUS_OK) status = compare(bench, &scene, radar[ground], arena, ground);
         seeker_radar_destroy(radar[ground]);

@@ -46,14 +46,16 @@ static Status open_radar(RadarSpeed *r)
 {
     char   path[4096];
     Origin origin;
-    Status status = etc_path(path, sizeof path, "radars.csv") ? radar_preset_read(&r->preset, path, preset_name) : STATUS_BAD_VALUE;
+    Status status =
+        etc_path(path, sizeof path, "radars.csv") ? radar_preset_read(&r->preset, path, preset_name) : STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = radar_materials_load(&r->materials);
     if (status == STATUS_OK && !etc_path(path, sizeof path, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = catalog_open(&r->catalog, path, radar_sag_m(r->preset.wave.centre_hz));
     if (status != STATUS_OK) return status;
     r->model = catalog_model(r->catalog, catalog_find(r->catalog, tank_type, &origin, NULL));
     r->config = seeker_radar_signatures(&r->preset, 1e-3, NULL);
-    r->cells = signature_default_cells(r->config.frequency_hz, r->config.bandwidth_hz, r->config.aspect_rad, r->config.interval_s);
+    r->cells = signature_default_cells(r->config.frequency_hz, r->config.bandwidth_hz, r->config.aspect_rad,
+                                       r->config.interval_s);
     status = radar_target_create(&r->target, r->model, &r->materials, NULL);
     if (status == STATUS_OK) status = pool_create(&r->one, 1);
     if (status == STATUS_OK) status = pool_create(&r->many, bench_threads(r->bench));
@@ -173,7 +175,8 @@ static Status add_target_rows(RadarSpeed *r)
     BenchRow row = bench_row("radar, 94 GHz: a tank at 2 km, list and signature of a new bin, 1 thread");
     row.median = row.best = made_s, row.unit = "s";
     row.rate = 1e-6 * (double)r->signature.count * sizeof *r->signature.centre, row.rate_unit = "MB";
-    row.error = 100 * pow(10, error_db / 20), row.error_unit = "% of the field", row.against = "four times the tubes, over the band";
+    row.error = 100 * pow(10, error_db / 20), row.error_unit = "% of the field",
+    row.against = "four times the tubes, over the band";
     if (isnan(error_db)) row.error_unit = row.against = NULL;
     if (status == STATUS_OK) bench_add(r->bench, &row);
 
@@ -197,27 +200,32 @@ static Status add_target_rows(RadarSpeed *r)
     const BenchWork work[2] = {{reuse, r, 1}, {profile, r, 1}};
     bench_progress(r->bench, "reused bins");
     bench_time(time, r->bench, work, 2);
-    row = bench_row_of("radar, 94 GHz: the tank's centres from a bin at hand", &time[0], "M centres/s", 1e6 / r->signature.count);
-    snprintf(against, sizeof against, "its %zu hits and %d edges, at the bin's edge and the band's ends", r->field.hits.count,
-             r->field.edges.count);
-    row.error = 100 * sqrt(error / power), row.error_limit = 5, row.error_unit = "% of the field", row.against = against;
+    row = bench_row_of("radar, 94 GHz: the tank's centres from a bin at hand", &time[0], "M centres/s",
+                       1e6 / r->signature.count);
+    snprintf(against, sizeof against, "its %zu hits and %d edges, at the bin's edge and the band's ends",
+             r->field.hits.count, r->field.edges.count);
+    row.error = 100 * sqrt(error / power), row.error_limit = 5, row.error_unit = "% of the field",
+    row.against = against;
     bench_add(r->bench, &row);
 
     /* an interval's samples of them; all pulses are alike, so the middle one is the sweep itself */
     r->now = r->middle;
     reuse(r);
     profile(r);
-    status = total_field_sweep(want, wave->samples, wave->centre_hz - 0.5 * wave->bandwidth_hz, wave->bandwidth_hz / wave->samples,
-                               &r->field, NULL, NULL, NULL);
+    status = total_field_sweep(want, wave->samples, wave->centre_hz - 0.5 * wave->bandwidth_hz,
+                               wave->bandwidth_hz / wave->samples, &r->field, NULL, NULL, NULL);
     error = power = 0;
     for (int m = 0; m < wave->samples && status == STATUS_OK; m++) {
-        const double complex of = r->sample[(size_t)(wave->pulses / 2) * (size_t)wave->samples + (size_t)m] - want[m].vv;
+        const double complex of =
+            r->sample[(size_t)(wave->pulses / 2) * (size_t)wave->samples + (size_t)m] - want[m].vv;
         error += creal(of * conj(of));
         power += creal(want[m].vv * conj(want[m].vv));
     }
-    snprintf(what, sizeof what, "radar, 94 GHz: the tank's echo over %d pulses of %d samples, 4 channels", wave->pulses, wave->samples);
+    snprintf(what, sizeof what, "radar, 94 GHz: the tank's echo over %d pulses of %d samples, 4 channels", wave->pulses,
+             wave->samples);
     row = bench_row_of(what, &time[1], "profiles/s", 1.0 / wave->pulses);
-    row.error = 100 * sqrt(error / power), row.error_limit = 5, row.error_unit = "% of the field", row.against = "a sweep of its hits and edges";
+    row.error = 100 * sqrt(error / power), row.error_limit = 5, row.error_unit = "% of the field",
+    row.against = "a sweep of its hits and edges";
     if (status == STATUS_OK) bench_add(r->bench, &row);
     row = bench_row("radar, 94 GHz: the same, a pulse");
     row.median = time[1].median_s / wave->pulses, row.best = time[1].best_s / wave->pulses, row.unit = "s";
@@ -249,8 +257,11 @@ static Status place_tanks(TrialScene *scene, int tanks)
 {
     Status status = STATUS_OK;
     for (int i = 0; i < tanks && status == STATUS_OK; i++)
-        status = trial_scene_place(scene, &(TrialPlace){.type = tank_type, .number = 100 + i, .east_m = 12 * (i % 5) - 24,
-                                                        .north_m = 25 * (i / 5), .turn_rad = 0.61 * i});
+        status = trial_scene_place(scene, &(TrialPlace){.type = tank_type,
+                                                        .number = 100 + i,
+                                                        .east_m = 12 * (i % 5) - 24,
+                                                        .north_m = 25 * (i / 5),
+                                                        .turn_rad = 0.61 * i});
     return status;
 }
 
@@ -267,12 +278,21 @@ static Status time_updates(RadarSpeed *r, TrialScene *scene, Arena *const arena[
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     const View view = trial_view(scene, range_m, 250, 3 * rad_per_deg, 64, 64);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        u[k] = (Updates){.scene = {.world = &scene->world, .snapshot = &snapshot, .view = &view, .hidden = -1,
-                                   .v_enu_mps = {0, 200, -20}, .reference_m = NAN, .t_s = 1, .weather = &weather, .number = 1},
-                         .pool = k ? r->many : r->one, .arena = arena[k]};
+        u[k] = (Updates){.scene = {.world = &scene->world,
+                                   .snapshot = &snapshot,
+                                   .view = &view,
+                                   .hidden = -1,
+                                   .v_enu_mps = {0, 200, -20},
+                                   .reference_m = NAN,
+                                   .t_s = 1,
+                                   .weather = &weather,
+                                   .number = 1},
+                         .pool = k ? r->many : r->one,
+                         .arena = arena[k]};
         if (k == 0)
-            status = seeker_radar_create(&u[0].radar, &(SeekerRadarConfig){.preset = preset_name, .catalog = catalog, .ground = true,
-                                                                           .warp_m = 1e-3, .seed = 1});
+            status = seeker_radar_create(
+                &u[0].radar, &(SeekerRadarConfig){
+                                 .preset = preset_name, .catalog = catalog, .ground = true, .warp_m = 1e-3, .seed = 1});
         else u[1].radar = u[0].radar;
     }
     if (status != STATUS_OK) return status;
@@ -288,7 +308,8 @@ static Status time_updates(RadarSpeed *r, TrialScene *scene, Arena *const arena[
         double            differ = 0;
         for (size_t i = 0; i < cells; i++)
             differ += memcmp(&f->map.cell[i], &u[0].frame->map.cell[i], sizeof *f->map.cell) != 0;
-        snprintf(what, sizeof what, "radar, 94 GHz: %d tanks with clutter, bins at hand, %s", tanks, k ? all_threads : "1 thread");
+        snprintf(what, sizeof what, "radar, 94 GHz: %d tanks with clutter, bins at hand, %s", tanks,
+                 k ? all_threads : "1 thread");
         BenchRow row = bench_row_of(what, &time[k], "updates/s", 1);
         row.error = differ, row.error_limit = 0, row.error_unit = "cells differ", row.against = "1 thread";
         if (k) row.ratio = bench_ratio(&time[1], &time[0]), row.to = "1 thread";
