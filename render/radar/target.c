@@ -6,8 +6,10 @@
 /* ---- how curved it is ------------------------------------------------------------------------------- */
 
 typedef struct Bend {
-    double per_m, area_m2;
+    double per_m, chord_m, area_m2;
 } Bend;
+
+static const double flat_per_m = 1e-6; /* curved less: rounding of normals */
 
 static int by_bend(const void *a, const void *b)
 {
@@ -15,19 +17,22 @@ static int by_bend(const void *a, const void *b)
     return p->per_m < q->per_m ? 1 : p->per_m > q->per_m ? -1 : 0;
 }
 
-/* The largest change of the vertex normals over a side's length. */
+/* The largest change of the vertex normals over a side's length; and how far the surface that they are of is from the
+ * middle of a side: an eighth of the side times what the normal turns along it, to within its square. */
 static Bend bend_of(const Model *model, int t)
 {
     Bend   bend = {0};
     double ab[3], ac[3], n[3];
     for (int c = 0; c < 3; c++) {
         const uint32_t i = model->triangle[t][c], j = model->triangle[t][(c + 1) % 3];
-        double         along[3], turn = 0;
+        double         along[3], turn = 0, towards_m = 0;
         v3_sub(along, model->vertex[j], model->vertex[i]);
         for (int x = 0; x < 3; x++) {
             const double d = (double)model->normal[j][x] - (double)model->normal[i][x];
             turn += d * d;
+            towards_m += d * along[x];
         }
+        bend.chord_m = fmax(bend.chord_m, fabs(towards_m) / 8);
         const double side_m = v3_length(along);
         if (side_m > 0) bend.per_m = fmax(bend.per_m, sqrt(turn) / side_m);
     }
@@ -42,15 +47,20 @@ static Status measure_curve(RadarTarget *target)
 {
     const Model *model = target->model;
     Bend        *bend = calloc((size_t)model->triangle_count + 1, sizeof *bend);
-    double       whole_m2 = 0, bent_m2 = 0;
+    double       whole_m2 = 0, bent_m2 = 0, curved_m2 = 0, square = 0;
     if (!bend) return STATUS_NO_MEMORY;
     for (int t = 0; t < model->triangle_count; t++) {
         bend[t] = bend_of(model, t);
         whole_m2 += bend[t].area_m2;
+        if (!(bend[t].per_m > flat_per_m)) continue;
+        curved_m2 += bend[t].area_m2;
+        square += bend[t].area_m2 * bend[t].chord_m * bend[t].chord_m;
+        target->chord_m = fmax(target->chord_m, bend[t].chord_m);
     }
+    target->chord_rms_m = curved_m2 > 0 ? sqrt(square / curved_m2) : 0;
     qsort(bend, (size_t)model->triangle_count, sizeof *bend, by_bend);
     target->curve_m = INFINITY;
-    for (int t = 0; t < model->triangle_count && bend[t].per_m > 1e-6; t++) {
+    for (int t = 0; t < model->triangle_count && bend[t].per_m > flat_per_m; t++) {
         bent_m2 += bend[t].area_m2;
         target->curve_m = 1 / bend[t].per_m;
         if (bent_m2 > 0.05 * whole_m2) break;

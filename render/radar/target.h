@@ -20,6 +20,8 @@ typedef struct RadarTarget {
     PosedEntity  entity;             /* in body axes */
     NodePose    *pose;               /* [node_count] */
     int         *material;           /* [part_count], of materials, as undamaged */
+    double       chord_m, chord_rms_m; /* from curved surfaces (by vertex normals) to their facets, at the middle of sides:
+                                      * the largest, and over their area. Two-way phases are wrong by up to 2 k of it */
     double       curve_m;            /* radius of curvature: a twentieth of the area is curved more; INFINITY: flat */
     WedgeList    wedges;             /* of all parts, node axes */
     Wedge       *wedge;              /* [wedge_count], body axes: of metal parts that are there */

@@ -213,6 +213,13 @@ static void print_summary(const RcsSweep *sweep, double seconds)
                   c->frequency_hz[f] * 1e-9, mean_m2[0] > 0 ? 10 * log10(mean_m2[0]) : -INFINITY,
                   mean_m2[1] > 0 ? 10 * log10(mean_m2[1]) : -INFINITY, most_dbsm, at_deg);
     }
+    const RadarTarget *target = sweep->model.target;
+    if (target && target->chord_m > 0) { /* a file's facets are taken as they are */
+        const double deg_m = 720 * c->frequency_hz[c->frequencies - 1] / light_mps;
+        log_print("facets of curved surfaces are up to %.2g mm off them, %.2g mm rms: %.2g and %.2g deg of phase at %g GHz\n",
+                  1e3 * target->chord_m, 1e3 * target->chord_rms_m, deg_m * target->chord_m, deg_m * target->chord_rms_m,
+                  1e-9 * c->frequency_hz[c->frequencies - 1]);
+    }
     if (!isnan(sweep->grid_db)) log_print("error of the grid of ray tubes, by another grid: %.0f dB\n", sweep->grid_db);
     log_detail("rcs: %lld ray tubes, %lld hits, %.1f s", sweep->rays, sweep->hit_count, seconds);
 }

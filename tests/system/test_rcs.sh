@@ -45,6 +45,8 @@ check "each row has all cells" [ "$(awk -F, '{ print NF }' "$tmp/tank/rcs.csv" |
 check "a tank is of 0 .. 50 dBsm" awk -F, 'NR > 1 && !($4 > 0 - 10 && $4 < 50) { exit 1 }' "$tmp/tank/rcs.csv"
 check "the summary" said 'tank at 4 GHz: mean HH [0-9.-]+, VV [0-9.-]+ dBsm'
 check "and the error of its grid" said 'another grid: -[0-9]+ dB'
+check "and how far its facets are off curved surfaces: 2.4 degrees by what built-in models are made to" \
+    said 'facets of curved surfaces.* (2[.][0-4]|1[.][0-9]) and '
 if command -v xmllint >/dev/null; then check "the plot is XML" xmllint --noout "$tmp/tank/rcs.svg"; fi
 if command -v file >/dev/null; then check "the picture is a PNG" grep -q PNG <<<"$(file "$tmp/tank/isar.png")"; fi
 
