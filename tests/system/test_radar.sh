@@ -93,14 +93,12 @@ map() { grep -o '"radar":.*' "$1/truth.jsonl"; }
 table=$(dirname "$0")/../../etc/radars.csv
 { grep '^name,' "$table"; sed -n 's/^seeker_35,lfm,35,/seeker,lfm,17.5,/p' "$table"; } >"$tmp/seeker.csv"
 small=(--bands radar --size 48x32 --set radar.preset=seeker --set radar.table="$tmp/seeker.csv" --from 1364 --to 1365 --rate 1 --overwrite)
-run replay "$tmp/demo.pcap" --out "$tmp/one" "${small[@]}" --threads 1
+run replay "$tmp/demo.pcap" --out "$tmp/one" "${small[@]}" --threads 1 --set radar.library="$tmp/library"
 check "a seeker" [ $code = 0 ] || cat "$tmp/stderr"
 run replay "$tmp/demo.pcap" --out "$tmp/two" "${small[@]}" --threads 2 --no-skip --from 1365
 check "the last frame alone, two threads, no skips: the same bits" \
     [ -n "$(map "$tmp/two")" -a "$(map "$tmp/two")" = "$(map "$tmp/one" | tail -n 1)" ]
-printf 'x_m,y_m,z_m,hh_dbsm,vv_dbsm\n0,0,-1,20,20\n' >"$tmp/point.csv"
-printf 'entity,signature\n*,point.csv\n' >"$tmp/given.csv"
-run replay "$tmp/demo.pcap" --out "$tmp/bare" "${small[@]}" --from 1365 --set radar.ground=false --set radar.given="$tmp/given.csv"
+run replay "$tmp/demo.pcap" --out "$tmp/bare" "${small[@]}" --from 1365 --set radar.ground=false --set radar.library="$tmp/library"
 check "without ground: fewer echoes" [ "$(json_numbers "$tmp/bare/truth.jsonl" ground_cells | head -n 1)" = 0 ]
 # of the same entities: the ground in the map has no such error, their cross sections have it all the same
 share() { grep -o '"range_doppler":{[^}]*}' "$1/truth.jsonl" | tail -n 1 | sed -E "s/.*\"$2\":([^,}]*).*/\1/"; }

@@ -23,7 +23,7 @@
 #include <unistd.h>
 
 enum { rate_hz = 30, path_size = temp_name_size };
-static const double retry_interval_s = 30, publish_s = 0.010; /* DESIGN: frame time to published <= render + 10 ms */
+static const double patience_s = 120, publish_s = 0.010; /* DESIGN: frame time to published <= render + 10 ms */
 
 typedef struct Live {
     Bench  *bench;
@@ -45,7 +45,7 @@ static Status run_both(Live *l)
     int        ears[2];
     snprintf(port, sizeof port, "%d", l->port);
     snprintf(to, sizeof to, "127.0.0.1:%d", l->port);
-    snprintf(length, sizeof length, "%.0f", 3 * retry_interval_s); /* the last resort */
+    snprintf(length, sizeof length, "%.0f", 3 * patience_s); /* the last resort */
     snprintf(threads, sizeof threads, "%d", bench_threads(l->bench));
     snprintf(rate, sizeof rate, "%d", rate_hz);
     const char *const node[] = {"pitviper",
@@ -83,12 +83,12 @@ static Status run_both(Live *l)
     struct rusage usage = {0}, unused;
     pid_t         listener = out < 0 ? -1 : node_start(node, ears[1], ears[1]), sender = -1;
     close(ears[1]);
-    bool ok = listener > 0 && node_hears(ears[0], "listening on", retry_interval_s);
+    bool ok = listener > 0 && node_hears(ears[0], "listening on", patience_s);
     l->ready_s = wall_clock_s() - begun_s;
     const double sending_s = wall_clock_s();
     if (ok) sender = node_start(exercise, out, out);
     if (sender > 0) {
-        ok = node_hears(ears[0], "ground:", retry_interval_s); /* its choices are made: frames begin */
+        ok = node_hears(ears[0], "ground:", patience_s); /* its choices are made: frames begin */
         if (ok) usleep((useconds_t)(1e6 * (quick ? 3 : 12)));
         kill(sender, SIGTERM);
         ok = node_finish(sender, 5, &unused) >= 0 && ok;
@@ -97,7 +97,7 @@ static Status run_both(Live *l)
     }
     if (listener > 0) {
         kill(listener, SIGINT);
-        ok = node_finish(listener, retry_interval_s, &usage) == 0 && ok && sender > 0;
+        ok = node_finish(listener, patience_s, &usage) == 0 && ok && sender > 0;
     }
     l->resident_mb = 1024e-6 * (double)usage.ru_maxrss;
     close(ears[0]);

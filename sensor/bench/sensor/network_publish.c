@@ -126,9 +126,9 @@ static Status run_both(const Node *n)
     const pid_t node    = nowhere < 0 ? -1 : start_node(n, &for_node, said[1]);
     pid_t       sender  = -1;
     close(said[1]);
-    bool ok = node > 0 && node_hears(said[0], "listening on", 30);
+    bool ok = node > 0 && node_hears(said[0], "listening on", 120);
     if (ok) sender = start_on(&for_others, n->of->scale ? crowd : one, nowhere);
-    ok = ok && sender > 0 && node_hears(said[0], "ground:", 30); /* its choices are made: frames begin */
+    ok = ok && sender > 0 && node_hears(said[0], "ground:", 120); /* its choices are made: frames begin */
     if (ok) fcntl(said[0], F_SETFL, O_NONBLOCK);
     char rest[4096];
     for (int i = 0; ok && i < (quick ? 20 : 120); i++) { /* its messages are read on, or it would wait */
