@@ -20,18 +20,18 @@ static double lambda(int m, double u)
     return scale * jn(m, u);
 }
 
-static double u_per_sine(const Antenna *a) { return pi_rad * a->diameter_m / a->wavelength_m; }
+double antenna_u_per_sine(const Antenna *a) { return pi_rad * a->diameter_m / a->wavelength_m; }
 
 double antenna_peak_gain(const Antenna *a)
 {
-    const double n = a->taper, reach = u_per_sine(a);
+    const double n = a->taper, reach = antenna_u_per_sine(a);
     return (2 * n + 1) / ((n + 1) * (n + 1)) * reach * reach;
 }
 
 AntennaGain antenna_gain(const Antenna *a, double cos_right, double cos_down)
 {
     const int    n = a->taper;
-    const double sine2 = cos_right * cos_right + cos_down * cos_down, reach = u_per_sine(a);
+    const double sine2 = cos_right * cos_right + cos_down * cos_down, reach = antenna_u_per_sine(a);
     if (!(sine2 < 1)) return (AntennaGain){0, 0, 0};
     const double u = reach * sqrt(sine2), peak = sqrt(antenna_peak_gain(a));
     const double slope = peak * sqrt(n + 1.0) / (n + 2) * lambda(n + 2, u);
@@ -53,7 +53,7 @@ static double sum_power(int m, double scale, double u) { return scale * lambda(m
 
 static double width_rad(const Antenna *a, double power)
 {
-    return 2 * asin(fmin(solve(a->taper + 1, 1, 0, 3, power, sum_power) / u_per_sine(a), 1));
+    return 2 * asin(fmin(solve(a->taper + 1, 1, 0, 3, power, sum_power) / antenna_u_per_sine(a), 1));
 }
 
 double antenna_width_rad(const Antenna *a) { return width_rad(a, 0.5); }
@@ -73,6 +73,6 @@ void antenna_direction(double *cos_right, double *cos_down, const Antenna *a, do
         return;
     }
     const double u = solve(n, sqrt(n + 1.0) / (n + 2), 0, first_zero[n] * (1 - 1e-12), -ratio, minus_ratio);
-    *cos_right = u / u_per_sine(a) * (right / ratio);
-    *cos_down = u / u_per_sine(a) * (down / ratio);
+    *cos_right = u / antenna_u_per_sine(a) * (right / ratio);
+    *cos_down = u / antenna_u_per_sine(a) * (down / ratio);
 }

@@ -25,6 +25,8 @@ typedef struct AntennaGain {
     double sum, right, down; /* amplitude (voltage) gains over an isotropic antenna, one way; right, down: signed */
 } AntennaGain;
 
+/* u of the patterns for a sine of 1 off the axis: pi diameter / wavelength. */
+double antenna_u_per_sine(const Antenna *antenna);
 /* In a direction by its cosines along the antenna's right and down axes; behind the antenna: 0. */
 AntennaGain antenna_gain(const Antenna *antenna, double cos_right, double cos_down);
 /* Power gain on the axis: efficiency (2 taper + 1) / (taper + 1)^2 times (pi d / wavelength)^2. */

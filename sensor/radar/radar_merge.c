@@ -105,7 +105,7 @@ int making_merge(RadarPoint *point, const double (*x)[merge_axes], const bool *s
 {
     const Waveform *wave = &m->preset->wave;
     const double    k = 2 * pi_rad * wave->centre_hz / light_mps;
-    const double    reach = pi_rad * m->preset->antenna.diameter_m / m->preset->antenna.wavelength_m;
+    const double    reach = antenna_u_per_sine(&m->preset->antenna);
     const double    scale[axes] = {pi_rad * wave->bandwidth_hz / light_mps, 0.5 * k * wave->pulses, reach, reach};
     Axis            axis[axes];
     size_t          nodes;
@@ -130,8 +130,8 @@ int making_merge(RadarPoint *point, const double (*x)[merge_axes], const bool *s
     for (int i = 0; i < count; i++)
         if (!spins[i]) share_out(node, lost_np, axis, m, &point[i], x[i]);
     int kept = 0;
-    for (int i = 0; i < count;
-         i++) /* first those that spin: nodes are fewer than the points that leave room for them */
+    /* first those that spin: nodes are fewer than the points that leave room for them */
+    for (int i = 0; i < count; i++)
         if (spins[i]) point[kept++] = point[i];
     for (size_t i = 0; i < nodes; i++)
         if (node[i].same != 0 || node[i].other != 0) point[kept++] = node[i];

@@ -165,8 +165,7 @@ void making_amplitudes(double complex amplitude[interval_channels], const Making
 double making_null(const Making *m)
 {
     static const double null_u[] = {3.8317, 5.1356, 6.3802}; /* first zero of the sum beam by the dish's taper */
-    const double        reach = pi_rad * m->preset->antenna.diameter_m / m->preset->antenna.wavelength_m;
-    return fmin(null_u[m->preset->antenna.taper] / reach, 1);
+    return fmin(null_u[m->preset->antenna.taper] / antenna_u_per_sine(&m->preset->antenna), 1);
 }
 
 /* Range to the ground along the boresight; NAN: there is none. */
@@ -353,7 +352,7 @@ Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const Ra
     Making m = {.radar = radar, .scene = scene, .preset = p, .frame = frame, .pool = pool, .arena = arena,
                 .half_window_m = p->wave.samples * light_mps / (4 * p->wave.bandwidth_hz),
                 .reach = scene->reach > 0 ? scene->reach : 1};
-    m.widest = m.reach * 16 / (pi_rad * p->antenna.diameter_m / p->antenna.wavelength_m);
+    m.widest = m.reach * 16 / antenna_u_per_sine(&p->antenna);
     *frame = (RadarFrame){.preset = p, .aim_m = scene->reference_m, .number = scene->number};
     memcpy(frame->v_enu_mps, scene->v_enu_mps, sizeof frame->v_enu_mps);
     memcpy(frame->aim_v_enu_mps, scene->reference_v_enu_mps, sizeof frame->aim_v_enu_mps);

@@ -30,7 +30,7 @@ static double map_energy(const RangeDoppler *map)
 {
     double sum = 0; /* of the sum channel, which is the first */
     for (size_t i = 0; i < (size_t)map->rows * (size_t)map->columns; i++)
-        sum += creal(map->cell[i]) * creal(map->cell[i]) + cimag(map->cell[i]) * cimag(map->cell[i]);
+        sum += scatter_power(map->cell[i]);
     return sum;
 }
 

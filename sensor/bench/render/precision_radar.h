@@ -5,6 +5,8 @@
 #include "render/radar/target.h"
 #include "sensor/bench/bench.h"
 
+/* Root of the power of the difference over the power, over so many frequencies or looks, co-polarised, %. */
+double precision_radar_off(const ScatterMatrix *got, const ScatterMatrix *want, int count);
 /* Edges, lists used at other aspects, centres instead of hits. */
 Status precision_radar_reuse(Bench *bench, RadarTarget *tank, Pool *pool);
 /* Flat faces by ray tubes and in closed form. */

@@ -45,17 +45,6 @@ static void run_looks(void *user)
     bench_keep(w);
 }
 
-/* Root of the power of the difference over the power, co-polarised, %. */
-static double apart(const ScatterMatrix *got, const ScatterMatrix *want)
-{
-    double off = 0, whole = 0;
-    for (int i = 0; i < looks; i++) {
-        off += scatter_power(got[i].hh - want[i].hh) + scatter_power(got[i].vv - want[i].vv);
-        whole += scatter_power(want[i].hh) + scatter_power(want[i].vv);
-    }
-    return 100 * sqrt(off / whole);
-}
-
 /* A side of a box, or a plate: its normal's axis, and which way. */
 static void add_side(ScatterMatrix *s, const Case *c, const ScatterAntenna *a, int axis, double sign)
 {
@@ -142,7 +131,7 @@ static Status run_case(Bench *bench, const Case *c, const RadarMaterials *materi
         w.tubes.polygon_faces = on ? INT_MAX : 0;
         bench_time(&time, bench, &work, 1);
         BenchRow row = bench_row_of(c->what[on], &time, "/s", 1);
-        row.error = apart(w.s, want), row.error_unit = "%";
+        row.error = precision_radar_off(w.s, want, looks), row.error_unit = "%";
         row.against = known ? "its formula" : "tubes divided further, another grid";
         bench_add(bench, &row);
     }

@@ -46,13 +46,12 @@ static void gather(void *user)
     bench_keep(r);
 }
 
-/* Root of the power of the difference over the power, over the band, co-polarised, %. */
-static double off(const ScatterMatrix *got, const ScatterMatrix *want)
+double precision_radar_off(const ScatterMatrix *got, const ScatterMatrix *want, int count)
 {
     double apart = 0, whole = 0;
-    for (int f = 0; f < frequencies; f++) {
-        apart += scatter_power(got[f].hh - want[f].hh) + scatter_power(got[f].vv - want[f].vv);
-        whole += scatter_power(want[f].hh) + scatter_power(want[f].vv);
+    for (int i = 0; i < count; i++) {
+        apart += scatter_power(got[i].hh - want[i].hh) + scatter_power(got[i].vv - want[i].vv);
+        whole += scatter_power(want[i].hh) + scatter_power(want[i].vv);
     }
     return 100 * sqrt(apart / whole);
 }
@@ -77,11 +76,13 @@ static void edges(Bench *bench, Reuse *r)
     add_row(bench, "radar: a look at a tank, edges and waves between them", trace, r, 0, "itself");
     r->tank->pair_count = 0;
     trace(r), sweep(r);
-    add_row(bench, "radar: the same, edges of first order", trace, r, off(r->s, whole), "all edges");
+    add_row(bench, "radar: the same, edges of first order", trace, r, precision_radar_off(r->s, whole, frequencies),
+            "all edges");
     r->tank->pair_count = pairs;
     r->edges = false;
     trace(r), sweep(r);
-    add_row(bench, "radar: the same, without edges", trace, r, off(r->s, whole), "all edges");
+    add_row(bench, "radar: the same, without edges", trace, r, precision_radar_off(r->s, whole, frequencies),
+            "all edges");
     r->edges = true;
 }
 
@@ -102,7 +103,8 @@ static void aspects(Bench *bench, Reuse *r)
         memcpy(own, r->s, sizeof own);
         r->look = look;
         trace(r), sweep(r);
-        add_row(bench, at[i].what, sweep, r, off(r->s, own), "a list of its own, its grid too");
+        add_row(bench, at[i].what, sweep, r, precision_radar_off(r->s, own, frequencies),
+                "a list of its own, its grid too");
         r->now = look;
     }
 }
@@ -130,7 +132,7 @@ static void cells(Bench *bench, Reuse *r)
                 got[f].hh += centre->s.hh * wave, got[f].vv += centre->s.vv * wave;
             }
         }
-        add_row(bench, at[i].what, gather, r, off(got, want),
+        add_row(bench, at[i].what, gather, r, precision_radar_off(got, want, frequencies),
                 bench_quick(bench) ? "hits and edges, edge of a bin, 500 MHz at 4 GHz"
                                    : "hits and edges, edge of a bin, 500 MHz at 10 GHz");
     }

@@ -2,27 +2,11 @@
  * than scattering centres (sensor/radar/radar_merge.c), and where echoes far off the axis are left out. */
 #include "sensor/bench/sensor/precision.h"
 
-#include "sensor/radar/seeker_radar.h"
+#include "sensor/bench/sensor/radar_update.h"
 #include "terrain/landscape/quick_landscape.h"
 
 enum { tanks = 12 };
 static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0};
-
-typedef struct MergeWay {
-    SeekerRadar      *radar;
-    RadarScene        scene;
-    Arena            *arena;
-    const RadarFrame *frame;
-    Status            status;
-} MergeWay;
-
-static void measure(void *user)
-{
-    MergeWay *w = user;
-    arena_reset(w->arena);
-    w->status = seeker_radar_measure(&w->frame, w->radar, &w->scene, NULL, w->arena);
-    bench_keep(w->frame);
-}
 
 /* Root of the power of what differs over that of the map, %. */
 static double apart(const RadarFrame *got, const RadarFrame *want)
@@ -42,7 +26,7 @@ static Status compare(Bench *bench, TrialScene *scene, SeekerRadar *radar, Arena
     enum { settings = 2 };
     const Weather weather = weather_default();
     Snapshot      snapshot;
-    MergeWay      way[settings];
+    RadarUpdate   way[settings];
     BenchWork     work[settings];
     char          name[settings][64];
     BenchSetting  point[settings];
@@ -57,13 +41,13 @@ static Status compare(Bench *bench, TrialScene *scene, SeekerRadar *radar, Arena
     const View    view = trial_view(scene, ground ? 2500 : 4000, 400, 3 * rad_per_deg, 64, 64);
     if (ground) snapshot.count = 0;
     for (int k = 0; k < settings && status == STATUS_OK; k++) {
-        way[k] = (MergeWay){.radar = radar, .arena = arena[k],
+        way[k] = (RadarUpdate){.radar = radar, .arena = arena[k],
                             .scene = {.world = &scene->world, .snapshot = &snapshot, .view = &view, .hidden = -1,
                                       .v_enu_mps = {0, 200, -20}, .reference_m = NAN, .t_s = 1, .weather = &weather,
                                       .number = 1, .apart = k == 0, .reach = ground && k == 0 ? 2.5 : 1}};
-        measure(&way[k]);
+        radar_update(&way[k]);
         status = way[k].status;
-        work[k] = (BenchWork){measure, &way[k], 1};
+        work[k] = (BenchWork){radar_update, &way[k], 1};
     }
     if (status != STATUS_OK) return status;
     for (int k = 0; k < settings; k++) {

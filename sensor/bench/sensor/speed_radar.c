@@ -1,8 +1,8 @@
 /* sensor/bench/sensor/speed_radar.c: `bench speed --bands radar`: what a 94 GHz seeker's targets and updates cost. */
 #include "sensor/bench/sensor/speed_private.h"
 
+#include "sensor/bench/sensor/radar_update.h"
 #include "sensor/radar/echo.h"
-#include "sensor/radar/seeker_radar.h"
 #include "terrain/landscape/quick_landscape.h"
 
 #include <stdlib.h>
@@ -236,23 +236,6 @@ static Status add_target_rows(RadarSpeed *r)
 
 /* ---- ten targets with clutter ----------------------------------------------------------------------- */
 
-typedef struct Updates {
-    SeekerRadar      *radar;
-    RadarScene        scene;
-    Pool             *pool;
-    Arena            *arena;
-    const RadarFrame *frame;
-    Status            status;
-} Updates;
-
-static void update(void *user)
-{
-    Updates *u = user;
-    arena_reset(u->arena);
-    u->status = seeker_radar_measure(&u->frame, u->radar, &u->scene, u->pool, u->arena);
-    bench_keep(u->frame);
-}
-
 static Status place_tanks(TrialScene *scene, int tanks)
 {
     Status status = STATUS_OK;
@@ -270,7 +253,7 @@ static Status time_updates(RadarSpeed *r, TrialScene *scene, Arena *const arena[
     char     catalog[4096], what[what_size];
     Snapshot snapshot;
     Weather  weather = weather_default();
-    Updates  u[2];
+    RadarUpdate u[2];
     BenchTime time[2];
     const int tanks = bench_quick(r->bench) ? tanks_quick : tanks_full;
     Status   status = place_tanks(scene, tanks);
@@ -278,7 +261,7 @@ static Status time_updates(RadarSpeed *r, TrialScene *scene, Arena *const arena[
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     const View view = trial_view(scene, range_m, 250, 3 * rad_per_deg, 64, 64);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        u[k] = (Updates){.scene = {.world = &scene->world,
+        u[k] = (RadarUpdate){.scene = {.world = &scene->world,
                                    .snapshot = &snapshot,
                                    .view = &view,
                                    .hidden = -1,
@@ -297,8 +280,8 @@ static Status time_updates(RadarSpeed *r, TrialScene *scene, Arena *const arena[
     }
     if (status != STATUS_OK) return status;
     bench_progress(r->bench, "signatures of the targets");
-    update(&u[1]); /* makes their signatures */
-    const BenchWork work[2] = {{update, &u[0], 1}, {update, &u[1], 1}};
+    radar_update(&u[1]); /* makes their signatures */
+    const BenchWork work[2] = {{radar_update, &u[0], 1}, {radar_update, &u[1], 1}};
     bench_progress(r->bench, "targets with clutter");
     if (u[1].status == STATUS_OK) bench_time(time, r->bench, work, 2);
     status = u[0].status != STATUS_OK ? u[0].status : u[1].status;
@@ -351,7 +334,7 @@ static Status on_ground(RadarSpeed *r, SceneRows rows)
 static const char *const bounce_preset = "seeker_35";
 
 /* Each with the radar of its own: without the ground's mirror and with it. */
-static Status open_bounce(Updates u[2], RadarSpeed *r, const char *catalog)
+static Status open_bounce(RadarUpdate u[2], RadarSpeed *r, const char *catalog)
 {
     Status status = STATUS_OK;
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
@@ -361,7 +344,7 @@ static Status open_bounce(Updates u[2], RadarSpeed *r, const char *catalog)
         if (status != STATUS_OK) break;
         bench_progress(r->bench, k ? "signatures by way of the ground" : "signature of a tank");
         u[k].pool = r->many;
-        update(&u[k]);
+        radar_update(&u[k]);
         u[k].pool = r->one;
         status = u[k].status;
     }
@@ -380,7 +363,7 @@ static Status time_bounce(RadarSpeed *r, TrialScene *scene, Arena *const arena[3
     char      catalog[4096];
     Snapshot  snapshot;
     Weather   weather = weather_default();
-    Updates   u[2] = {{0}};
+    RadarUpdate u[2] = {{0}};
     BenchTime time[2];
     Status    status = trial_scene_place(scene, &(TrialPlace){.type = tank_type, .number = 100, .turn_rad = 0.61});
     if (status == STATUS_OK) status = entity_table_snapshot(&snapshot, scene->table, scene->sun_now_s + 0.5, arena[2]);
@@ -388,13 +371,13 @@ static Status time_bounce(RadarSpeed *r, TrialScene *scene, Arena *const arena[3
     if (status != STATUS_OK) return status;
     const View view = trial_view(scene, 1000, 30, 3 * rad_per_deg, 64, 64);
     for (int k = 0; k < 2; k++)
-        u[k] = (Updates){.scene = {.world = &scene->world, .snapshot = &snapshot, .view = &view, .hidden = -1,
+        u[k] = (RadarUpdate){.scene = {.world = &scene->world, .snapshot = &snapshot, .view = &view, .hidden = -1,
                                    .v_enu_mps = {0, 200, 0}, .reference_m = NAN, .t_s = 1, .weather = &weather,
                                    .number = 1},
                          .arena = arena[k]};
     status = open_bounce(u, r, catalog);
     const double coherence = status == STATUS_OK ? u[1].frame->target[0].bounce.coherence : 0;
-    const BenchWork work[2] = {{update, &u[0], 1}, {update, &u[1], 1}};
+    const BenchWork work[2] = {{radar_update, &u[0], 1}, {radar_update, &u[1], 1}};
     bench_progress(r->bench, "a tank with and without the ground's mirror");
     if (status == STATUS_OK) bench_time(time, r->bench, work, 2);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
