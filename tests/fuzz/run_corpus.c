@@ -1,4 +1,4 @@
-/* tests/fuzz/run_corpus.c: drives a fuzz entry point where there is no fuzzer.
+/* tests/fuzz/run_corpus.c: drives the fuzz entry points where there is no fuzzer: fuzz_tests TARGET [FILE|FOLDER ...].
  *
  * With files or folders of files named: each of them, as a fuzzer left them. Without: its own seeds, spoilt in ways
  * that depend on a counter alone, so that a failure comes again. */
@@ -9,7 +9,24 @@
 #include <dirent.h>
 #include <stdlib.h>
 
-static int inputs;
+/* Every fuzz_TARGET.c, its names of fuzz_seed.h with TARGET in them; the list and its length are tests/CMakeLists.txt's. */
+typedef struct Target {
+    const char *name;
+    int       (*one)(const uint8_t *data, size_t size);
+    size_t    (*seed)(uint8_t *out, uint32_t index);
+    const int  *rounds;
+} Target;
+#define X(name)                                                    \
+    int              name##_one(const uint8_t *data, size_t size); \
+    size_t           name##_seed(uint8_t *out, uint32_t index);    \
+    extern const int name##_rounds;
+FUZZ_TARGETS
+#undef X
+#define X(name) {#name, name##_one, name##_seed, &name##_rounds},
+static const Target targets[] = {FUZZ_TARGETS};
+
+static const Target *target;
+static int           inputs;
 
 /* In memory of exactly its size: a sanitizer sees the first octet too many. */
 static void run_exactly(const uint8_t *data, size_t size)
@@ -17,7 +34,7 @@ static void run_exactly(const uint8_t *data, size_t size)
     uint8_t *exact = malloc(size ? size : 1);
     if (!exact) abort();
     memcpy(exact, data, size);
-    LLVMFuzzerTestOneInput(exact, size);
+    target->one(exact, size);
     free(exact);
     inputs++;
 }
@@ -108,9 +125,15 @@ int main(int argc, char **argv)
 {
     static uint8_t data[fuzz_seed_octets];
     int            failed = 0;
-    for (int i = 1; i < argc; i++) failed |= run_path(argv[i]);
-    for (int round = 0; argc < 2 && round < fuzz_rounds; round++) {
-        const size_t size = fuzz_seed(data, (uint32_t)round);
+    for (size_t i = 0; argc > 1 && i < sizeof targets / sizeof *targets; i++)
+        if (strcmp(targets[i].name, argv[1]) == 0) target = &targets[i];
+    if (!target) {
+        fputs("usage: fuzz_tests TARGET [FILE|FOLDER ...]\n", stderr);
+        return 2;
+    }
+    for (int i = 2; i < argc; i++) failed |= run_path(argv[i]);
+    for (int round = 0; argc < 3 && round < *target->rounds; round++) {
+        const size_t size = target->seed(data, (uint32_t)round);
         run_exactly(data, spoil(data, size, (uint32_t)round));
     }
     printf("%d inputs\n", inputs);

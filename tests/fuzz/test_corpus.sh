@@ -3,9 +3,7 @@
 # all of these cut short and with octets turned. labels: small
 . "$(dirname "$0")/../system/common.sh"
 
-for fuzzer in fuzz_pdu fuzz_log; do
-    [ -x "$build/tests/$fuzzer" ] || { echo "skipped: no $build/tests/$fuzzer"; exit 77; }
-done
+[ -x "$build/tests/fuzz_tests" ] || { echo "skipped: no $build/tests/fuzz_tests"; exit 77; }
 
 mkdir "$tmp/pdu" "$tmp/log"
 exercise bad-pdus "$tmp/log/bad.pcap" --datagrams "$tmp/pdu"
@@ -36,7 +34,7 @@ for file in "$tmp"/log/*.pcap; do
     done
 done
 
-all() { find "$tmp/$2" -type f -print0 | sort -z | xargs -0 "$build/tests/$1" >"$tmp/said" 2>&1 || { tail -n 20 "$tmp/said"; return 1; }; }
+all() { find "$tmp/$2" -type f -print0 | sort -z | xargs -0 "$build/tests/fuzz_tests" "$1" >"$tmp/said" 2>&1 || { tail -n 20 "$tmp/said"; return 1; }; }
 check "any octets as PDUs" all fuzz_pdu pdu
 check "any octets as a capture" all fuzz_log log
 echo "$(find "$tmp/pdu" "$tmp/log" -type f | wc -l) inputs"

@@ -1,6 +1,6 @@
 /* tests/sensor/test_video_consumer.c: videos in files: bands side by side to the bit, gaps in time, a full disk, an
  * encoder that fails, a run that is killed. Two functions of the libraries are replaced here: the encoder fails when
- * told to, and the clock is set forward in place of waiting. */
+ * told to, and the clock is set forward in place of waiting. labels: alone */
 #include "tests/check.h"
 
 #ifndef PITVIPER_VIDEO

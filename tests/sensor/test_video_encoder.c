@@ -1,6 +1,6 @@
 /* tests/sensor/test_video_encoder.c: encoded video: a packet for each image at once, the same bytes each time, pixels
  * that come back as they were; addresses of streams. The decoder is libavcodec's own, which shares no code with x264
- * and x265. */
+ * and x265. labels: alone */
 #include "tests/check.h"
 
 #include "sensor/settings/config.h"
