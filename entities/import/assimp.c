@@ -2,6 +2,7 @@
  *
  * assimp has crashed on broken files often enough that it reads in a child process, which hands the flat scene back in
  * a memory file: header, then arrays. The result is validated like untrusted input. */
+#include "entities/import/assimp_library.h"
 #include "entities/import/model_import_private.h"
 
 #include <assimp/cfileio.h>
@@ -428,7 +429,9 @@ static void format_axes(ImportScene *s, const char *extension)
 
 Status import_assimp(ImportScene *out, const char *path, const char *extension)
 {
-    char dotted[40];
+    char   dotted[40];
+    Status status = library_load(&assimp_library);
+    if (status != STATUS_OK) return status;
     snprintf(dotted, sizeof dotted, ".%s", extension);
     if (!*extension || aiIsExtensionSupported(dotted) != AI_TRUE) {
         log_error(
@@ -436,7 +439,7 @@ Status import_assimp(ImportScene *out, const char *path, const char *extension)
             path, extension);
         return STATUS_UNSUPPORTED;
     }
-    Status status = STATUS_IO;
+    status = STATUS_IO;
     const int fd = memfd_create("model", MFD_CLOEXEC);
     if (fd < 0) {
         log_error("model: cannot read: file=%s: memfd_create: %s", path, strerror(errno));

@@ -4,6 +4,8 @@
 #include "sensor/node/ground_store.h"
 #include "sensor/world/frame_world.h"
 #include "sensor/publish/frame_files.h"
+#include "sensor/publish/image_file.h"
+#include "sensor/publish/video/consume_video.h"
 #include "sensor/quality/quality.h"
 #include "sensor/settings/band_choice.h"
 #include "sensor/node/shape_choice.h"
@@ -47,6 +49,14 @@ Status run_prepare(Run *run)
     return status == STATUS_OK ? hash_config(run->config_sha256, &run->options) : status;
 }
 
+/* Libraries that the products need, on this thread, before the pool starts. */
+static Status load_libraries(const Config *config)
+{
+    const bool images = config->publish.files || config->publish.latest;
+    Status     status = images ? image_file_prepare() : STATUS_OK;
+    return status == STATUS_OK ? video_prepare(config) : status;
+}
+
 Status run_survey(Run *run, const DisLog *heard)
 {
     const Options *o = &run->options;
@@ -64,6 +74,7 @@ Status run_survey(Run *run, const DisLog *heard)
     status = catalog_open(&run->catalog, path, o->config.models.sag_m);
     if (status == STATUS_OK) status = tables_used(&run->tables, &o->config, path);
     if (status == STATUS_OK) status = tables_given(&run->tables, &o->config);
+    if (status == STATUS_OK) status = load_libraries(&o->config);
     if (status == STATUS_OK) status = pool_create(&run->pool, o->threads);
     return status;
 }

@@ -1,4 +1,4 @@
-/* sensor/publish/image_file.h: image files, through OpenImageIO (image_file.cpp, the only file that uses it).
+/* sensor/publish/image_file.h: image files, through OpenImageIO (image_module.cpp, the only file that uses it).
  *
  * A file appears complete or not at all: it is written chunk by chunk as `PATH.part` and renamed. Every failure is
  * one log line with path and reason, and a Status; nothing of a failed file is left behind. Thread-safe for
@@ -7,10 +7,6 @@
 #define SENSOR_PUBLISH_IMAGE_FILE_H
 
 #include "sensor/publish/plane.h"
-
-#ifdef __cplusplus
-extern "C" {
-#endif
 
 typedef enum ImageAttributeType { IMAGE_STRING, IMAGE_INT, IMAGE_FLOAT, IMAGE_DOUBLE } ImageAttributeType;
 
@@ -44,6 +40,10 @@ static inline ImageAttribute image_double(const char *name, double number)
 }
 
 enum { image_max_planes = 64, image_max_size_px = 32768 };
+
+/* Loads OpenImageIO, which takes some 0.1 s. Every function below does it by itself; a command that will write files calls it
+ * on the main thread, before its pool starts. STATUS_IO, logged with what to install. */
+Status image_file_prepare(void);
 
 /* EXR, one channel per plane, float32 or uint32 each, bit for bit (a uint32 never passes through a float), in a
  * compression by name (`none`, `rle`, `zips`, `zip:1`, `piz`, ...; frame_files.c has measurements). date_time:
@@ -83,7 +83,4 @@ Status image_read_png(void *out, const char *path);
 bool image_read_string(char *out, size_t out_size, const char *path, const char *attribute);
 bool image_read_number(double *out, const char *path, const char *attribute);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

@@ -1,5 +1,5 @@
-/* sensor/publish/image_file.cpp: image files, through OpenImageIO. */
-#include "sensor/publish/image_file.h"
+/* sensor/publish/image_module.cpp: image files, through OpenImageIO: a module, which image_file.c loads. */
+#include "sensor/publish/image_module.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -175,8 +175,8 @@ static bool write_planes(ImageOutput *out, const Plane *plane, int plane_count)
     return true;
 }
 
-Status image_write_exr_as(const char *path, const char *compression, const Plane *plane, int plane_count,
-                          const char *date_time, const ImageAttribute *attribute, int attribute_count)
+Status image_module_write_exr(const char *path, const char *compression, const Plane *plane, int plane_count,
+                              const char *date_time, const ImageAttribute *attribute, int attribute_count)
 try {
     const char *misfit = planes_size_error(plane, plane_count);
     if (misfit) return refuse(STATUS_BAD_VALUE, "write", path, misfit);
@@ -197,13 +197,7 @@ try {
     return refuse(STATUS_NO_MEMORY, "write", path, e.what());
 }
 
-Status image_write_exr(const char *path, const Plane *plane, int plane_count, const char *date_time,
-                       const ImageAttribute *attribute, int attribute_count)
-{
-    return image_write_exr_as(path, "none", plane, plane_count, date_time, attribute, attribute_count);
-}
-
-Status image_write_png(const char *path, const void *values, int width, int height, int channels, int bits)
+Status image_module_write_png(const char *path, const void *values, int width, int height, int channels, int bits)
 try {
     if (width < 1 || height < 1 || width > image_max_size_px || height > image_max_size_px ||
         (channels != 1 && channels != 3) || (bits != 8 && bits != 16))
@@ -236,7 +230,7 @@ static PlaneType plane_type(const ImageSpec &spec, int channel)
     return spec.channelformat(channel) == TypeDesc::UINT32 ? PLANE_U32 : PLANE_F32;
 }
 
-Status image_info(ImageInfo *out, const char *path)
+Status image_module_info(ImageInfo *out, const char *path)
 try {
     auto in = open_input(path);
     if (!in) return STATUS_IO;
@@ -274,17 +268,17 @@ try {
     return refuse(STATUS_NO_MEMORY, "read", path, e.what());
 }
 
-Status image_read_f32(float *out, const char *path, const char *channel)
+Status image_module_read_f32(float *out, const char *path, const char *channel)
 {
     return read_channel(out, path, channel, TypeDesc::FLOAT);
 }
 
-Status image_read_u32(uint32_t *out, const char *path, const char *channel)
+Status image_module_read_u32(uint32_t *out, const char *path, const char *channel)
 {
     return read_channel(out, path, channel, TypeDesc::UINT32);
 }
 
-Status image_read_png(void *out, const char *path)
+Status image_module_read_png(void *out, const char *path)
 try {
     auto in = open_input(path);
     if (!in) return STATUS_IO;
@@ -295,7 +289,7 @@ try {
     return refuse(STATUS_NO_MEMORY, "read", path, e.what());
 }
 
-bool image_read_string(char *out, size_t out_size, const char *path, const char *attribute)
+bool image_module_read_string(char *out, size_t out_size, const char *path, const char *attribute)
 try {
     auto in = open_input(path);
     const OIIO::ParamValue *value = in ? in->spec().find_attribute(attribute, TypeDesc::STRING) : nullptr;
@@ -306,7 +300,7 @@ try {
     return false;
 }
 
-bool image_read_number(double *out, const char *path, const char *attribute)
+bool image_module_read_number(double *out, const char *path, const char *attribute)
 try {
     auto in = open_input(path);
     const OIIO::ParamValue *value = in ? in->spec().find_attribute(attribute) : nullptr;

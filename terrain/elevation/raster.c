@@ -2,6 +2,8 @@
  * with a remedy. */
 #include "terrain/elevation/raster.h"
 
+#include "terrain/elevation/gdal_library.h"
+
 #include <strings.h>
 #include <cpl_conv.h>
 #include <dirent.h>
@@ -386,7 +388,8 @@ static void close_handles(RasterOpen *open)
 Status raster_set_open(RasterSet *out, const char *paths, const char *key)
 {
     RasterSet set = {0};
-    Status    status = STATUS_OK;
+    Status    status = library_load(&gdal_library);
+    if (status != STATUS_OK) return status;
     quiet();
     for (const char *at = paths; status == STATUS_OK && *at;) {
         char         path[path_size];

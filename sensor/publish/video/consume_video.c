@@ -3,6 +3,7 @@
 
 #include "sensor/publish/display.h"
 #include "sensor/publish/frame_files.h"
+#include "sensor/publish/video/video_library.h"
 #include "sensor/publish/video/video_output.h"
 
 #include <stdlib.h>
@@ -247,6 +248,11 @@ static Status make_folder(const VideoOf *of)
     if (snprintf(path, sizeof path, "%s/%s", of->config->publish.video, of->host_folder) >= (int)sizeof path)
         return STATUS_BAD_VALUE;
     return frame_files_folder(path);
+}
+
+Status video_prepare(const Config *config)
+{
+    return video_wanted(config) ? library_load(&video_library) : STATUS_OK;
 }
 
 Status consume_video(Consumer **out, const VideoOf *of)

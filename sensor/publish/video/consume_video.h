@@ -23,6 +23,10 @@ typedef struct VideoOf {
     Detections      *detections;  /* of a recogniser, for publish.vmti=atr; outlive the consumer; NULL: none */
 } VideoOf;
 
+/* Loads FFmpeg's libraries where a video or a stream is configured; a command that may publish one calls it on the main
+ * thread, before its pool starts. STATUS_IO, logged with what to install. */
+Status video_prepare(const Config *config);
+
 /* STATUS_UNSUPPORTED, logged: built without FFmpeg's libraries; or a file or stream of several hosts. */
 Status consume_video(Consumer **out, const VideoOf *of);
 

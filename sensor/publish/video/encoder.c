@@ -1,6 +1,7 @@
 /* sensor/publish/video/encoder.c: images to packets of compressed video, through libavcodec. */
 #include "sensor/publish/video/encoder.h"
 
+#include "sensor/publish/video/video_library.h"
 #include "sensor/publish/video/video_pixels.h"
 
 #include <libavcodec/avcodec.h>
@@ -126,12 +127,14 @@ static Status open_frame(Encoder *e)
 
 Status encoder_open(Encoder **out, const EncoderConfig *config)
 {
+    Status status = library_load(&video_library);
+    if (status != STATUS_OK) return status;
     Encoder *e = calloc(1, sizeof *e);
     if (!e) return STATUS_NO_MEMORY;
     video_quiet_libraries();
     e->config = *config;
     e->layout = layout_of(config);
-    Status status = open_context(e);
+    status    = open_context(e);
     if (status == STATUS_OK) status = open_frame(e);
     if (status == STATUS_OK) *out = e;
     else encoder_close(e);

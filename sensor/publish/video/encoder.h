@@ -28,7 +28,7 @@ typedef struct VideoPacket {
 
 typedef struct Encoder Encoder;
 
-/* STATUS_UNSUPPORTED: the libraries lack the encoder, or it refuses the size. Logged. */
+/* STATUS_UNSUPPORTED: the libraries lack the encoder, or it refuses the size; STATUS_IO: they cannot be loaded. Logged. */
 Status encoder_open(Encoder **out, const EncoderConfig *config);
 void   encoder_close(Encoder *encoder); /* NULL is valid */
 int    encoder_bits(VideoCodec codec);  /* of an image's values: 8, 10, 12, 16 */

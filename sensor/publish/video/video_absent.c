@@ -11,6 +11,12 @@ Status consume_video(Consumer **out, const VideoOf *of)
     return STATUS_UNSUPPORTED;
 }
 
+Status video_prepare(const Config *config)
+{
+    (void)config;
+    return STATUS_OK;
+}
+
 unsigned video_wanted(const Config *config)
 {
     (void)config;

@@ -1,0 +1,70 @@
+/* pitviper_library.c: loads a shared library and finds the functions that are called. */
+#include "pitviper_library.h"
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <unistd.h>
+#include <xmmintrin.h>
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+
+/* As with a library that is linked, one that is preloaded may stand in its place. In a program that is linked to the
+ * library as well, such as a test, the search finds the jump itself first. */
+static void *find(void *handle, const LibraryFunction *function)
+{
+    void *address = dlsym(RTLD_DEFAULT, function->name);
+    return address && address != (const void *)function->jump ? address : dlsym(handle, function->name);
+}
+
+static Status load(Library *library)
+{
+    const char *install = library->package ? "; install it: apt install " : "", *package = library->package;
+    void       *handle  = dlopen(library->file, RTLD_LAZY | RTLD_GLOBAL);
+    if (!handle) {
+        log_error("%s cannot be loaded: %s%s%s", library->name, dlerror(), install, package ? package : "");
+        return STATUS_IO;
+    }
+    for (int i = 0; i < library->count; i++)
+        if (!find(handle, &library->function[i])) {
+            log_error("%s: %s has no %s: another version than at the build%s%s", library->name, library->file,
+                      library->function[i].name, install, package ? package : "");
+            dlclose(handle);
+            return STATUS_IO;
+        }
+    for (int i = 0; i < library->count; i++) *library->function[i].address = find(handle, &library->function[i]);
+    return STATUS_OK;
+}
+
+Status library_load(Library *library)
+{
+    if (__atomic_load_n(&library->loaded, __ATOMIC_ACQUIRE)) return STATUS_OK;
+    const unsigned modes  = _mm_getcsr();
+    Status         status = STATUS_OK;
+    pthread_mutex_lock(&lock);
+    if (!library->loaded) {
+        status = load(library);
+        if (status == STATUS_OK) __atomic_store_n(&library->loaded, 1, __ATOMIC_RELEASE);
+    }
+    pthread_mutex_unlock(&lock);
+    _mm_setcsr(modes);
+    return status;
+}
+
+bool library_module(char *out, size_t out_size, const char *name)
+{
+    static const char *const beside[] = {"", "/../lib/pitviper"};
+    char          program[4096];
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[length > 0 ? length : 0] = 0;
+    char *slash = strrchr(program, '/');
+    if (slash) *slash = 0;
+    const char *const folders[] = {program, program, "", ""};
+    const char *const rests[]   = {beside[0], beside[1], PITVIPER_MODULES_BUILT, PITVIPER_MODULES_INSTALLED};
+    bool              fits      = false;
+    for (int i = 0; i < 4; i++) {
+        fits = snprintf(out, out_size, "%s%s/%s", folders[i], rests[i], name) < (int)out_size;
+        if (fits && access(out, R_OK) == 0) break;
+    }
+    return fits;
+}
