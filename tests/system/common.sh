@@ -99,6 +99,7 @@ complained() { grep -qiE -e "$1" "$tmp/stderr"; }
 is() { awk -v a="${1:-nan}" -v b="${3:-nan}" "BEGIN { exit !(a + 0 == a && b + 0 == b && a + 0 $2 b + 0) }"; }
 same_hashes() { [ -n "$(hashes "$1")" ] && [ "$(hashes "$1")" = "$(hashes "$2")" ]; }
 not() { ! "$@"; }
+xml() { python3 -c 'import sys, xml.dom.minidom as d; d.parse(sys.argv[1])' "$1"; }
 quiet() { "$@" >/dev/null 2>&1; }
 # same_planes A B: of the bands that both have, to the bit. What differs is printed.
 same_planes() {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # `pitviper heat`: a tank's day: crossover twice, its engine; a truck's sunlit sides; and what is refused.
 . "$(dirname "$0")/common.sh"
+judges python3
 
 # cell FILE HOUR COLUMN
 cell() {
@@ -35,7 +36,7 @@ check "all within 260 .. 340 K" awk -F, \
     'NR > 1 { for (i = 2; i <= NF; i++) if (i != 4 && $i != "" && !($i > 260 && $i < 340)) exit 1 }' "$still"
 days=$(less "$(cell "$still" 24 dt_k)" "$(cell "$still" 0 dt_k)")
 check "a day later much the same: $days K" is "${days#-}" '<' 0.5
-if command -v xmllint >/dev/null; then check "the plot is XML" xmllint --noout "$tmp/still/nodes.svg"; fi
+check "the plot is XML" xml "$tmp/still/nodes.svg"
 
 run heat tank -o "$tmp/still"
 check "existing files: exit code" [ $code = 1 ]

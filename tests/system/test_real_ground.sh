@@ -2,8 +2,8 @@
 # An exercise over real elevation, cover and photograph: it says what it took, vehicles stand on the ground, and the
 # bits do not depend on threads.
 . "$(dirname "$0")/common.sh"
-data=${PITVIPER_DATA:-../shared/data}/terrain/autzen
-[ -r "$data/autzen_dtm_1m.tif" ] || { echo "skipped: no reference data at $data (set PITVIPER_DATA)"; exit 77; }
+needs_data terrain/autzen/autzen_dtm_1m.tif
+data=$data/terrain/autzen
 data=$(realpath "$data") # the settings lie elsewhere, and names in them are relative to them
 
 exercise demo "$tmp/demo.pcap" place.lat_deg=44.0565 place.lon_deg=-123.0690 place.height_m=106

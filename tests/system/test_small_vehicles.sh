@@ -4,7 +4,7 @@
 # than a sample: 3 % rms (seen: 1.9), 10 % at worst (9.3, one of 68 sightings).
 . "$(dirname "$0")/common.sh"
 bare=("${full[@]}") # radiances as they are by default
-command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
+judges python3
 
 exercise demo "$tmp/demo.pcap"
 for samples in 48 200; do

@@ -2,8 +2,8 @@
 # A node on a terrain store: what it says, the same bits for any threads and from a frame file; stores that are damaged,
 # moved, stale or contradicted by other settings; terrain info and its pictures.
 . "$(dirname "$0")/common.sh"
-data=${PITVIPER_DATA:-../shared/data}/terrain/autzen
-[ -r "$data/autzen_dtm_1m.tif" ] || { echo "skipped: no reference data at $data (set PITVIPER_DATA)"; exit 77; }
+needs_data terrain/autzen/autzen_dtm_1m.tif
+data=$data/terrain/autzen
 
 # sources of its own, to be changed and removed
 for name in dtm cover rgb; do cp "$data/autzen_${name}_1m.tif" "$tmp/$name.tif"; done
