@@ -18,16 +18,18 @@ same_frame() { [ -n "$(sha_of "$1" "$3")" ] && [ "$(sha_of "$1" "$3")" = "$(sha_
 
 replay "$tmp/gone.pcap" "$tmp/whole" "${look[@]}"
 check "19 frames" [ "$(frames "$tmp/whole")" = 19 ]
-replay "$tmp/gone.pcap" "$tmp/late" "${look[@]}" --from +1150 --threads 2
-check "--from, two threads: the last frame is that of the whole" same_frame "$tmp/whole" "$tmp/late" 18
+replay "$tmp/gone.pcap" "$tmp/late" "${look[@]}" --from +1750 --bands lwir,mwir,optical
+check "--from: the last two frames" [ "$(frames "$tmp/late")" = 2 ]
+for name in 000017 000018; do # of the whole run, the two alone
+    for plane in lwir truth; do mkdir -p "$tmp/end/frames/$plane" && cp "$tmp/whole/frames/$plane/$name.exr" "$tmp/end/frames/$plane/"; done
+done
+check "--from, and other bands beside it: those of the whole" same_planes "$tmp/end" "$tmp/late"
 replay "$tmp/gone.pcap" "$tmp/one" "${look[@]}" --only 1,18 --threads 2 --no-skip
 check "two threads, two frames, --no-skip: the same bits" same_frame "$tmp/whole" "$tmp/one" 1
 check "and of the other" same_frame "$tmp/whole" "$tmp/one" 18
-replay "$tmp/gone.pcap" "$tmp/bands" "${look[@]}" --only 1,18 --bands lwir,mwir,optical
-check "other bands change nothing in this one" same_planes "$tmp/bands" "$tmp/one"
 
 # A tank stood there for an hour in the morning: without its marks the ground would be another. A world whose weather is
-# constant, or cloudy, or measured, is another too.
+# constant, or measured, is another too; test_heat_deep.sh has the other settings.
 other() { # WHAT SETTING...
     local what=$1; shift
     replay "$tmp/gone.pcap" "$tmp/other" "${look[@]}" --only 1 "$@"
@@ -35,9 +37,6 @@ other() { # WHAT SETTING...
     check "$what: changes the frame" not same_frame "$tmp/one" "$tmp/other" 1
 }
 other "constant weather" --set weather.day=constant
-other "clouds" --set weather.cloud=0.8
-other "dry air" --set weather.humidity_pct=10
-other "another grid of time" --set heat.step_s=1800
 {
     echo 'time_utc,air_temp_c,direct_w_m2,diffuse_w_m2,wind_mps'
     for hour in {0..23}; do printf '2026-06-21T%02d:00:00Z,%d,0,%d,4\n' "$hour" $((8 + hour / 4)) $((hour > 4 && hour < 20 ? 150 : 0)); done
@@ -53,13 +52,14 @@ replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set heat.facets=8
 check "even facets: an error" complained 'odd'
 
 # Hills in low sun, from far.
-hills=(--only 0 --set exercise.utc=2026-06-21T18:45:00Z --set terrain.relief_m=80 --set observer.range_m=2500 --set observer.height_m=400)
+hills=(--only 0 --set exercise.utc=2026-06-21T18:45:00Z --set terrain.relief_m=80 --set observer.range_m=2500 --set observer.height_m=400
+    --set heat.step_s=1800)
 replay "$tmp/gone.pcap" "$tmp/shaded" "${look[@]}" "${hills[@]}"
 replay "$tmp/gone.pcap" "$tmp/unshaded" "${look[@]}" "${hills[@]}" --set heat.shadow_m=0
 check "shadows of hills change the frame" not same_frame "$tmp/shaded" "$tmp/unshaded" 0
 
 broken() { # WHAT SETTING FILE WHERE
-    replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set "$2=$3"
+    replay "$tmp/gone.pcap" "$tmp/bad" "${look[@]}" --only 1 --set heat.step_s=3600 --set heat.vehicle_step_s=600 --set "$2=$3"
     check "$1: an error" [ "$code" != 0 ]
     check "that says where" complained "$4"
 }
