@@ -3,6 +3,7 @@
 # occluder is named just where the visible fraction is below 1, a box of visible pixels is there just where there are
 # some. labels: small
 . "$(dirname "$0")/common.sh"
+bare=("${quick[@]}")
 
 # seen OUT: a line a target: pixels, visible fraction, box or -, occluder or -
 seen() {
@@ -12,7 +13,7 @@ seen() {
         /"visible_fraction"/!s/,/,none,/; s/"(pixels|visible_fraction)"://g; s/,/ /g'
 }
 exercise demo "$tmp/demo.pcap"
-replay "$tmp/demo.pcap" "$tmp/out" --bands lwir --no-png --rate 2
+replay "$tmp/demo.pcap" "$tmp/out" --bands lwir --no-files --rate 2 --threads 1
 seen "$tmp/out" >"$tmp/seen"
 check "targets are there" is "$(wc -l <"$tmp/seen")" '>' 40
 check "all of four words" [ -z "$(awk 'NF != 4' "$tmp/seen")" ]
