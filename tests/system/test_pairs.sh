@@ -7,7 +7,7 @@ judges oiiotool python3.numpy python3.PIL
 bare=("${quick[@]}" --set terrain.detail=on)
 
 exercise demo "$tmp/demo.pcap"
-few=(--from 1366 --to 1368 --bands optical,lwir,mwir --threads 1)
+few=(--from 1366 --to 1367 --bands optical,lwir,mwir --threads 1)
 night=(--set exercise.utc=2026-06-22T08:00:00Z --set sensor.antialias=off --set sensor.sky_visibility=off)
 manual=(--set detector.level=manual)
 pngs() { (cd "$1" && find . -name '*.png' | sort | xargs sha256sum); }
@@ -23,9 +23,9 @@ replay "$tmp/demo.pcap" "$tmp/quiet" "${few[@]}" "${night[@]}" "${manual[@]}" --
 for band in optical lwir mwir; do
     check "clean: $band of a replay without noise" same_pngs "$tmp/p/pairs/clean/frames/$band" "$tmp/quiet/frames/$band"
 done
-check "a line a frame" [ "$(wc -l <"$tmp/p/pairs.jsonl")" = 3 ]
-check "the seed in each" [ "$(grep -c '"seed":1,' "$tmp/p/pairs.jsonl")" = 3 ]
-check "who was taken away" [ "$(grep -c '"removed":\["[0-9:]*"\]' "$tmp/p/pairs.jsonl")" = 3 ]
+check "a line a frame" [ "$(wc -l <"$tmp/p/pairs.jsonl")" = 2 ]
+check "the seed in each" [ "$(grep -c '"seed":1,' "$tmp/p/pairs.jsonl")" = 2 ]
+check "who was taken away" [ "$(grep -c '"removed":\["[0-9:]*"\]' "$tmp/p/pairs.jsonl")" = 2 ]
 grep -oE '"(pairs|frames|raw)/[^"]*"' "$tmp/p/pairs.jsonl" | tr -d '"' | sort -u >"$tmp/named"
 check "every file named is there" bash -c "cd '$tmp/p' && xargs ls <'$tmp/named' >/dev/null"
 check "every picture there is named" [ "$(cd "$tmp/p" && find pairs frames \( -name '*.exr' -o -name '*.png' \) ! -path '*/truth/*.png' | wc -l)" = "$(wc -l <"$tmp/named")" ]
@@ -43,7 +43,7 @@ check "sensors: and their displays" same_pngs "$tmp/auto/pairs/clean/frames/lwir
 differ() { ! same_pngs "$@"; }
 check "sensors: the background has counts of its own" differ "$tmp/auto/pairs/background/raw" "$tmp/auto/raw"
 
-replay "$tmp/demo.pcap" "$tmp/all" "${few[@]}" "${night[@]}" "${manual[@]}" --pairs all
+replay "$tmp/demo.pcap" "$tmp/all" "${few[@]}" "${night[@]}" "${manual[@]}" --pairs all --to 1366
 check "all: several are taken away" grep -q '"removed":\["[0-9:]*","[0-9:]*"' "$tmp/all/pairs.jsonl"
 
 cat >"$tmp/compare.py" <<'PY'
