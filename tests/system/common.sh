@@ -5,6 +5,8 @@
 set -u
 # shellcheck disable=SC2034
 export LC_ALL=C
+# python3 has the modules of tests/judges.txt, once `etc/setup --tests` has run
+PATH=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/build/judges/bin:$PATH
 build=${1:?usage: bash $0 BUILD_FOLDER}
 pitviper=$build/pitviper
 [ -x "$pitviper" ] || { echo "skipped: no $pitviper"; exit 77; }
@@ -23,6 +25,44 @@ finish() {
     echo "$checks checks, $failures failed"
     [ "$failures" -eq 0 ] && [ "$checks" -gt 0 ]
     exit
+}
+
+# What a script needs is asked for before its first check. Without it the whole script is skipped (exit 77), never a part of it:
+# a part that needs more than the rest is a script of its own.
+skip() {
+    echo "skipped: $*"
+    [ $failures -eq 0 ] || finish
+    exit 77
+}
+# needs WHAT CONDITION...: of this machine or this build, which no package changes
+needs() {
+    local what=$1; shift
+    "$@" >/dev/null 2>&1 || skip "no $what"
+}
+# needs_data FILE: of $PITVIPER_DATA, which a public machine has not; the folder is $data
+needs_data() {
+    data=${PITVIPER_DATA:-../shared/data}
+    needs "reference data $data/$1 (set PITVIPER_DATA)" test -r "$data/$1"
+}
+# judges NAME...: independent programs, and Python modules as python3.NAME; `etc/setup --tests` installs all. With CI=true it is
+# a failure that one is missing
+judges() {
+    local name missing=()
+    for name; do
+        case $name in
+            python3.*) python3 -c "import importlib.util as u, sys; sys.exit(not u.find_spec('${name#*.}'))" 2>/dev/null ;;
+            gst.*) gst-inspect-1.0 "${name#*.}" >/dev/null 2>&1 ;;
+            *) command -v "$name" >/dev/null ;;
+        esac || missing+=("$name")
+    done
+    [ ${#missing[@]} -gt 0 ] || return 0
+    [ "${CI:-}" != true ] || { fail "no ${missing[*]}: etc/setup --tests installs it"; finish; }
+    skip "no ${missing[*]} (etc/setup --tests)"
+}
+# has_video: this program was built with FFmpeg's libraries
+has_video() {
+    echo 'publish: {stream: "udp://127.0.0.1:5004"}' >"$tmp/video.yaml"
+    "$pitviper" check "$tmp/video.yaml"
 }
 
 # Most tests are of other things than plants and heat, which cost seconds a run: bare ground, warmed up in few steps,
@@ -59,6 +99,7 @@ complained() { grep -qiE -e "$1" "$tmp/stderr"; }
 is() { awk -v a="${1:-nan}" -v b="${3:-nan}" "BEGIN { exit !(a + 0 == a && b + 0 == b && a + 0 $2 b + 0) }"; }
 same_hashes() { [ -n "$(hashes "$1")" ] && [ "$(hashes "$1")" = "$(hashes "$2")" ]; }
 not() { ! "$@"; }
+xml() { python3 -c 'import sys, xml.dom.minidom as d; d.parse(sys.argv[1])' "$1"; }
 quiet() { "$@" >/dev/null 2>&1; }
 # same_planes A B: of the bands that both have, to the bit. What differs is printed.
 same_planes() {
@@ -75,3 +116,9 @@ regress_case() {
     [ -s "$tmp/$1.yaml" ] || fail "$folder/case.yaml: no 'config: |'"
     [ -f "$tmp/$1.pcap" ] || exercise "$folder/scenario.yaml" "$tmp/$1.pcap"
 }
+
+# What a replay sets up in half the time of ${bare[@]}, for tests that look at no radiance, ground or shape closely: coarse
+# posts, coarse shapes, no shadows. bare=("${quick[@]}") gives it to every run.
+# shellcheck disable=SC2034
+quick=("${bare[@]}" --set terrain.spacing_m=16 --set terrain.detail=off --set models.sag_m=0.05 --set heat.step_s=3600
+    --set heat.shadow_m=0)

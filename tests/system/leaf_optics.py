@@ -1,14 +1,10 @@
-"""Leaves of etc/plant_optics.csv against PROSPECT-D as PyPI's prosail computes it, by the parameters that the table states."""
+"""leaf_optics.py plant_optics.csv: its leaves against PROSPECT-D as PyPI's prosail computes it, by the parameters that the table states."""
 import csv
 import re
 import sys
 
-try:
-    import numpy as np
-    import prosail
-except Exception as why:
-    print("skipped: no prosail here:", why)
-    sys.exit(77)
+import numpy as np
+import prosail
 
 CAROTENOIDS = {"alder": 10, "hedge": 10, "birch": 8, "reed": 8, "grass_tuft": 8, "dry_tuft": 6}  # others 9
 BROWN = {"pine": 0.1, "reed": 0.1, "bush": 0.05, "grass_tuft": 0.05}
@@ -20,7 +16,7 @@ def rows(path):
 
 edges = {r["name"]: (1000 * float(r["low_um"]), 1000 * float(r["high_um"])) for r in rows("etc/channels.csv")}
 worst, count = 0.0, 0
-for row in rows("etc/plant_optics.csv"):
+for row in rows(sys.argv[1]):
     if not row["name"].startswith("leaf_"): continue
     kind, says = row["name"][5:], dict(re.findall(r"(N|Cab|Cw|Cm|Cbrown) (\d*\.?\d+)", row["source"]))
     nm, rho, tau = prosail.run_prospect(float(says["N"]), float(says["Cab"]), CAROTENOIDS.get(kind, 9),

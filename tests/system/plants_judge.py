@@ -3,19 +3,16 @@
     plants_judge.py FOLDER [PATHS]      FOLDER: of tests/tools/plants_scene.c; PATHS: a ray, for all orders (0: none)
 
 First order (max_depth 2, sun alone): the means of blocks of 8 x 8 pixels. All orders, under sun and sky: means over the
-leaves and over the ground. A line a band and a quantity, to be read by test_plants_judge.sh:
+leaves and over the ground. A line a band and a quantity, to be read by plants.sh:
     direct BLOCKS WORST_PERCENT: of blocks with a tenth of the mean light or more
     all WHAT BAND OURS THEIRS PERCENT ...
 """
 import sys
 
-try:
-    import mitsuba as mi
-    import numpy as np
-    mi.set_variant("scalar_rgb")
-except Exception as why:  # whatever keeps it from running
-    print("skipped: no mitsuba here:", why)
-    sys.exit(77)
+import mitsuba as mi
+import numpy as np
+
+mi.set_variant("scalar_rgb")
 
 BANDS = ("red", "green", "near infrared")
 LEAF = 1

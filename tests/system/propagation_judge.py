@@ -10,15 +10,12 @@ Of gases it asks for P.676-12, whose lines and formulae of Annex 1 are those of 
 import csv
 import sys
 
-try:
-    import numpy as np
-    from itur.models.itu676 import change_version, gamma0_exact, gammaw_exact, gaseous_attenuation_slant_path
-    from itur.models.itu838 import rain_specific_attenuation
-    from itur.models.itu840 import specific_attenuation_coefficients
-    change_version(12)
-except Exception as why:  # whatever keeps it from running
-    print("skipped: no ITU-Rpy here (pip install itur):", why)
-    sys.exit(77)
+import numpy as np
+from itur.models.itu676 import change_version, gamma0_exact, gammaw_exact, gaseous_attenuation_slant_path
+from itur.models.itu838 import rain_specific_attenuation
+from itur.models.itu840 import specific_attenuation_coefficients
+
+change_version(12)
 
 FREQUENCIES = [1, 5.5, 9.7, 16.2, 22.2, 24.1, 35, 52.7, 59.9, 62.3, 77, 94, 118.6, 140, 183, 199, 220, 325, 349]
 UP, EARTH_M = [90, 10], 6371e3

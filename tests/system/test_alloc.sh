@@ -5,7 +5,7 @@
 
 build=$(realpath "$build")
 pitviper=$build/pitviper preload=$build/tests/libfail_alloc.so
-[ -f "$preload" ] || { echo "skipped: no $preload (sanitizers have an allocator of their own)"; exit 77; }
+needs "$preload (sanitizers have an allocator of their own)" test -f "$preload"
 places_most=${PITVIPER_ALLOC_PLACES:-48} # for all commands together
 export pitviper preload tmp
 

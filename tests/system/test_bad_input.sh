@@ -2,6 +2,7 @@
 # The world may be wrong: a clear message with a next step, and whatever can still be shown is shown. The exit
 # code is an error only when there is nothing to show. labels: small
 . "$(dirname "$0")/common.sh"
+judges python3
 
 next_step='next|use|give|check|see|choose|--[a-z]|inspect|wanted|are read'
 # nothing_shown NAME WHAT [NEXT]: the last run failed, named WHAT, and said what to do
@@ -76,14 +77,12 @@ check "and nothing is dropped there" [ "$(dropped "$tmp/good" | grep -cE ':[1-9]
 check "JSON holds no NaN and no raw control character" \
     bash -c '! grep -lE "[: \[]-?(nan|inf)" "$@" && ! grep -lP "[\x01-\x09\x0b-\x1f]" "$@"' - \
     "$tmp"/{bad,good,nv,nm}/{run.json,truth.jsonl}
-if command -v python3 >/dev/null; then
-    check "JSON is JSON" python3 -c '
+check "JSON is JSON" python3 -c '
 import json, sys
 for name in sys.argv[1:]:
-    text = open(name).read()
-    for part in text.splitlines() if name.endswith("l") else [text]:
-        json.loads(part, parse_constant=lambda c: sys.exit(c))' "$tmp"/{bad,good,nv,nm}/{run.json,truth.jsonl}
-fi
+text = open(name).read()
+for part in text.splitlines() if name.endswith("l") else [text]:
+    json.loads(part, parse_constant=lambda c: sys.exit(c))' "$tmp"/{bad,good,nv,nm}/{run.json,truth.jsonl}
 
 # ---- nowhere to put it
 : >"$tmp/file"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # pitviper bench, quickly: every row is there and whole, and every error that has a limit keeps it. No time is judged.
 . "$(dirname "$0")/common.sh"
+judges python3
 
 unset PITVIPER_DATA
 run bench all --quick --threads 2 --csv "$tmp/all.csv" --report "$tmp/all.html"
@@ -89,8 +90,7 @@ done
 has precision "shade of past hours: ground that was never shaded"
 
 # ---- the page, and two runs side by side
-if command -v python3 >/dev/null; then
-    check "the page is HTML: every element that is opened is closed" python3 - "$tmp/all.html" <<'END'
+check "the page is HTML: every element that is opened is closed" python3 - "$tmp/all.html" <<'END'
 import html.parser, sys
 class Page(html.parser.HTMLParser):
     open, rows = [], 0
@@ -104,7 +104,6 @@ page = Page()
 page.feed(open(sys.argv[1]).read())
 assert not page.open and page.rows > 90, (page.open, page.rows)
 END
-fi
 run bench compare "$tmp/all.csv" "$tmp/all.csv" --slower 1.01 --report "$tmp/compare.html"
 check "a run is like itself" [ $code = 0 ]
 rows=$(grep -c within\ noise "$tmp/stdout")

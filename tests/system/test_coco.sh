@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # replay --coco: masks are the pixels of the truth picture, boxes are the masks' own, and what is hidden or has no pixel is
-# left out; read by others' readers: pycocotools where it is there, and a decoder of run lengths written here. labels: small
+# left out; read by pycocotools, and by a decoder of run lengths written here. labels: small
 . "$(dirname "$0")/common.sh"
+judges oiiotool python3.numpy python3.PIL python3.pycocotools
 
 # a column of trucks seen from its last: the next one fills the picture's foot, the second is 8 % visible, the third's share
 # is no whole pixel, three tanks are hidden, a far helicopter is a quarter of a pixel
@@ -28,17 +29,15 @@ replay "$tmp/demo.pcap" "$tmp/two" --host 1:3001:41 --host observer "${missile[@
 check "pairs, two hosts, one thread: the same images and annotations" \
     cmp -s <(grep -v '^"info"' "$tmp/exr/coco.json") <(grep -v '^"info"' "$tmp/two/1-3001-41/coco.json")
 
-if python3 -c 'import numpy, PIL' 2>/dev/null && command -v oiiotool >/dev/null; then
-    cat >"$tmp/check.py" <<'PY'
+cat >"$tmp/check.py" <<'PY'
 import contextlib, io, json, os, subprocess, sys
 import numpy as np
 from PIL import Image
-try:
-    from pycocotools.coco import COCO
-    from pycocotools.cocoeval import COCOeval
-except ImportError: COCO = None
-def check(out, min_pixels, min_visible, *wanted):
-    coco = json.load(open(f"{out}/coco.json"))
+from pycocotools.coco import COCO
+from pycocotools.cocoeval import COCOeval
+planes = {}
+def check(out, min_pixels, min_visible, *wanted, coco=None):
+    coco = coco or json.load(open(f"{out}/coco.json"))
     truth = {t["frame"]: t for t in map(json.loads, open(f"{out}/truth.jsonl"))}
     images = {i["id"]: i for i in coco["images"]}
     assert len(images) == len(coco["images"]) == sum(len(t["sensors"][0]["bands"]) for t in truth.values()), "images"
@@ -47,22 +46,21 @@ def check(out, min_pixels, min_visible, *wanted):
     names = {c["id"]: c["name"] for c in coco["categories"]}
     assert len(names) == len(coco["categories"]) and min(names) == 1 and names[1] == "tank" and names[2] == "apc"
     for i in images.values(): assert os.path.exists(f"{out}/{i['file_name']}"), i["file_name"]
-    planes = {}
     def plane(frame):
-        if frame not in planes:
+        if (out, frame) not in planes:
             path = f"{out}/frames/truth/{frame:06d}.exr"
             subprocess.run(["oiiotool", path, "--ch", "entity", "-d", "uint32", "-o", f"{out}/x.tif"], check=True)
             info = subprocess.run(["oiiotool", "--info", "-v", path], check=True, capture_output=True, text=True).stdout
             ids, materials = ([l for l in info.splitlines() if key in l][0].split('"')[1].split(",") for key in ("entity_ids", "material_names"))
-            planes[frame] = np.array(Image.open(f"{out}/x.tif")), ids
+            planes[out, frame] = np.array(Image.open(f"{out}/x.tif")), ids
             # value k of every truth plane is the k-th name, and 0 is none
             subprocess.run(["oiiotool", path, "--ch", "material", "-d", "uint32", "-o", f"{out}/x.tif"], check=True)
-            material, entity = np.array(Image.open(f"{out}/x.tif")), planes[frame][0]
+            material, entity = np.array(Image.open(f"{out}/x.tif")), planes[out, frame][0]
             vehicle = [k + 1 for k, name in enumerate(ids) if not name.endswith(":31")]
             of_vehicles = {materials[v - 1] for v in np.unique(material[np.isin(entity, vehicle)])}
             assert "none" not in materials and of_vehicles <= {"paint_olive", "paint_olive_flat", "canvas", "rubber_black", "glass_window",
                 "steel_worn", "metal_dark", "metal_steel_oxidized"} and "paint_olive" in of_vehicles, of_vehicles
-        return planes[frame]
+        return planes[out, frame]
     def runs(text):  # the format's description, read again: five bits a letter, the second run before added from the fourth on
         counts, value, shift = [], 0, 0
         for letter in text:
@@ -108,7 +106,6 @@ def check(out, min_pixels, min_visible, *wanted):
         met["without_mask"] += sum(k["pixels"] > 0 and k["entity"] not in here for k in t["targets"])
     print(len(coco["annotations"]), "annotations", met)
     for what in wanted: assert met[what] > 0, f"none is {what}: the scene tests nothing"
-    if not COCO: return
     with contextlib.redirect_stdout(io.StringIO()):
         c = COCO(f"{out}/coco.json")
         everything = c.loadAnns(c.getAnnIds())
@@ -128,15 +125,22 @@ def check(out, min_pixels, min_visible, *wanted):
         e = COCOeval(c, c.loadRes(results), "bbox")
         e.evaluate(), e.accumulate(), e.summarize()
         assert len(asked) < 2 or e.stats[0] < 1
-for each in " ".join(sys.argv[1:]).split(","): check(*each.split())
-print("and pycocotools agrees" if COCO else "skipped in part: no pycocotools")
+cases = [each.split() for each in " ".join(sys.argv[1:]).split(",")]
+for case in cases: check(*case)
+# their twins: one field of one annotation is wrong
+twins = {"area": lambda a: a["area"] + 1, "bbox": lambda a: [a["bbox"][0] + 1, *a["bbox"][1:]], "iscrowd": lambda a: 1 - a["iscrowd"],
+         "category_id": lambda a: 1 + a["category_id"] % 2, "plane_value": lambda a: a["plane_value"] + 1, "id": lambda a: 2,
+         "segmentation": lambda a: {**a["segmentation"], "counts": chr(ord(a["segmentation"]["counts"][0]) ^ 1) + a["segmentation"]["counts"][1:]}}
+for field, wrong in twins.items():
+    coco = json.load(open(f"{cases[0][0]}/coco.json"))
+    coco["annotations"][0][field] = wrong(coco["annotations"][0])
+    try: check(*cases[0], coco=coco)
+    except AssertionError: continue
+    sys.exit(f"a wrong {field} is not noticed")
 PY
-    # the column; very near; two hosts
-    check "masks are the truth's" python3 "$tmp/check.py" "$tmp/c" 9 0.2 cut ignored hidden without_mask part_hidden, \
-        "$tmp/near" 1 0 cut tall, "$tmp/two/1-3001-41" 1 0, "$tmp/two/observer" 1 0
-else
-    echo "skipped in part: no python3 with numpy and PIL, or no oiiotool"
-fi
+# the column; very near; two hosts
+check "masks are the truth's" python3 "$tmp/check.py" "$tmp/c" 9 0.2 cut ignored hidden without_mask part_hidden, \
+    "$tmp/near" 1 0 cut tall, "$tmp/two/1-3001-41" 1 0, "$tmp/two/observer" 1 0
 
 # whole or not at all
 few=(--bands lwir --from 1366 --to 1366)

@@ -20,18 +20,6 @@ check "another seed, other octets" differ "$tmp/demo.pcap" "$tmp/other.pcap"
 play etc/scenarios/demo.yaml -o "$tmp/file.pcapng"
 check "by its file, pcapng" [ "$code" = 0 ]
 
-if command -v tshark >/dev/null; then
-    # one PDU a datagram: tshark 4.0 stops behind the first of a bundle
-    field() { tshark -r "$tmp/v$version.pcap" -T fields -e "dis.$1" 2>/dev/null; }
-    for version in 5 6 7; do
-        play demo -o "$tmp/v$version.pcap" --set dis.version=$version --set dis.exercise=9
-        pdus=$(grep -oE '[0-9]+ PDUs' "$tmp/stdout" | cut -d' ' -f1)
-        check "version $version: tshark sees it, and exercise 9" [ "$(field proto_ver | sort -u) $(field exer_id | sort -u)" = "$version 9" ]
-        check "version $version: tshark counts $pdus PDUs" [ "$(field pdu_type | grep -c .)" = "$pdus" ]
-        check "version $version: nothing malformed to tshark" [ -z "$(tshark -r "$tmp/v$version.pcap" -Y _ws.malformed 2>/dev/null)" ]
-    done
-fi
-
 mkdir "$tmp/in" "$tmp/in/demo"
 (cd "$tmp/in" && "$(cd "$OLDPWD" && realpath "$pitviper")" exercise demo -o demo.pcap >/dev/null 2>&1)
 check "a folder of its name does not hide a scenario" cmp -s "$tmp/demo.pcap" "$tmp/in/demo.pcap"

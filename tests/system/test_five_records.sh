@@ -3,7 +3,8 @@
 # memory, each read by a reader of its own, have the same box once each format's index base is taken off; and a box that
 # is off by one in any of them is noticed. What sensor/publish/target_record.h says of COCO's box is shown. labels: small
 . "$(dirname "$0")/common.sh"
-command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
+judges ffmpeg python3.numpy python3.pycocotools python3.opendis python3.stanag4609 python3.tstrans
+needs "video: built without FFmpeg's libraries" has_video
 
 # seen from the last truck of a column: the next one, the second behind it, of the third a part of pixels; hidden tanks; a
 # far helicopter, a quarter of a pixel
@@ -22,23 +23,15 @@ read -r -t 10 listening <&"${receiver[0]}"
 check "a receiver of Data PDUs listens" [ "${listening:-}" = listening ]
 options=(--size 96x64 --rate 1 --threads 2 --bands lwir --host 1:3001:14 --from 1353 --to 1355 --set sensor.hfov_deg=40
     --speed 2 --coco --address $address --set publish.dis=truth)
-# what this program was built without is refused, and its format left out
 ring=five_$$ video=$tmp/video
-if "$pitviper" replay --help | grep -q -- --memory && [ -e etc/examples/read_memory.py ] && python3 -c 'import numpy' 2>/dev/null; then
-    python3 tests/system/five_records.py watch "$ring" "$tmp/memory.jsonl" &
-    watcher=$!
-    options+=(--memory "$ring" --set publish.memory_record=truth)
-fi
-run replay "$tmp/column.pcap" --out "$tmp/out" "${options[@]}" --video "$video" --set publish.vmti=truth
-if [ $code != 0 ] && complained 'video.*(built without|FFmpeg)'; then
-    echo "skipped in part: built without FFmpeg's libraries, so there is no ST 0903"
-    run replay "$tmp/column.pcap" --out "$tmp/out" --overwrite "${options[@]}"
-fi
+python3 tests/system/five_records.py watch "$ring" "$tmp/memory.jsonl" &
+watcher=$!
+run replay "$tmp/column.pcap" --out "$tmp/out" "${options[@]}" --memory "$ring" --set publish.memory_record=truth \
+    --video "$video" --set publish.vmti=truth
 check "a replay with all formats" [ $code = 0 ] || cat "$tmp/stderr"
 echo "end" >&"${receiver[1]}"
 wait "$receiver_PID" 2>/dev/null
-[ -z "${watcher:-}" ] || wait "$watcher"
-[ ! -s "$video/lwir.ts" ] || quiet ffmpeg -v error -y -i "$video/lwir.ts" -map 0:d:0 -c copy -f data "$tmp/lwir.klv" ||
-    echo "skipped in part: no ffmpeg takes the metadata out of lwir.ts"
+wait "$watcher"
+check "ffmpeg takes the metadata out of lwir.ts" quiet ffmpeg -v error -y -i "$video/lwir.ts" -map 0:d:0 -c copy -f data "$tmp/lwir.klv"
 python3 tests/system/five_records.py compare "$tmp" || fail "five formats, one box"
 finish

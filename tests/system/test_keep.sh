@@ -2,12 +2,17 @@
 # What is there is kept: nothing of an earlier run or recording is replaced unasked, a signal leaves whole records that say
 # so; and what part of a recording is shown, and which planes of truth are kept. labels: small
 . "$(dirname "$0")/common.sh"
+bare=("${quick[@]}")
 
 exercise demo "$tmp/demo.pcap"
 small=(--size 16x16 --bands lwir --rate 1 --threads 1)
 shown() { local out=$1; shift; run replay "$tmp/demo.pcap" --out "$out" "${small[@]}" "$@"; }
 status_of() { run_json "$1" | grep -oE '"status":"[a-z]+"' | cut -d'"' -f4; }
-numbers() { run_json "$1" | grep -oE '"frame_number":\[[^]]*\]' | grep -oE '[0-9,]+' | head -n 1; }
+times() { json_numbers "$1/truth.jsonl" time_s | tr '\n' ' '; }
+"$pitviper" inspect "$tmp/demo.pcap" >"$tmp/inspected"
+first=$(sed -nE 's/ *exercise time ([0-9.]+) .*/\1/p' "$tmp/inspected")
+last=$(sed -nE 's/ *exercise time [0-9.]+ \.\. ([0-9.]+) .*/\1/p' "$tmp/inspected")
+absolute() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.6f", a + b }'; }
 
 # ---- an earlier run
 shown "$tmp/a"
@@ -21,15 +26,21 @@ check "with the name of the option" complained 'truth.jsonl exists from an earli
 run run --out "$tmp/a" --for 1
 check "of a live node too" [ $code = 1 ]
 check "nothing is touched" [ "$before" = "$(cd "$tmp/a" && find . -type f | sort | xargs sha256sum)" ]
-shown "$tmp/a" --only 1 --overwrite
-check "--overwrite: one frame" [ "$code $(find "$tmp/a/frames/lwir" -name '0*.exr' | wc -l)" = "0 1" ]
+# ---- with --overwrite and a part of the recording, given from its ends
+shown "$tmp/a" --from +16 --to -12 --overwrite
+check "--from +16 --to -12" [ $code = 0 ]
+part=$(wc -l <"$tmp/a/truth.jsonl")
+check "--from +16 --to -12: more than one frame, and fewer than all" [ "$part" -ge 2 -a "$part" -lt "$count" ]
+check "--overwrite: its frames alone" [ "$(find "$tmp/a/frames/lwir" -name '0*.exr' | wc -l)" = "$part" ]
 check "--overwrite: what is not of a run stays" [ -e "$tmp/a/mine.txt" -a -e "$tmp/a/frames/lwir/mine.png" ]
+mkdir -p "$tmp/b" && : >"$tmp/b/truth.jsonl"
+shown "$tmp/b" --from "$(absolute "$first" 16)" --to "$(absolute "$last" -12)"
+check "a run that never came to a frame is no loss" [ $code = 0 ]
+check "the same span in exercise time: the same frames" same_hashes "$tmp/a" "$tmp/b"
+check "where asked" is "$(times "$tmp/a" | cut -d' ' -f1)" '>=' "$(absolute "$first" 16)"
 rm "$tmp/a/truth.jsonl" "$tmp/a/run.json"
 shown "$tmp/a"
-check "pictures without their records: refused" complained 'frames/(lwir|truth)/000001.(png|exr) exists'
-mkdir -p "$tmp/b" && : >"$tmp/b/truth.jsonl"
-shown "$tmp/b" --only 1
-check "a run that never came to a frame is no loss" [ $code = 0 ]
+check "pictures without their records: refused" complained 'frames/(lwir|truth)/[0-9]{6}.(png|exr) exists'
 
 # ---- an earlier recording
 cp "$tmp/demo.pcap" "$tmp/log.pcap"
@@ -74,21 +85,7 @@ shown "$tmp/s" --set weather.visibility_m=7000 --only 1 --sweep "$tmp/two.yaml"
 check "another sweep: refused" [ $code = 1 ]
 check "another sweep: said" complained 'holds a run of another log.*--overwrite'
 
-# ---- what part of it
-times() { json_numbers "$1/truth.jsonl" time_s | tr '\n' ' '; }
-first=$("$pitviper" inspect "$tmp/demo.pcap" | sed -nE 's/ *exercise time ([0-9.]+) .*/\1/p')
-last=$("$pitviper" inspect "$tmp/demo.pcap" | sed -nE 's/ *exercise time [0-9.]+ \.\. ([0-9.]+) .*/\1/p')
-absolute() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.6f", a + b }'; }
-for span in "+16 -12"; do
-    from=${span% *} to=${span#* }
-    at() { case $1 in +*) absolute "$first" "$1" ;; -*) absolute "$last" "$1" ;; esac; }
-    shown "$tmp/relative" --no-files --overwrite --from "$from" --to "$to"
-    check "--from $from --to $to" [ $code = 0 ]
-    shown "$tmp/absolute" --no-files --overwrite --from "$(at "$from")" --to "$(at "$to")"
-    check "--from $from --to $to: the same frames" same_hashes "$tmp/relative" "$tmp/absolute"
-    check "--from $from --to $to: and more than one" [ "$(wc -l <"$tmp/relative/truth.jsonl")" -ge 2 ]
-    check "--from $from --to $to: where asked" is "$(times "$tmp/relative" | cut -d' ' -f1)" '>=' "$(at "$from")"
-done
+# ---- no part of it
 for span in "--from +99"; do
     # shellcheck disable=SC2086
     shown "$tmp/none" $span
@@ -101,7 +98,10 @@ check "--from noon" complained "exercise.from_s: 'noon' is not a number of secon
 # ---- planes of truth
 shown "$tmp/all" --only 1 --coco
 for planes in none entity,normal; do
-    shown "$tmp/p" --only 1 --coco --overwrite --planes $planes
+    pairs=(--pairs off)
+    [ $planes = none ] && pairs=(--pairs all)
+    shown "$tmp/p" --only 1 --coco --overwrite --planes $planes "${pairs[@]}"
+    check "--planes $planes: exit code" [ $code = 0 ]
     check "--planes $planes: the same run" same_hashes "$tmp/p" "$tmp/all"
     check "--planes $planes: the same truth" cmp -s "$tmp/p/truth.jsonl" "$tmp/all/truth.jsonl"
     check "--planes $planes: the same boxes" [ "$(grep -o '"annotations".*' "$tmp/p/coco.json")" = "$(grep -o '"annotations".*' "$tmp/all/coco.json")" ]
@@ -110,13 +110,13 @@ for planes in none entity,normal; do
     # the header of an EXR names its channels
     of=$([ $planes = none ] || head -c 2000 "$tmp/p/frames/truth/000001.exr" | grep -aoE '(range_m|entity|part|material|temp_k|n[xyz])[^a-z_]' | tr -dc 'a-z_\n' | sort -u | tr '\n' ' ')
     case $planes in
-        none) check "--planes none: no folder" [ ! -e "$tmp/p/frames/truth" ] ;;
+        none)
+            check "--planes none: no folder" [ ! -e "$tmp/p/frames/truth" ]
+            check "--planes none with pairs: they are there" [ -s "$tmp/p/pairs.jsonl" ]
+            check "--planes none with pairs: no truth is listed" not grep -q '"truth"' "$tmp/p/pairs.jsonl" ;;
         *) check "--planes $planes: they alone: $of" [ "$of" = "entity nx ny nz " ] ;;
     esac
 done
-shown "$tmp/p" --only 1 --overwrite --planes none --pairs all
-check "--planes none with pairs" [ $code = 0 ]
-check "--planes none with pairs: no truth is listed" not grep -q '"truth"' "$tmp/p/pairs.jsonl"
 shown "$tmp/p" --planes range,colour
 check "--planes range,colour" complained "publish.planes: 'range,colour' is not all, none"
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The manual page: every command, every option and every setting are on it, and roff has nothing to say against it.
 . "$(dirname "$0")/common.sh"
+judges groff
 
 etc/make_man "$pitviper" >"$tmp/pitviper.1" || fail "etc/make_man"
 for command in $("$pitviper" --help | sed -nE 's/^  ([a-z]+) +.*/\1/p'); do
@@ -14,12 +15,8 @@ for topic in $("$pitviper" help | sed -n '/^products /p'); do
 done
 check "a field of a product" grep -qF 'targets[].los_rate_dps' "$tmp/pitviper.1"
 check "a setting" grep -q 'hfov_deg: 6' "$tmp/pitviper.1"
-if command -v groff >/dev/null; then
-    groff -man -ww -z "$tmp/pitviper.1" >"$tmp/said" 2>&1
-    check "groff has no complaint" test ! -s "$tmp/said"
-    groff -man -Tutf8 "$tmp/pitviper.1" >"$tmp/page" 2>/dev/null
-    check "nothing is lost on the way" grep -q -- '--causal' "$tmp/page"
-else
-    echo "skipped in part: no groff"
-fi
+groff -man -ww -z "$tmp/pitviper.1" >"$tmp/said" 2>&1
+check "groff has no complaint" test ! -s "$tmp/said"
+groff -man -Tutf8 "$tmp/pitviper.1" >"$tmp/page" 2>/dev/null
+check "nothing is lost on the way" grep -q -- '--causal' "$tmp/page"
 finish

@@ -4,18 +4,14 @@
 # refused, a ring that a killed node left is replaced, no room is an error at the start; at the end nothing is left.
 . "$(dirname "$0")/common.sh"
 
-[ -w /dev/shm ] || { echo "skipped: no writable /dev/shm"; exit 77; }
+judges python3.numpy
+needs "writable /dev/shm" test -w /dev/shm
 name=pitviper-test-$$
 ring=/dev/shm/$name
 trap 'for p in $(jobs -p); do kill -KILL "$p" 2>/dev/null; done; rm -f "$ring"* "/dev/shm/.pitviper-$name"*; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
-python=$(command -v python3) && "$python" -c 'import numpy' 2>/dev/null || python=
-[ -n "$python" ] || echo "without the Python reader: no numpy"
-cc=$(command -v cc || command -v gcc || command -v clang) || { echo "skipped: no C compiler"; exit 77; }
-check "the example is built by cc alone" "$cc" -std=c99 -O1 -Wall -Wextra -Werror -I etc/include etc/examples/read_memory.c -o "$tmp/read_memory"
-if cxx=$(command -v c++); then
-    printf '#include <pitviper_memory.h>\nint main() { PitviperMemory m; return pitviper_memory_open(&m, "") == 0; }\n' >"$tmp/a.cpp"
-    check "the header is C++ too" "$cxx" -std=c++11 -Wall -Wextra -Werror -fsyntax-only -I etc/include "$tmp/a.cpp"
-fi
+check "the example is built by cc alone" cc -std=c99 -O1 -Wall -Wextra -Werror -I etc/include etc/examples/read_memory.c -o "$tmp/read_memory"
+printf '#include <pitviper_memory.h>\nint main() { PitviperMemory m; return pitviper_memory_open(&m, "") == 0; }\n' >"$tmp/a.cpp"
+check "the header is C++ too" c++ -std=c++11 -Wall -Wextra -Werror -fsyntax-only -I etc/include "$tmp/a.cpp"
 
 # reader NAME COMMAND...: in the background, what it says in $tmp/NAME.said, its process in ${reader[NAME]}
 declare -A reader
@@ -52,7 +48,7 @@ frames=$(wc -l <"$tmp/plain/truth.jsonl")
 port=$((20000 + $$ % 20000))
 mkdir "$tmp/raw_c" "$tmp/raw_python"
 reader c "$tmp/read_memory" "$name" --wait 30 --in-order --raw "$tmp/raw_c" --detect
-[ -z "$python" ] || reader python "$python" etc/examples/read_memory.py "$name" --wait 30 --in-order --raw "$tmp/raw_python"
+reader python python3 etc/examples/read_memory.py "$name" --wait 30 --in-order --raw "$tmp/raw_python"
 reader killed "$tmp/read_memory" "$name" --wait 30
 reader stopped "$tmp/read_memory" "$name" --wait 30
 node taken --speed 4 --set publish.memory_record=truth --set publish.detections_port="$port" "${few[@]}"
@@ -67,8 +63,8 @@ check "the node ends well" [ $? = 0 ]
 check "its frames are those of a run without readers" same_hashes "$tmp/plain" "$tmp/taken"
 truth() { sed 's/,"latency_ms":.*/}/' "$1/truth.jsonl"; } # of a paced replay: times of the wall clock, at the end
 check "its truth is, too" cmp -s <(truth "$tmp/plain") <(truth "$tmp/taken")
-for who in c stopped ${python:+python}; do check "the reader $who ends with the node" ended_well "$who"; done
-for who in c ${python:+python}; do
+for who in c stopped python; do check "the reader $who ends with the node" ended_well "$who"; done
+for who in c python; do
     check "the reader $who has every frame" grep -q "^$frames frames read, 0 missed, 0 copies torn" "$tmp/$who.said"
     check "the planes of the reader $who are those of the files" eval '"$build/tests/memory_planes" "$tmp/taken" "$tmp/raw_$who" | grep -q "^$frames planes"'
 done
@@ -77,7 +73,7 @@ check "the stopped one has missed some, and counts them" eval \
 boxes() { grep -oE '"box_px":\[[0-9,]*\]' "$1" | tr -d '"a-z_:[]' | tr ',' ' '; }
 check "targets have the boxes of the truth" eval \
     '[ "$(boxes "$tmp/taken/truth.jsonl")" = "$(grep "^frame" "$tmp/c.said" | grep -oE "box [0-9 ]*[0-9]" | cut -c5- | grep -v "^0 0 0 0")" ]'
-[ -z "$python" ] || check "both readers say the same of targets" cmp -s <(grep -oE '  [a-z_]+ [0-9:]+ box .*' "$tmp/c.said") \
+check "both readers say the same of targets" cmp -s <(grep -oE '  [a-z_]+ [0-9:]+ box .*' "$tmp/c.said") \
     <(grep -oE '  [a-z_]+ [0-9:]+ box .*' "$tmp/python.said")
 check "the reader's detections are taken" grep -qE "^detections: ($frames|$((frames - 1))) datagrams taken$" "$tmp/taken.said"
 check "nothing is left in /dev/shm" [ -z "$(find /dev/shm -name "*$name*")" ]
@@ -97,13 +93,13 @@ check "its ring is still there" [ -e "$ring" ]
 rm -r "$tmp/raw_c" && mkdir "$tmp/raw_c"
 reader c "$tmp/read_memory" "$name" --wait 30 --in-order --raw "$tmp/raw_c"
 sample=$(sed -n '/^```python/,/^```/{/^```/d;p}' etc/reference/memory.md) # as a reader of the manual has it
-[ -z "$python" ] || reader python "$python" -c "${sample//seeker/$name}"
+reader python python3 -c "${sample//seeker/$name}"
 node counts --set publish.memory_planes=counts --set sensor.preset=staring_lwir --set detector.raw=true --rate 1 --from +14 --to +16 --set publish.detections_port="$port"
 wait "$node"
 check "a node with raw counts ends well" [ $? = 0 ]
 check "the dead node's ring was replaced, and it says so" grep -q "memory: replaced '$name', left behind by process" "$tmp/counts.said"
-for who in c ${python:+python}; do check "its reader $who ends with it" ended_well "$who"; done
-[ -z "$python" ] || check "detections from Python are taken" grep -qE "^detections: [1-3] datagrams taken$" "$tmp/counts.said"
+for who in c python; do check "its reader $who ends with it" ended_well "$who"; done
+check "detections from Python are taken" grep -qE "^detections: [1-3] datagrams taken$" "$tmp/counts.said"
 check "raw counts are those of the files" eval '"$build/tests/memory_planes" "$tmp/counts" "$tmp/raw_c" >/dev/null'
 check "nothing is left in /dev/shm" [ -z "$(find /dev/shm -name "*$name*")" ]
 

@@ -3,6 +3,7 @@
 # occluder is named just where the visible fraction is below 1, a box of visible pixels is there just where there are
 # some. labels: small
 . "$(dirname "$0")/common.sh"
+bare=("${quick[@]}")
 
 # seen OUT: a line a target: pixels, visible fraction, box or -, occluder or -
 seen() {
@@ -12,9 +13,14 @@ seen() {
         /"visible_fraction"/!s/,/,none,/; s/"(pixels|visible_fraction)"://g; s/,/ /g'
 }
 exercise demo "$tmp/demo.pcap"
-replay "$tmp/demo.pcap" "$tmp/out" --bands lwir --no-png --rate 2
+replay "$tmp/demo.pcap" "$tmp/out" --bands lwir --no-files --rate 2 --threads 1
 seen "$tmp/out" >"$tmp/seen"
 check "targets are there" is "$(wc -l <"$tmp/seen")" '>' 40
+# from low beside the road, vehicles hide each other
+replay "$tmp/demo.pcap" "$tmp/low" --bands lwir --no-files --threads 1 --from +10 --to +20 --host observer --set observer.range_m=200 \
+    --set observer.height_m=5 --set exercise.aim=1:3001:22
+seen "$tmp/low" >>"$tmp/seen"
+check "partly hidden ones are there" [ "$(awk '$2 != "none" && $2 < 1' "$tmp/seen" | wc -l)" -ge 5 ]
 check "all of four words" [ -z "$(awk 'NF != 4' "$tmp/seen")" ]
 check "no fraction beyond 0 .. 1" [ -z "$(awk '$2 != "none" && !($2 >= 0 && $2 <= 1)' "$tmp/seen")" ]
 check "whole, and no occluder named; hidden, and an occluder" \

@@ -3,6 +3,7 @@
 # sidecars; on the command line to the current folder. And what --quiet leaves out and --verbose adds.
 . "$(dirname "$0")/common.sh"
 pitviper=$(realpath "$pitviper")
+bare=("${quick[@]}")
 source=$PWD
 mkdir -p "$tmp/a/data/m" "$tmp/elsewhere" "$tmp/case"
 exercise demo "$tmp/demo.pcap"
@@ -21,7 +22,7 @@ printf 'type,model,origin\n1.1.*.7,wedge.yaml,base\n' >"$tmp/a/data/c.csv"
 printf 'sensor:\n  width_px: 64\n  height_px: 48\nmodels:\n  catalog: data/c.csv\n' >"$tmp/a/node.yaml"
 seen() { grep -q '"wedge"' "$1/truth.jsonl"; }
 hash_of() { run_json "$1" | grep -oE '"config_sha256":"[0-9a-f]+"'; }
-show() { run replay "$tmp/demo.pcap" --only 0 --no-png --threads 2 "$@"; }
+show() { run replay "$tmp/demo.pcap" --only 0 --no-png --bands lwir --threads 1 "$@"; }
 
 # ---- settings, catalog, sidecar
 cd "$tmp/elsewhere" || exit 1
@@ -45,13 +46,13 @@ check "a pipe has no folder: as the command line" eval '"$pitviper" check <(prin
 # ---- a sweep
 printf 'axes:\n  models.catalog: [data/c.csv]\n  seed: [1]\n' >"$tmp/a/sweep.yaml"
 cd "$tmp/elsewhere" || exit 1
-run replay "$tmp/demo.pcap" --sweep ../a/sweep.yaml --out "$tmp/s" --size 64x48 --to 1362.1 --threads 2
+run replay "$tmp/demo.pcap" --sweep ../a/sweep.yaml --out "$tmp/s" --size 64x48 --bands lwir --to 1362.1 --threads 1
 check "sweep: made" [ $code = 0 -a "$(cat "$tmp"/s/*/truth.jsonl | grep -c '"wedge"')" -ge 1 ]
-run replay "$tmp/demo.pcap" --sweep ../a/sweep.yaml --out "$tmp/s" --size 64x48 --to 1362.1 --threads 2
+run replay "$tmp/demo.pcap" --sweep ../a/sweep.yaml --out "$tmp/s" --size 64x48 --bands lwir --to 1362.1 --threads 1
 check "sweep: again: kept" said '0 made, 1 kept'
 
 # ---- a case; a scenario
-printf 'purpose: paths\nlog: ../demo.pcap\nconfig: |\n  sensor:\n    width_px: 64\n    height_px: 48\n  models:\n    catalog: ../a/data/c.csv\n  terrain:\n    woods: off\nframes: [0]\ncausal: false\n' >"$tmp/case/case.yaml"
+printf 'purpose: paths\nlog: ../demo.pcap\nconfig: |\n  sensor:\n    width_px: 64\n    height_px: 48\n    bands: lwir\n  models:\n    sag_m: 0.05\n    catalog: ../a/data/c.csv\n  terrain: {woods: off, spacing_m: 16, detail: off}\n  heat: {facets: 3, step_s: 3600, shadow_m: 0, vehicle_step_s: 600}\nframes: [0]\ncausal: false\n' >"$tmp/case/case.yaml"
 cd / || exit 1
 run regress --update "$tmp/case" --why "first" --work "$tmp/work"
 check "case: it runs" [ $code = 0 ]

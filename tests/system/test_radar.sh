@@ -2,7 +2,7 @@
 # The radar of radar.preset, end to end: a sphere of 10 m2 at 3 km against the radar equation on paper; a truck seen among the
 # ground; the same bits for any threads, skips and span; what is refused. labels: slow
 . "$(dirname "$0")/common.sh"
-command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
+judges python3
 
 # a sphere of pi a^2 = 10 m2, facets 60 um deep: a three-hundredth of the wavelength at 16.5 GHz
 awk 'BEGIN { pi = atan2(0, -1); a = sqrt(10 / pi); n = 190; m = 380; print "o sphere"

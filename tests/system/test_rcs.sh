@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # `pitviper rcs` and `pitviper probe rcs`: a corner reflector's known peak, a sphere, a tank; files, and what is refused.
 . "$(dirname "$0")/common.sh"
+judges python3
 
 # cell FILE ROW COLUMN: row 1 is the first behind the header
 cell() {
@@ -47,8 +48,8 @@ check "the summary" said 'tank at 4 GHz: mean HH [0-9.-]+, VV [0-9.-]+ dBsm'
 check "and the error of its grid" said 'another grid: -[0-9]+ dB'
 check "and how far its facets are off curved surfaces: 2.4 degrees by what built-in models are made to" \
     said 'facets of curved surfaces.* (2[.][0-4]|1[.][0-9]) and '
-if command -v xmllint >/dev/null; then check "the plot is XML" xmllint --noout "$tmp/tank/rcs.svg"; fi
-if command -v file >/dev/null; then check "the picture is a PNG" grep -q PNG <<<"$(file "$tmp/tank/isar.png")"; fi
+check "the plot is XML" xml "$tmp/tank/rcs.svg"
+check "the picture is a PNG" [ "$(head -c 8 "$tmp/tank/isar.png" | od -An -tx1 | tr -d ' ')" = 89504e470d0a1a0a ]
 
 run rcs sphere:0.3 -o "$tmp/ball" --azimuth 0:20:10 --image none
 check "a shape: exit code" [ $code = 0 ]

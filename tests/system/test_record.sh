@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # `pitviper record` as a user types it: datagrams by loopback while it listens, then what it wrote is read by inspect
-# and, where there is one, by tshark. labels: small threads
+# and by tshark. labels: small threads
 . "$(dirname "$0")/common.sh"
+judges tshark capinfos
 recorder= # process of the recording that runs
 trap 'kill -9 $recorder 2>/dev/null; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
 
@@ -141,7 +142,7 @@ if [ -w /dev/full ]; then
 fi
 
 # ---- tshark as the judge of the file -------------------------------------------------------------------------
-if command -v tshark >/dev/null && [ -s "$tmp/log.pcapng" ]; then
+if [ -s "$tmp/log.pcapng" ]; then
     # judge LOG PORT COUNT: every packet with good checksums (1), to where we listened; COUNT Entity States
     judge() {
         tshark -r "$tmp/$1" -o ip.check_checksum:TRUE -o udp.check_checksum:TRUE -d "udp.port==$2,dis" -T fields \
@@ -152,9 +153,6 @@ if command -v tshark >/dev/null && [ -s "$tmp/log.pcapng" ]; then
     }
     judge log.pcapng $log_port 6 # with the one that says it is longer
     judge log.pcap $pcap_port 3
-    ! command -v capinfos >/dev/null ||
-        check "the comment says who made it" grep -q 'pitviper record: 127.0.0.1' <(capinfos "$tmp/log.pcapng" 2>/dev/null)
-else
-    echo "without tshark: all but its judgement (apt install tshark)"
+    check "the comment says who made it" grep -q 'pitviper record: 127.0.0.1' <(capinfos "$tmp/log.pcapng" 2>/dev/null)
 fi
 finish

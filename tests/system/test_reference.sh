@@ -3,6 +3,8 @@
 # that it shows on them: tests/system/reference.py. labels: small
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
+judges python3.numpy python3.OpenEXR python3.PIL
+needs "video: built without FFmpeg's libraries" has_video
 
 run help
 check "help: lists the topics" grep -qE '^products truth run\.json exr ' "$tmp/stdout"
@@ -20,7 +22,6 @@ check "help of two words" [ $code = 2 ] && complained 'not also `run`'
 run help --markdown
 check "help --markdown" [ $code = 0 ]
 cp "$tmp/stdout" "$tmp/products.md"
-command -v python3 >/dev/null || { echo "skipped in part: no python3"; finish; }
 
 free_port
 with_stream udp://127.0.0.1:$port

@@ -3,8 +3,8 @@
 # field by field against tshark's decode, and the missile's target growing until impact.
 . "$(dirname "$0")/common.sh"
 
-data=${PITVIPER_DATA:-../shared/data}/dis
-[ -r "$data/vrf-dis5-tow-vs-armor.pcap" ] || { echo "skipped: no recordings at $data (set PITVIPER_DATA)"; exit 77; }
+needs_data dis/vrf-dis5-tow-vs-armor.pcap
+data=$data/dis
 
 # compare TSHARK OURS: rows of tshark's file that ours does not hold, joined by packet and entity. Numbers to 1e-5
 # relative (tshark prints six digits), places to 2 um.

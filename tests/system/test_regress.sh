@@ -3,6 +3,7 @@
 # or record is said, and breaks no other case.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/regress.sh"
+judges python3
 
 # ---- a record is made, and passes -------------------------------------------------------------
 new_case good
@@ -123,8 +124,7 @@ check "one that crashes: exit code" [ $? = 1 ]
 check "one that crashes: said" grep -qE '^crash +FAILED: `pitviper replay` crashed: Segmentation fault' "$tmp/stdout" || cat "$tmp/stdout"
 
 # ---- what is written for others ------------------------------------------------------------------
-if command -v python3 >/dev/null; then
-    python3 - "$tmp/junit.xml" "$tmp/report.html" <<'PYTHON' || fail "junit.xml and report.html"
+python3 - "$tmp/junit.xml" "$tmp/report.html" <<'PYTHON' || fail "junit.xml and report.html"
 import base64, re, sys
 import xml.etree.ElementTree as tree
 from html.parser import HTMLParser
@@ -148,9 +148,6 @@ pictures = re.findall(r'data:image/png;base64,([^"]+)"', page)
 assert len(pictures) >= 4 and all(base64.b64decode(p)[:8] == b"\x89PNG\r\n\x1a\n" for p in pictures), len(pictures)
 assert "http" not in re.sub(r'base64,[^"]+', "", page), "needs another file"
 PYTHON
-else
-    echo "skipped in part: no python3"
-fi
 run regress "$tmp/another_hour" --report "$tmp/report.html" --work "$tmp/work"
 for what in 'the probable cause' 'actual - expected' 'To reproduce' 'pitviper replay' 'temperature' 'scale of colours'; do
     check "the report holds: $what" grep -q -- "$what" "$tmp/report.html"

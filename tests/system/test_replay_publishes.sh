@@ -3,7 +3,7 @@
 # included, and the same announcements of its streams; at full speed it sends nothing, and says so. labels: small
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
-command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
+judges python3
 pdus=(python3 tests/system/data_pdus.py)
 
 few=(--size 32x24 --bands optical,lwir --rate 10 --no-files --threads 1 --set exercise.listen_s=0.3 --set publish.dis=truth

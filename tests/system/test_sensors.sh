@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Sensors of etc/sensors.csv through replay: what they add, what they leave alone, and how slips are named.
 . "$(dirname "$0")/common.sh"
+judges python3
 
 exercise demo "$tmp/demo.pcap"
 all=scanning_flir,staring_mwir,tv
@@ -44,12 +45,11 @@ check "raw=false: no raw counts" [ ! -e "$tmp/own/raw" ]
 # counts of a truck of 1.5 x 0.6 px: it stands where it stands in a picture of four times as many pixels, not in the middle
 # of a pixel. 0.06 px rms of what ground and sky behind it differ by within a pixel; 0.16 px if its pixels alone were blurred.
 # A second earlier it has 60 counts in all, whose rounding alone moves it by 0.1 px
-if command -v python3 >/dev/null; then
-    near=(--bands lwir --rate 1 --from 1363 --to 1367 --set sensor.preset=staring_lwir --set sensor.hfov_deg=12
-          --set detector.noise=0 --set detector.bad_share=0 --set detector.smear=false --pairs target --threads 2)
-    run replay "$tmp/demo.pcap" --out "$tmp/coarse" --size 96x64 "${near[@]}"
-    run replay "$tmp/demo.pcap" --out "$tmp/fine" --size 384x256 "${near[@]}"
-    check "a small target's counts are where it is" python3 - "$tmp/coarse" "$tmp/fine" <<'END'
+near=(--bands lwir --rate 1 --from 1363 --to 1367 --set sensor.preset=staring_lwir --set sensor.hfov_deg=12
+      --set detector.noise=0 --set detector.bad_share=0 --set detector.smear=false --pairs target --threads 2)
+run replay "$tmp/demo.pcap" --out "$tmp/coarse" --size 96x64 "${near[@]}"
+run replay "$tmp/demo.pcap" --out "$tmp/fine" --size 384x256 "${near[@]}"
+check "a small target's counts are where it is" python3 - "$tmp/coarse" "$tmp/fine" <<'END'
 import json, struct, sys, zlib
 
 def counts(path):
@@ -93,7 +93,6 @@ rms = (square / n) ** 0.5
 print("off by %.3f px rms of %d" % (rms, n))
 sys.exit(not (n == 10 and rms < 0.1))
 END
-fi
 
 # an earlier run's counts go with it
 run replay "$tmp/demo.pcap" --out "$tmp/all" --overwrite "${small[@]}" --threads 2

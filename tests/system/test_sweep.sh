@@ -2,6 +2,7 @@
 # replay --sweep: each variant is the run that its settings and the user's options make, what is made is kept, one that fails
 # stops no other, and a file with slips runs nothing. That no option is lost on the way is tests/sensor/test_options.c's.
 . "$(dirname "$0")/common.sh"
+judges python3.pycocotools
 
 exercise demo "$tmp/demo.pcap"
 few=(--from 1366 --to 1366 --bands lwir)
@@ -30,8 +31,7 @@ check "which the manifest has" grep -qF "$(grep -oE '[0-9a-f]{64}' <(hashes "$tm
 "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" -c "$tmp/g/$second/settings.yaml" --out "$tmp/again" >/dev/null 2>&1
 check "its settings.yaml makes it again" same_hashes "$tmp/again" "$tmp/g/$second"
 # merged OUT VARIANTS: one coco.json of all, that its own reader takes
-if python3 -c 'import json' 2>/dev/null; then
-    cat >"$tmp/merged.py" <<'PY'
+cat >"$tmp/merged.py" <<'PY'
 import json, os, sys
 out, variants = sys.argv[1], int(sys.argv[2])
 merged = json.load(open(f"{out}/coco.json"))
@@ -49,16 +49,11 @@ for p, c in own.items():  # each annotation is there, at its own image
     got = [plain(a, images[a["image_id"]]) for a in merged["annotations"] if images[a["image_id"]]["variant"] == p]
     assert want == got and len(want) > 0, p
     assert c["categories"] == merged["categories"]
-try: from pycocotools.coco import COCO
-except ImportError: sys.exit(0)
+from pycocotools.coco import COCO
 c = COCO(f"{out}/coco.json")
 for a in c.loadAnns(c.getAnnIds()): assert c.annToMask(a).sum() == a["area"]
 PY
-    merged() { python3 "$tmp/merged.py" "$@" >/dev/null; }
-else
-    echo "skipped in part: no python3"
-    merged() { [ -s "$1/coco.json" ]; }
-fi
+merged() { python3 "$tmp/merged.py" "$@" >/dev/null; }
 check "one coco.json of all" merged "$tmp/g" 4
 cp "$tmp/g/coco.json" "$tmp/coco.before"
 check "seeds change nothing else" [ "$(folders "$tmp/g" | sort -u | wc -l)" = 4 ]
