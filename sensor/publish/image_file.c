@@ -1,5 +1,5 @@
 /* sensor/publish/image_file.c: image files: loads the module that uses OpenImageIO when the first file asks for it. */
-#include "sensor/publish/image_module.h"
+#include "sensor/publish/image_file_private.h"
 
 #include "pitviper_library.h"
 

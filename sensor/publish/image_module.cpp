@@ -1,5 +1,5 @@
 /* sensor/publish/image_module.cpp: image files, through OpenImageIO: a module, which image_file.c loads. */
-#include "sensor/publish/image_module.h"
+#include "sensor/publish/image_file_private.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

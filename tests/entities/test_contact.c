@@ -1,5 +1,5 @@
 /* tests/entities/test_contact.c: land vehicles set onto the ground: on planes, where every answer is on paper, and far
- * from the origin, where the local vertical leans. */
+ * from the origin, where the local vertical leans. labels: physics */
 #include "entities/table/contact.h"
 #include "tests/entities/entity_fixture.h"
 

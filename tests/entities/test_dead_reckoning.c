@@ -1,5 +1,5 @@
 /* tests/entities/test_dead_reckoning.c: the nine algorithms against paper, against an integration in 64-bit
- * mantissa that knows none of the closed forms, and against real senders' own thresholds. */
+ * mantissa that knows none of the closed forms, and against real senders' own thresholds. labels: physics */
 #include "tests/check.h"
 #include "dis/datagram.h"
 #include "dis/decode.h"

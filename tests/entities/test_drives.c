@@ -1,4 +1,4 @@
-/* tests/entities/test_drives.c: what counts as evidence of what heats an entity. */
+/* tests/entities/test_drives.c: what counts as evidence of what heats an entity. labels: physics */
 #include "tests/entities/entity_fixture.h"
 #include "entities/effects/drives.h"
 

@@ -1,5 +1,5 @@
 /* Built-in models against their published figures, and the shapes they are made of against the surfaces that
- * they approximate. */
+ * they approximate. labels: physics */
 #include "tests/entities/model_fixture.h"
 
 /* ---- whole models --------------------------------------------------------------------------- */

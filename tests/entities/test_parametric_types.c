@@ -1,5 +1,5 @@
 /* The carrier, launcher, aircraft, ship, person, building, decoy and flare: published figures, closed forms, and what
- * their joints do when an exercise moves them. */
+ * their joints do when an exercise moves them. labels: physics */
 #include "tests/entities/model_fixture.h"
 
 #include "entities/models/articulation.h"

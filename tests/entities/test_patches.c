@@ -2,7 +2,7 @@
  *
  * A coarse build (sag 0.1 m) and a fine one (0.002 m) have the same bodies; the same count of patches but for a few
  * models, where a cell is near the share below which it joins another. Links may differ where cells of curved parts
- * hardly touch, or several patches are as near. */
+ * hardly touch, or several patches are as near. labels: physics */
 #include "tests/entities/model_fixture.h"
 
 #include "entities/models/patches.h"

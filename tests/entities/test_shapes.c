@@ -1,6 +1,6 @@
 /* Shapes and sizes of the types that exercises send: what each is seen as, against published figures that stand here
  * and nowhere in the catalog's making; that every shape is closed, outward, standing, articulated, warm and not too
- * heavy in any size; and that what has no shape is not there. */
+ * heavy in any size; and that what has no shape is not there. labels: physics */
 #include "tests/entities/model_fixture.h"
 
 #include "entities/models/articulation.h"

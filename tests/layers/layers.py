@@ -1,8 +1,10 @@
-"""tests/layers/layers.py ROOT: what a file may include, where a library is known, that includes go in no circle, and
+"""tests/layers/layers.py ROOT [--changed BRANCH]: what a file may include, where a library is known, that includes go in no circle, and
 that a .c file says in its first line what it is. A link alone proves none of it: an object that is already pulled in
 satisfies a call backwards.
 
     base < dis, terrain < entities < render < sensor
+
+With --changed: the tests, as an expression for `ctest -R`, of what differs from where BRANCH was left, committed or not.
 
 A room's folders are its wings. An exception below needs a reason and a circle that it leaves out; best there is
 none."""
@@ -10,6 +12,7 @@ import collections
 import fnmatch
 import os
 import re
+import subprocess
 import sys
 
 ROOMS = ('dis', 'terrain', 'entities', 'render', 'sensor')
@@ -27,13 +30,13 @@ MAY = {
     'sensor': ('dis/*', 'terrain/*', 'entities/*', 'render/*'),
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),
 }
-BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_simd.h')
+BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_library.h', 'pitviper_simd.h')
 
 # Libraries that one file, or one folder, knows: header, places.
 LIBRARIES = (
     ('GeographicLib/*', 'terrain/*.cpp'), ('gdal*', 'terrain/elevation/raster.c'),
     ('cpl_*', 'terrain/elevation/raster.c'), ('ogr_*', 'terrain/elevation/raster.c'), ('erfa.h', 'terrain/*'),
-    ('OpenImageIO/*', 'sensor/publish/*.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
+    ('OpenImageIO/*', 'sensor/publish/image_module.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
     ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),
     ('jansson.h', 'sensor/publish/*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep_file.c'),
 )
@@ -244,6 +247,67 @@ def twins():
     return wrong
 
 
+def rooms_above(room):
+    """The room and those that may include something of it."""
+    if room == 'base':
+        return ('base',) + ROOMS
+    return (room,) + tuple(r for r in ROOMS if r != room and any(h.startswith(room + '/') for h in MAY[r]))
+
+
+def tests_of(path):
+    """Expressions of ctest's names for what knows this file."""
+    folder, _, name = path.rpartition('/')
+    stem = name.split('.')[0]
+    if path.startswith('tests/'):
+        part = path.split('/')[1]
+        if stem.startswith('test_') and part in ROOMS + ('base', 'system', 'layers', 'fuzz'):
+            return [('system' if name.endswith('.sh') else part) + '/' + stem + '$']
+        if part in ROOMS + ('base', 'fuzz', 'system'):
+            return [part + '/']
+        return {'mutants': ['system/test_mutants'], 'regress': ['system/test_regress', 'system/test_mutants'],
+                'layers': [], 'tools': ['system/'], 'alloc': ['system/test_alloc']}.get(part, ['.'])
+    if folder.startswith('.') or path.startswith('.') or name == 'LICENSE' or path in ('etc/test', 'etc/setup', 'etc/bits'):
+        return []
+    if name.endswith(('.md', '.svg', '.jpg', '.png')):
+        return ['system/test_(adding|figures|reference|man|help)']
+    room = room_of(path)
+    if room in ROOMS:
+        return [r + '/' for r in rooms_above(room)] + ['fuzz/', 'system/']
+    return ['.']  # the base, the program, tables, how all is built
+
+
+def changed_files(root, branch):
+    def git(*words):
+        return subprocess.run(('git', '-C', root) + words, check=True, capture_output=True, text=True).stdout.split('\n')
+
+    start = git('merge-base', branch, 'HEAD')[0]
+    return sorted(set(git('diff', '--name-only', start) + git('ls-files', '--others', '--exclude-standard')) - {''})
+
+
+def changed_tests(paths):
+    found = sorted({expression for path in paths for expression in tests_of(path)} | ({'system/test_layers$'} if paths else set()))
+    return '.' if '.' in found else '^(' + '|'.join(found) + ')' if found else ''
+
+
+# Paths, and what their tests are.
+def changed_twins():
+    wrong = []
+    for paths, good, bad in (
+            (['dis/pdu.c'], 'dis/test_pdu entities/test_survey sensor/test_truth system/test_live fuzz/fuzz_pdu', 'terrain/test_sun base/test_log'),
+            (['render/air/air.c'], 'render/test_air sensor/test_truth', 'dis/test_pdu entities/test_survey terrain/test_sun'),
+            (['sensor/node/live.c'], 'sensor/test_truth system/test_live', 'render/test_air'),
+            (['tests/dis/test_pdu.c'], 'dis/test_pdu system/test_layers', 'dis/test_data dis/test_pdu_more system/test_live'),
+            (['tests/system/test_live.sh'], 'system/test_live', 'system/test_live_network dis/test_pdu'),
+            (['pitviper.h'], 'base/test_log dis/test_pdu system/test_live', ''), (['etc/materials.csv'], 'render/test_air', ''),
+            (['README.md'], 'system/test_figures', 'dis/test_pdu system/test_live'), ([], '', 'system/test_layers')):
+        pattern = changed_tests(paths)
+        for names, want in ((good, True), (bad, False)):
+            for name in names.split():
+                if bool(pattern and re.search(pattern, name)) != want:
+                    wrong.append(f'twin: {paths} changed: {name} is {"left out" if want else "run"}: {pattern}')
+    return wrong
+
+
 def read_tree(root):
     tree = {}
     for folder, folders, names in os.walk(root):
@@ -257,7 +321,10 @@ def read_tree(root):
 
 
 def main():
-    wrong = twins()
+    if len(sys.argv) == 4 and sys.argv[2] == '--changed':
+        print(changed_tests(changed_files(sys.argv[1], sys.argv[3])))
+        return False
+    wrong = twins() + changed_twins()
     tree = read_tree(sys.argv[1])
     wrong += violations(tree)
     wrong += needless_exceptions(tree, WING_EXCEPTIONS, FILE_EXCEPTIONS)

@@ -1,4 +1,4 @@
-/* The air of a frame against the tables it was made of, and against what must hold anywhere. */
+/* The air of a frame against the tables it was made of, and against what must hold anywhere. labels: physics */
 #include "tests/check.h"
 #include "render/air/air.h"
 

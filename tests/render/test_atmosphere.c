@@ -1,5 +1,5 @@
 /* The tables of the air against the program that filled them: at its own points, at points that the tables do not
- * hold, and at the ends. */
+ * hold, and at the ends. labels: physics */
 #include "tests/render/atmosphere_errors.h"
 #include "render/air/atmosphere.h"
 #include "render/materials/planck.h"

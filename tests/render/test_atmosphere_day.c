@@ -1,6 +1,6 @@
 /* An atmosphere's day against the atmosphere itself, asked one thing at a time: the plain form, whose own truth is
  * tests/render/test_atmosphere.c. Random paths, skies, suns and visibilities of both models, and the ends of all of
- * them. */
+ * them. labels: physics */
 #include "tests/check.h"
 
 #include "render/air/atmosphere_day.h"

@@ -1,5 +1,5 @@
 /* The air of visibilities that have no table, against the program that filled the tables: paths, the sun and the sky's
- * light; that the tables come back at their own; that one visibility alone is the same air. */
+ * light; that the tables come back at their own; that one visibility alone is the same air. labels: physics */
 #include "tests/render/atmosphere_errors.h"
 #include "render/air/atmosphere.h"
 

@@ -1,4 +1,5 @@
-/* Light under leaves: the closed form against its integral, the grid against the leaves it was given. */
+/* Light under leaves: the closed form against its integral, the grid against the leaves it was given.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "render/light/canopy.h"

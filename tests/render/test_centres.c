@@ -1,5 +1,5 @@
 /* Signatures and their centres against the hits and edges that they stand for: the field over a band, and from antennas
- * elsewhere in the bin. */
+ * elsewhere in the bin. labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/centres.h"

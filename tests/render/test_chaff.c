@@ -1,4 +1,5 @@
-/* Dipoles one by one, in all directions, against the figures of chaff.h; bunches of them, and the cloud's column. */
+/* Dipoles one by one, in all directions, against the figures of chaff.h; bunches of them, and the cloud's column.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/chaff.h"

@@ -1,4 +1,5 @@
-/* How far the facets of curved surfaces are off them: of a sphere as its own vertices say, of flat faces none. */
+/* How far the facets of curved surfaces are off them: of a sphere as its own vertices say, of flat faces none.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/shapes.h"

@@ -1,6 +1,6 @@
 /* Ground clutter: its distributions against closed forms, its correlations over aspect, time and polarisation, and
  * what does not depend on order or level. Seeds are fixed; each bound is 4 standard errors of the exact
- * distribution, or the 1 % point of Kolmogorov and Smirnov. */
+ * distribution, or the 1 % point of Kolmogorov and Smirnov. labels: physics */
 #include "tests/check.h"
 #include "render/radar/clutter.h"
 

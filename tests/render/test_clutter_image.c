@@ -1,5 +1,5 @@
 /* Ground clutter in a spotlight image: a phase history of scatterers and a point, by distances alone, focused by plain
- * backprojection. The image must read sigma0 back, show a shadow as dark, and focus the point. */
+ * backprojection. The image must read sigma0 back, show a shadow as dark, and focus the point. labels: physics */
 #include "tests/check.h"
 #include "render/radar/clutter.h"
 

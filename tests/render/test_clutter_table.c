@@ -1,4 +1,4 @@
-/* The table of clutter: what it must hold, what it must refuse, and the forms its figures go into. */
+/* The table of clutter: what it must hold, what it must refuse, and the forms its figures go into. labels: physics */
 #include "tests/check.h"
 #include "render/radar/clutter_table.h"
 

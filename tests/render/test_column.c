@@ -1,5 +1,6 @@
 /* Conduction in layers, against closed forms (mpmath; Carslaw & Jaeger, Conduction of Heat in Solids, 1959): smooth
- * loads at the default step, steps with the sub-steps that the solver takes at a jump, graded elements. */
+ * loads at the default step, steps with the sub-steps that the solver takes at a jump, graded elements.
+ * labels: physics */
 #include "tests/check.h"
 #include "render/heat/column.h"
 

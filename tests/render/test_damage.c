@@ -1,4 +1,5 @@
-/* What a sidecar says of damage is what is seen: parts gone, materials changed, in the state the sender reports. */
+/* What a sidecar says of damage is what is seen: parts gone, materials changed, in the state the sender reports.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "render/frame/render.h"

@@ -1,4 +1,5 @@
-/* The law by which means over n x n samples tell their own error. The budgets of frames: tests/sensor. */
+/* The law by which means over n x n samples tell their own error. The budgets of frames: tests/sensor.
+ * labels: physics */
 #include "render/frame/error_budget.h"
 #include "tests/check.h"
 

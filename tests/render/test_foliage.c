@@ -1,4 +1,4 @@
-/* Lengths of rays in crowns against a march through them, and each crown found once. */
+/* Lengths of rays in crowns against a march through them, and each crown found once. labels: physics */
 #include "tests/check.h"
 #include "tests/render/hand_plants.h"
 

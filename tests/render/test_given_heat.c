@@ -1,4 +1,4 @@
-/* Temperatures that the user gives: lines between rows, who wins, files that are refused. */
+/* Temperatures that the user gives: lines between rows, who wins, files that are refused. labels: physics */
 #include "tests/check.h"
 
 #include "render/heat/given_heat.h"

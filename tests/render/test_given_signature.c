@@ -1,5 +1,5 @@
 /* Signatures that are given: grids and scatterers against closed forms (a sphere off the phase centre, a plate's sinc), what
- * lies between rows, how far a table is known, lists of entities, and what is refused. */
+ * lies between rows, how far a table is known, lists of entities, and what is refused. labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/given_list.h"

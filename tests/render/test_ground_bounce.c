@@ -1,5 +1,5 @@
 /* A target and the ground near it against image theory, the two-ray pattern and closed forms: none of the answers comes
- * from the code that is tested. */
+ * from the code that is tested. labels: physics */
 #include "tests/render/radar_stage.h"
 
 #include "entities/catalog/catalog.h"

@@ -1,5 +1,5 @@
 /* Bundles that are said to meet no ground: none of their rays may, as ground_first_hit finds it (test_ground.c judges
- * that); and it must be said of most that stand well over it. */
+ * that); and it must be said of most that stand well over it. labels: physics */
 #include "tests/check.h"
 
 #include "render/ground/ground.h"

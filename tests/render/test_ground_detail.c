@@ -1,5 +1,6 @@
 /* The ground's noise in pictures: one class everywhere, at three ranges, optical and LWIR, against the unfiltered noise
- * averaged over each pixel by brute force; as the eye moves, against 256 rays a pixel; and switched off. */
+ * averaged over each pixel by brute force; as the eye moves, against 256 rays a pixel; and switched off.
+ * labels: physics */
 #include "tests/render/hand_world.h"
 
 #include "terrain/landscape/detail.h"

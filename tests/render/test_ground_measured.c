@@ -1,6 +1,6 @@
 /* The ground's heat against measured days: NOAA SURFRAD Alamosa (a clear winter day, dry soil) and NOAA/ARL Bondville
  * (15 days of May 1998, bare moist soil). Weather is theirs, and what the soil is made of is looked up: no figure is
- * fitted to these days. */
+ * fitted to these days. labels: physics */
 #include "tests/check.h"
 #include "render/heat/ground_column.h"
 #include "render/heat/soil.h"

@@ -1,5 +1,6 @@
 /* Rays that keep together against the same rays eight by eight: not a bit may differ, whatever the country and wherever
- * the eye. Of this the second knows neither strips nor groups (tests/render/test_ground.c judges it). labels: slow */
+ * the eye. Of this the second knows neither strips nor groups (tests/render/test_ground.c judges it).
+ * labels: physics slow */
 #include "tests/check.h"
 
 #include "render/ground/ground.h"

@@ -1,5 +1,5 @@
 /* Light from all around: the sphere over a plane that two other renderers were asked about, and even worlds where
- * nothing can be brighter or darker than what surrounds it. */
+ * nothing can be brighter or darker than what surrounds it. labels: physics */
 #include "tests/render/hand_models.h"
 
 #include "render/light/hemisphere.h"

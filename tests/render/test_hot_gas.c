@@ -1,5 +1,5 @@
 /* Hot gas in the thermal bands against the narrow-band model it is fitted to, the band intensity of the literature,
- * and what must hold whatever the figures. */
+ * and what must hold whatever the figures. labels: physics */
 #include "tests/check.h"
 
 #include "render/smoke/hot_gas.h"

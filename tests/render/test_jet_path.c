@@ -1,4 +1,5 @@
-/* Exhaust jets, against published laws of jets and plumes: speed on the axis, fluxes, rise in a wind; places off the axis. */
+/* Exhaust jets, against published laws of jets and plumes: speed on the axis, fluxes, rise in a wind; places off the axis.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "render/heat/jet_path.h"

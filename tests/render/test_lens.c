@@ -1,5 +1,5 @@
 /* A lens that distorts: its formula and the way back against long double and OpenCV's numbers, which lenses are
- * refused, culling that never loses anything, boxes, areas and solid angles. labels: slow */
+ * refused, culling that never loses anything, boxes, areas and solid angles. labels: physics slow */
 #include "tests/check.h"
 
 #include "tests/render/hand_world.h"

@@ -1,4 +1,4 @@
-/* The table of materials: what it must hold, what it must refuse, and a lobe that makes no light. */
+/* The table of materials: what it must hold, what it must refuse, and a lobe that makes no light. labels: physics */
 #include "tests/check.h"
 #include "render/materials/materials.h"
 

@@ -1,5 +1,5 @@
 /* Networks of thermal nodes, against closed forms (mpmath; Carslaw & Jaeger, Conduction of Heat in Solids, 1959) in one
- * call over the whole time; energy, memory of earlier steps, extremes. */
+ * call over the whole time; energy, memory of earlier steps, extremes. labels: physics */
 #include "tests/check.h"
 #include "render/heat/network.h"
 

@@ -1,4 +1,4 @@
-/* Reflected light, where paper knows the answer. */
+/* Reflected light, where paper knows the answer. labels: physics */
 #include "tests/check.h"
 #include "render/light/optical.h"
 

@@ -1,4 +1,4 @@
-/* Blackbody radiance against 25-digit values, Stefan-Boltzmann, and itself by other roads. */
+/* Blackbody radiance against 25-digit values, Stefan-Boltzmann, and itself by other roads. labels: physics */
 #include "tests/check.h"
 #include "render/materials/planck.h"
 

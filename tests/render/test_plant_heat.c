@@ -1,4 +1,4 @@
-/* Temperatures of leaves against the full, non-linear balance solved by bisection. */
+/* Temperatures of leaves against the full, non-linear balance solved by bisection. labels: physics */
 #include "tests/check.h"
 
 #include "render/light/plant_heat.h"

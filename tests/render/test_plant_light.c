@@ -1,4 +1,5 @@
-/* Light on leaves: between even skies they vanish, lit from behind they shine, and quick and plain forms agree. */
+/* Light on leaves: between even skies they vanish, lit from behind they shine, and quick and plain forms agree.
+ * labels: physics */
 #include "tests/render/hand_plants.h"
 #include "tests/render/hand_world.h"
 

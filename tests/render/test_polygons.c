@@ -1,6 +1,6 @@
 /* Flat faces in closed form against answers from elsewhere: a plate's formula, direct integrals over a triangle and
  * near a plate, Fresnel's coefficients; and against ray tubes where faces are hidden, mirror one another or are a
- * tank's. Each figure reached is printed. labels: slow */
+ * tank's. Each figure reached is printed. labels: physics slow */
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 

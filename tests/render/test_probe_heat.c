@@ -1,5 +1,5 @@
 /* tests/render/test_probe_heat.c: `probe heat-ground`, through the CSV that a user gives, against one column of ground alone
- * under the same weather, in steps of half the length. labels: slow */
+ * under the same weather, in steps of half the length. labels: physics slow */
 #include "tests/check.h"
 
 #include "render/frame/heat_drive.h"

@@ -1,5 +1,5 @@
 /* tests/render/test_probe_heat_node.c: `probe heat-node`, through the CSV that a user gives: its rows stand alone,
- * its ground is that of `probe heat-ground`, sun and engine warm what they should. labels: slow */
+ * its ground is that of `probe heat-ground`, sun and engine warm what they should. labels: physics slow */
 #include "tests/check.h"
 
 #include "render/probe.h"

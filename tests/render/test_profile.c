@@ -1,4 +1,5 @@
-/* The range profile: all of the picture's power, where the ranges are, and no overflow at the largest. */
+/* The range profile: all of the picture's power, where the ranges are, and no overflow at the largest.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "render/frame/render.h"

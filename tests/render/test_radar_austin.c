@@ -1,7 +1,7 @@
 /* Ray tubes without and with edge diffraction against the Austin RCS suite: thin plate, NASA almond, PRIME aircraft.
  * Figures by window of angle. The bounds are what physical optics, edges, pairs of them and mirrors are known to reach
  * on such small targets.
- * labels: slow */
+ * labels: physics slow */
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 

@@ -1,5 +1,5 @@
 /* The field of ray tubes against answers from elsewhere: Mie's series for spheres, closed forms of physical optics
- * for plates, discs and cylinders, the handbook's corner reflectors. Each figure reached is printed. */
+ * for plates, discs and cylinders, the handbook's corner reflectors. Each figure reached is printed. labels: physics */
 #include "tests/render/radar_stage.h"
 
 static const double x_hz = 10e9, w_hz = 94e9;

@@ -1,5 +1,5 @@
 /* Fresnel reflection against the reference table (half space and slab), and identities: limits, energy, a coating
- * that is air or metal, and the roughness factor. */
+ * that is air or metal, and the roughness factor. labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/fresnel.h"

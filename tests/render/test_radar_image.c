@@ -2,7 +2,7 @@
  *
  * A corner sends every ray that meets all of its mirrors back where it came from, so its power per steradian is
  * its effective area, over range squared, times the lobe's peak. Effective areas: plate a b cos(tilt); dihedral of
- * square faces 2 a b min(sin, cos); square trihedral on its axis sqrt(3) a^2. */
+ * square faces 2 a b min(sin, cos); square trihedral on its axis sqrt(3) a^2. labels: physics */
 #include "tests/check.h"
 #include "render/parts/parts.h"
 #include "render/radar/radar_image.h"

@@ -1,5 +1,5 @@
 /* Radar materials: each material that a model may name has a row or its stated default, permittivities between rows,
- * and broken tables refused with file and line. */
+ * and broken tables refused with file and line. labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/radar_materials.h"

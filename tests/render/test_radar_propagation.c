@@ -1,6 +1,6 @@
 /* tests/render/test_radar_propagation.c: attenuation of radio waves by gases, rain, cloud and fog against values of
  * ITU-R's own validation, dispersion against causality, paths against closed forms and fine quadrature, the radar
- * equation by hand. */
+ * equation by hand. labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/cloud_attenuation.h"

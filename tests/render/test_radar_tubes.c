@@ -1,5 +1,6 @@
 /* Ray tubes: paths to the nanometre, the same bits for any number of threads, the same field wherever the target
- * stands and however it is turned, lists reused for other aspects and frequencies, curved mirrors, bistatic looks. */
+ * stands and however it is turned, lists reused for other aspects and frequencies, curved mirrors, bistatic looks.
+ * labels: physics */
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 

@@ -1,5 +1,5 @@
 /* Mie's series against the exact one of metal spheres and Rayleigh's limit; rain against Z = 200 R^1.6, Marshall and
- * Palmer's closed form, and P.838's loss. */
+ * Palmer's closed form, and P.838's loss. labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/cloud_attenuation.h"

@@ -1,5 +1,5 @@
 /* The estimate of a cross section's error against what a finer grid, at the very look, makes of it: models and frequencies
- * that the estimate's constant was not fitted to. labels: slow */
+ * that the estimate's constant was not fitted to. labels: physics slow */
 #include "tests/check.h"
 
 #include "render/radar/field.h"

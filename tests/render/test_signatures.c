@@ -1,5 +1,5 @@
 /* Kept fields of targets: bins hold what they should, a field serves its bin to the error stated, and neither order
- * nor lack of room changes a bit. */
+ * nor lack of room changes a bit. labels: physics */
 #include "tests/check.h"
 
 #include <time.h>

@@ -1,5 +1,6 @@
 /* Hot gas along rays: chords of a uniform volume against the narrow-band model, volumes that share a ray against one
- * that holds all their gas, two temperatures against the transport of every grey gas, and gas that cannot be seen. */
+ * that holds all their gas, two temperatures against the transport of every grey gas, and gas that cannot be seen.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "render/smoke/smoke_volume.h"

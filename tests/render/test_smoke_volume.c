@@ -1,5 +1,5 @@
 /* Smoke along a ray, against what is known on paper: balls of one density, balls that fall off, two of them in either
- * order, a wall inside, a cavity of one temperature. */
+ * order, a wall inside, a cavity of one temperature. labels: physics */
 #include "tests/check.h"
 #include "render/smoke/smoke_volume.h"
 

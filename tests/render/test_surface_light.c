@@ -1,5 +1,5 @@
 /* The quick form of surfaces' light against the plain one of render/light/optical.c and thermal.c, on random hits of every
- * class, slope, sun and view; and that a hit's bits do not hang on its company. */
+ * class, slope, sun and view; and that a hit's bits do not hang on its company. labels: physics */
 #include "tests/render/hand_world.h"
 
 #include "render/light/surface_light.h"

@@ -1,4 +1,4 @@
-/* Heat seen: the isothermal cavity, Kirchhoff, and temperatures that a thermometer could have read. */
+/* Heat seen: the isothermal cavity, Kirchhoff, and temperatures that a thermometer could have read. labels: physics */
 #include "tests/check.h"
 #include "render/light/thermal.h"
 

@@ -1,5 +1,5 @@
 /* Tubes divided at edges: a triangle against its Fourier transform, a tank by two grids, cells that add up.
- * labels: slow */
+ * labels: physics slow */
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 

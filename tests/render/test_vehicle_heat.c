@@ -1,6 +1,6 @@
 /* tests/render/test_vehicle_heat.c: entities' temperatures over time, on weather from paper: nothing comes from
  * nothing, the sun's side is warm, engines, guns, exhausts, speed and bodies are what balances on paper give, and
- * the past decides. */
+ * the past decides. labels: physics */
 #include "tests/render/vehicle_stage.h"
 
 #include "render/heat/surface_flux.h"

@@ -1,5 +1,6 @@
 /* tests/render/test_vehicle_heat_error.c: the estimate of what steps and the past's single steps leave out of
- * entities' temperatures, against steps of a second and a past of eight times as many, with error control. */
+ * entities' temperatures, against steps of a second and a past of eight times as many, with error control.
+ * labels: physics */
 #include "tests/render/vehicle_stage.h"
 
 /* A clear day about the equinox at 45 degrees north; Unix time 0 is noon. */

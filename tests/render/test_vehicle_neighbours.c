@@ -1,6 +1,6 @@
 /* tests/render/test_vehicle_neighbours.c: entities that stand by each other: shares of view as published view
  * factors and many rays of this file give them, heat that goes from one to the other, shadow, exhaust, and what must
- * change no bit. */
+ * change no bit. labels: physics */
 #include "tests/render/hand_models.h"
 #include "tests/render/vehicle_stage.h"
 

@@ -1,5 +1,6 @@
 /* tests/render/test_vehicle_nodes.c: nodes and surfaces of vehicles' networks besides their skin in the air: a skin
- * as its sidecar says, fuel, the ground under tracks and wheels, water about hulls, and what lies inside. */
+ * as its sidecar says, fuel, the ground under tracks and wheels, water about hulls, and what lies inside.
+ * labels: physics */
 #include "tests/render/vehicle_stage.h"
 
 #include "render/heat/surface_flux.h"

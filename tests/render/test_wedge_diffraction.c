@@ -4,7 +4,7 @@
  * currents as sums of Bessel functions (Bowman, Senior, Uslenghi, "Electromagnetic and Acoustic Scattering by Simple
  * Shapes", ch. 6), integrated term by term: integral of J_v(x) exp(-p x) dx = q^v / sqrt(p^2 + 1), of J_v(x) exp(-p x)
  * / x: q^v / v, with q = sqrt(p^2 + 1) - p. The sums are geometric series; for -1 < m < 1 they stand for their limit
- * without losses. */
+ * without losses. labels: physics */
 #include "tests/check.h"
 #include "render/radar/wedge_diffraction.h"
 

@@ -1,4 +1,4 @@
-/* Wedges of meshes whose edges are known: boxes, sheets, steps, junctions, cylinders. */
+/* Wedges of meshes whose edges are known: boxes, sheets, steps, junctions, cylinders. labels: physics */
 #include "tests/render/hand_mesh.h"
 
 static const double pi = 3.14159265358979323846;

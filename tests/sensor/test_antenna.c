@@ -1,5 +1,5 @@
 /* The dish's patterns against published widths and side lobes and against sums over its aperture; angles by
- * monopulse. */
+ * monopulse. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/radar/antenna.h"

@@ -1,5 +1,5 @@
 /* The chain applied to planes: measured from a slanted edge as a laboratory would, and held against the closed
- * forms. */
+ * forms. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/detector/blur.h"

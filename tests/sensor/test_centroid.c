@@ -1,6 +1,6 @@
 /* Where a small target seems to be: the centroid of a sensor's raw counts, noise off, against an ideal sampled sensor of
  * the same optics and footprint, whose samples are summed here from frequencies; and of the radiance planes against an
- * ideal box. A plate and a sphere, 0.1 to 20 px, at many places within a pixel. labels: slow */
+ * ideal box. A plate and a sphere, 0.1 to 20 px, at many places within a pixel. labels: physics slow */
 #include "tests/render/hand_world.h"
 
 #include "sensor/detector/chain.h"

@@ -1,5 +1,5 @@
 /* Detection at a constant rate of false alarms: multipliers against computed ones, the rate in noise by counting,
- * targets that are found. */
+ * targets that are found. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/radar/cfar.h"

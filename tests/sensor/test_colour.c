@@ -1,4 +1,5 @@
-/* Displayed colours against those that an eye's responses give to the same spectra; white at any height of the sun. */
+/* Displayed colours against those that an eye's responses give to the same spectra; white at any height of the sun.
+ * labels: physics */
 #include "tests/check.h"
 #include "tests/render/hand_world.h"
 #include "tests/sensor/colour_spectra.h"

@@ -1,4 +1,5 @@
-/* The first detector: noise by its statistics, levels by exact order statistics, display by its invariants. */
+/* The first detector: noise by its statistics, levels by exact order statistics, display by its invariants.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "sensor/detector/noise3d.h"

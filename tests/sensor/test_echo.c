@@ -1,4 +1,4 @@
-/* Samples of many echoes by gridding against the sum that they stand for, echo by echo, in double. */
+/* Samples of many echoes by gridding against the sum that they stand for, echo by echo, in double. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/radar/echo.h"

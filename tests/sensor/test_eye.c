@@ -1,5 +1,5 @@
 /* How the scene moves over the picture, for every sensor of etc/sensors.csv on every kind of host, against closed forms
- * and against what the cameras of neighbouring frames show of a point at rest. labels: slow */
+ * and against what the cameras of neighbouring frames show of a point at rest. labels: physics slow */
 #include "tests/sensor/eye_lab.h"
 
 static const DisEntityType tank = {1, 1, 225, 1, 1, 1, 0}, plane = {1, 2, 225, 1, 1, 1, 0}, missile = {2, 2, 225, 1, 1, 1, 0};

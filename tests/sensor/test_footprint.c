@@ -1,5 +1,5 @@
 /* Boresight and corners on the ground, against triangles on paper. tests/system/test_klv.sh has them marched through an
- * elevation file by another program, and compares them with the range plane. */
+ * elevation file by another program, and compares them with the range plane. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/truth/footprint.h"

@@ -1,5 +1,6 @@
 /* What dead reckoning does to a frame: vehicles that drive as they like, heard as a sender of the standard speaks (1 m,
- * 3 degrees, a heartbeat of 5 s), against the frame of their true poses, which the test alone knows. labels: slow */
+ * 3 degrees, a heartbeat of 5 s), against the frame of their true poses, which the test alone knows.
+ * labels: physics slow */
 #include "tests/sensor/error_scenes.h"
 
 enum { drivers = 8, ticks_a_s = 30 };

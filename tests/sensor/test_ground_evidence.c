@@ -1,4 +1,5 @@
-/* What an exercise says of its ground, and that those who stand, stand on it: heights against what the reports say. */
+/* What an exercise says of its ground, and that those who stand, stand on it: heights against what the reports say.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "dis/enumerations.h"

@@ -1,6 +1,6 @@
 /* Micro-Doppler of what spins and rolls, and the cross-polarised channel, through the whole chain: a blade's flash fills the
  * range rates up to that of its tip, a wheel's those from its road contact to its top; a dihedral rolled by 45 degrees returns
- * the other polarisation. labels: slow */
+ * the other polarisation. labels: physics slow */
 #include "tests/sensor/radar_scene.h"
 
 enum { BLADE, WHEEL, DIHEDRAL };

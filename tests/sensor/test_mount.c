@@ -1,4 +1,4 @@
-/* Where the sensor sits on its host and which way it looks: sensor.mount*, by hand. */
+/* Where the sensor sits on its host and which way it looks: sensor.mount*, by hand. labels: physics */
 #include "tests/sensor/eye_lab.h"
 
 #include "sensor/node/mount.h"

@@ -6,7 +6,7 @@
  * pixels it lies over, less that of the gap beside it. Signal: the mean of these differences, less that of the same
  * frames without targets. Noise: their deviation over pictures without, of many detectors of a kind, over the root of
  * two: that of one bar's mean. The temperature difference at which the one is 2.5 times the other is looked for,
- * starting from half the prediction. labels: slow */
+ * starting from half the prediction. labels: physics slow */
 #include "tests/check.h"
 
 #include "render/materials/planck.h"

@@ -1,5 +1,5 @@
 /* The closed forms of modulation transfer against published values, and against numerical integrals of what they
- * are the closed forms of. */
+ * are the closed forms of. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/detector/mtf.h"

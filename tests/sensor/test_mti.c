@@ -1,5 +1,5 @@
 /* Cancellers of moving-target indication: gain of a target, blind speeds, noise, and the improvement factor over clutter of
- * a Gaussian spectrum, against closed forms. */
+ * a Gaussian spectrum, against closed forms. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/radar/echo.h"

@@ -1,5 +1,5 @@
 /* Three-dimensional noise against its own definition: what was put in comes out, and each component stands still in the
- * axes it lacks. */
+ * axes it lacks. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/detector/noise3d.h"

@@ -1,5 +1,5 @@
 /* Electrons from radiance: photon integrals of 25 digits, and shot-limited temperature differences computed
- * elsewhere. */
+ * elsewhere. labels: physics */
 #include "tests/check.h"
 
 #include "render/materials/planck.h"

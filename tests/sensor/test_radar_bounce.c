@@ -1,5 +1,5 @@
 /* Echoes by way of the ground through the whole chain: where they lie in range and Doppler by geometry that the test
- * works out itself, what the ground mirrors, and the same bits for threads. */
+ * works out itself, what the ground mirrors, and the same bits for threads. labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/ground_table.h"

@@ -1,5 +1,5 @@
 /* A radar's receiver and processing, with echoes whose answers are known on paper: signal to noise by the radar
- * equation, places, speeds and directions of points, images of I/Q errors, noise of a converter. */
+ * equation, places, speeds and directions of points, images of I/Q errors, noise of a converter. labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/radar_equation.h"

@@ -1,5 +1,5 @@
 /* The error estimate of a radar's map: what gridding leaves against sums by hand, an echo that is displaced against one
- * measured there, shares of a map whose energy is known. */
+ * measured there, shares of a map whose energy is known. labels: physics */
 #include "tests/sensor/scan_stage.h"
 
 #include "sensor/radar/echo.h"

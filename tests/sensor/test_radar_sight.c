@@ -1,5 +1,5 @@
 /* What hides part of a target: of two spheres behind a wall that covers one, the other keeps its own field, as a model and as
- * given scatterers. And a target by a given signature, through the whole chain. labels: slow */
+ * given scatterers. And a target by a given signature, through the whole chain. labels: physics slow */
 #include "tests/sensor/radar_scene.h"
 
 enum { TWO, ONE, WALL };

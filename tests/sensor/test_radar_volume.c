@@ -1,5 +1,5 @@
 /* The radar's volumes through the whole chain: rain, foliage, chaff and a corner reflector against integrals and closed
- * forms that the test makes itself; statistics, Doppler, polarisation; the same bits. */
+ * forms that the test makes itself; statistics, Doppler, polarisation; the same bits. labels: physics */
 #include "tests/check.h"
 #include "tests/render/hand_plants.h"
 

@@ -9,7 +9,7 @@
  * of more than that does not pass: the twin below moves the quadrilateral by 0.15 px and must fail.)
  *
  * With a lens that distorts, and colours that are magnified differently, each pixel is first taken back to where a
- * pinhole would have it, by formulas and a Newton's method of this file's own. labels: slow */
+ * pinhole would have it, by formulas and a Newton's method of this file's own. labels: physics slow */
 #include "tests/check.h"
 
 #include "entities/table/entity_table.h"

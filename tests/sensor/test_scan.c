@@ -1,5 +1,5 @@
 /* A beam that scans: spheres at places that the test knows, widths against an integral over the aperture; ground
- * against a beam that stares. The same bits: test_scan_bits.c. */
+ * against a beam that stares. The same bits: test_scan_bits.c. labels: physics */
 #include "tests/sensor/scan_stage.h"
 
 #include "render/radar/radar_equation.h"

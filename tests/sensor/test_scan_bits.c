@@ -1,4 +1,5 @@
-/* A beam that scans, by many threads and by one: the same bits, and those of a beam that stares. labels: threads */
+/* A beam that scans, by many threads and by one: the same bits, and those of a beam that stares.
+ * labels: physics threads */
 #include "tests/sensor/scan_stage.h"
 
 /* Whatever makes it: and the middle position is the interval of a beam that stares: over ground bit for bit, of

@@ -1,5 +1,5 @@
 /* A scan sharpened by Doppler, against lambda R / (2 v T sin psi), and on the pixels of the frame: spheres at places
- * that the test knows. */
+ * that the test knows. labels: physics */
 #include "tests/sensor/scan_stage.h"
 
 static double line[scan_azimuths_most]; /* power over azimuth */

@@ -1,5 +1,5 @@
 /* A beam that scans with each waveform but that of test_scan.c: the azimuth and range of a sphere, and its pixel, from
- * a still antenna and from one that flies. */
+ * a still antenna and from one that flies. labels: physics */
 #include "tests/sensor/scan_stage.h"
 
 static double line[scan_azimuths_most]; /* power over azimuth */

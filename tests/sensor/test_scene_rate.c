@@ -1,4 +1,4 @@
-/* The scene's motion against where a point at rest is projected a moment before and after. */
+/* The scene's motion against where a point at rest is projected a moment before and after. labels: physics */
 #include "tests/check.h"
 
 #include "render/scene/view.h"

@@ -1,5 +1,5 @@
 /* The radar of a seeker over ground: its power against an integral over the ground that the test makes itself, its
- * place in Doppler, and the same bits whatever made them. labels: slow */
+ * place in Doppler, and the same bits whatever made them. labels: physics slow */
 #include "tests/check.h"
 
 #include "sensor/radar/seeker_radar.h"

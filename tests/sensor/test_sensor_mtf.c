@@ -1,5 +1,5 @@
 /* Modulation transfer of every preset by slanted edge on its raw counts, noise off, along rows and along columns: a plate
- * of a rendered picture against optics of all the band's wavelengths, footprint and jitter. */
+ * of a rendered picture against optics of all the band's wavelengths, footprint and jitter. labels: physics */
 #include "tests/render/hand_world.h"
 
 #include "sensor/detector/chain.h"

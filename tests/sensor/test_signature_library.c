@@ -1,5 +1,5 @@
 /* Signatures on disk: what is read has the bits of what was made; files that are damaged, cut or of another name are
- * refused and made anew; other settings, poses and models have other names. */
+ * refused and made anew; other settings, poses and models have other names. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/radar/signature_library.h"

@@ -1,5 +1,5 @@
 /* Every skip by itself, and all of them: the same planes and the same sums of targets, to the bit, over random scenes.
- * labels: slow */
+ * labels: physics slow */
 #include "tests/check.h"
 
 #include "sensor/quality/trial.h"

@@ -1,6 +1,6 @@
 /* Contact shadows: the light on shadowed ground, under hulls and on unlit sides, by sensor.sky_visibility, against
  * directions asked at every pixel (render/light/hemisphere.h, which two other renderers confirm), means of 5 x 5 px; over models,
- * suns and all bands. And the same bits whichever bands are asked for, on however many threads. labels: slow */
+ * suns and all bands. And the same bits whichever bands are asked for, on however many threads. labels: physics slow */
 #include "tests/check.h"
 
 #include "sensor/quality/trial.h"

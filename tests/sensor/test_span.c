@@ -1,4 +1,4 @@
-/* tests/sensor/test_span.c: moments of a recording, and lists of planes, as people write them. */
+/* tests/sensor/test_span.c: moments of a recording, and lists of planes, as people write them. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/settings/plane_choice.h"

@@ -1,5 +1,5 @@
 /* Draws of a sweep: different ones, as many as asked for or a line that says why not; those of a smaller count first; no
- * value and no combination favoured. */
+ * value and no combination favoured. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/commands/sweep_file.h"

@@ -1,6 +1,6 @@
 /* A column of detectors swept over the picture, with stages that are added up (scanning_flir2): when each column is
  * taken, what belongs to a row, and what the stages gain; against kinematics, the sweep by lines turned over, and the
- * square root of their number. */
+ * square root of their number. labels: physics */
 #include "tests/check.h"
 
 #include "render/materials/planck.h"

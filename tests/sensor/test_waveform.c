@@ -1,5 +1,5 @@
 /* Waveforms by their times and frequencies: responses to a point, range-Doppler coupling, smear, folding, eclipsing and
- * signal to noise, of each row of etc/radars.csv that has one, against closed forms worked out here. */
+ * signal to noise, of each row of etc/radars.csv that has one, against closed forms worked out here. labels: physics */
 #include "tests/check.h"
 
 #include "render/radar/radar_equation.h"

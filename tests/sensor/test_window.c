@@ -1,5 +1,5 @@
 /* Windows of radar processing against the figures that SciPy's windows have, zero-padded 256 times, and what is
- * known on paper. */
+ * known on paper. labels: physics */
 #include "tests/check.h"
 
 #include "sensor/radar/window.h"

@@ -1,5 +1,5 @@
 /* Noise of the ground: against a plain form of it in double, one place at a time, written here; its statistics against
- * the table's; filtered, against means over the footprint of the unfiltered noise. */
+ * the table's; filtered, against means over the footprint of the unfiltered noise. labels: physics */
 #include "tests/check.h"
 
 #include "terrain/landscape/detail.h"

@@ -1,4 +1,5 @@
-/* WGS 84 against an evaluation in long double that shares nothing with GeographicLib but the two constants. */
+/* WGS 84 against an evaluation in long double that shares nothing with GeographicLib but the two constants.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "terrain/earth/local_frame.h"

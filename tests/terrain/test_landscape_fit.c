@@ -1,5 +1,5 @@
 /* Which entities the ground is fitted to, one vote each, and where the sea is. Every ground here is a plane, a sphere or
- * a list of heights that no line of the landscape's computes. */
+ * a list of heights that no line of the landscape's computes. labels: physics */
 #include "tests/check.h"
 
 #include "terrain/landscape/landscape.h"

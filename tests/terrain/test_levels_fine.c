@@ -1,4 +1,5 @@
-/* Heights from files in steps of 1/2048 m: how far posts are from them, and seams to the bit over tiles of any shift. */
+/* Heights from files in steps of 1/2048 m: how far posts are from them, and seams to the bit over tiles of any shift.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "terrain/landscape/work_level.h"

@@ -1,4 +1,4 @@
-/* ECEF <-> ENU against the same map in long double, and how fast the Earth falls away. */
+/* ECEF <-> ENU against the same map in long double, and how fast the Earth falls away. labels: physics */
 #include "tests/check.h"
 
 #include "terrain/earth/local_frame.h"

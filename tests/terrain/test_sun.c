@@ -1,4 +1,5 @@
-/* The sun against NREL's published vector, and against a low-precision almanac that shares no code with ERFA. */
+/* The sun against NREL's published vector, and against a low-precision almanac that shares no code with ERFA.
+ * labels: physics */
 #include "tests/check.h"
 
 #include "terrain/earth/sun.h"

@@ -1,5 +1,5 @@
 /* Weather over time: values between rows by hand, typical years, spin-up, missing values, a clear day's course against
- * its definition and ERFA's sun, and refusal of bad rows. */
+ * its definition and ERFA's sun, and refusal of bad rows. labels: physics */
 #include "tests/check.h"
 
 #include "terrain/earth/sun.h"

@@ -1,5 +1,5 @@
 /* Where plants stand: a pure function of ground and seed, none where none may be, as many as the table and the layers of
- * a store say. */
+ * a store say. labels: physics */
 #include "tests/check.h"
 
 #include "terrain/landscape/ways.h"

@@ -1,7 +1,7 @@
-/* sensor/publish/image_module.h: what image_file.c calls of the module that uses OpenImageIO; each is as the function of
+/* sensor/publish/image_file_private.h: what image_file.c calls of the module that uses OpenImageIO; each is as the function of
  * image_file.h of its name. */
-#ifndef SENSOR_PUBLISH_IMAGE_MODULE_H
-#define SENSOR_PUBLISH_IMAGE_MODULE_H
+#ifndef SENSOR_PUBLISH_IMAGE_FILE_PRIVATE_H
+#define SENSOR_PUBLISH_IMAGE_FILE_PRIVATE_H
 
 #include "sensor/publish/image_file.h"
 
