@@ -1,6 +1,10 @@
 /* sensor/bench/machine.c: the machine and the program of a run. */
 #include "sensor/bench/bench_private.h"
 
+#include "entities/import/assimp_library.h"
+#include "sensor/publish/image_file.h"
+#include "terrain/elevation/gdal_library.h"
+
 #include <gnu/libc-version.h>
 #include <libgen.h>
 #include <limits.h>
@@ -72,6 +76,9 @@ void bench_machine_read(BenchMachine *out)
 #endif
     Libraries l = {out->libraries, sizeof out->libraries, 0};
     l.used = (size_t)snprintf(l.out, l.size, "glibc %s", gnu_get_libc_version());
+    if (library_load(&gdal_library) != STATUS_OK || library_load(&assimp_library) != STATUS_OK ||
+        image_file_prepare() != STATUS_OK)
+        log_warn("bench: a library is missing, and so are its version and what needs it");
     dl_iterate_phdr(add_library, &l);
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # replay --coco: masks are the pixels of the truth picture, boxes are the masks' own, and what is hidden or has no pixel is
-# left out; read by pycocotools, and by a decoder of run lengths written here. labels: small
+# left out; read by pycocotools, and by a decoder of run lengths written here.
 . "$(dirname "$0")/common.sh"
 judges oiiotool python3.numpy python3.PIL python3.pycocotools
 

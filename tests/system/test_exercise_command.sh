@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # `pitviper exercise`: recordings that others read, the same octets each time, what it sends is what it would have
-# recorded, by the clock; Ctrl-C ends it with its summary; what is wrong is named. labels: small
+# recorded, by the clock; Ctrl-C ends it with its summary; what is wrong is named.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 

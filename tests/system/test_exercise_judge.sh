@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Recordings of `pitviper exercise` as tshark reads them: every PDU, of each version, well formed. labels: small
+# Recordings of `pitviper exercise` as tshark reads them: every PDU, of each version, well formed.
 . "$(dirname "$0")/common.sh"
 judges tshark
 

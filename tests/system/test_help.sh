@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every command explains itself, and says what it did not understand. labels: small
+# Every command explains itself, and says what it did not understand.
 . "$(dirname "$0")/common.sh"
 
 run --help

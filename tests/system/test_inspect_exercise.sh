@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # `pitviper inspect` on invented exercises, whose cast is known: everybody is listed, bundling hides nobody, and
-# what is malformed is counted and never printed raw. labels: small
+# what is malformed is counted and never printed raw.
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `pitviper inspect --pdus tsv --full` against tshark: types, markings, dead reckoning, articulation. labels: small
+# `pitviper inspect --pdus tsv --full` against tshark: types, markings, dead reckoning, articulation.
 . "$(dirname "$0")/common.sh"
 needs_data dis/vrf-dis5-tow-vs-armor.pcap
 judges tshark

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Metadata of a flight over real ground: frame centre and corners lie on the ground of the elevation file. labels: small
+# Metadata of a flight over real ground: frame centre and corners lie on the ground of the elevation file.
 . "$(dirname "$0")/common.sh"
 needs_data terrain/autzen/autzen_dtm_1m.tif
 judges gdaltransform gdal_translate gdalinfo oiiotool python3.numpy python3.klvdata python3.stanag4609 python3.tstrans

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Reflectance and transmittance of leaves against PROSPECT. labels: small
+# Reflectance and transmittance of leaves against PROSPECT.
 . "$(dirname "$0")/common.sh"
 judges python3.prosail
 check "leaves are PROSPECT's" python3 tests/system/leaf_optics.py etc/plant_optics.csv

@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
 # A vehicle's network of 60 thermal nodes over three hours against SciPy's Radau: every node's temperature at the end.
-# labels: small
 . "$(dirname "$0")/common.sh"
 
 judges python3.scipy

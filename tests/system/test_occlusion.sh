@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What truth.jsonl says of who is seen and who is hidden agrees with itself, from the first frame to the impact: an
 # occluder is named just where the visible fraction is below 1, a box of visible pixels is there just where there are
-# some. labels: small
+# some.
 . "$(dirname "$0")/common.sh"
 bare=("${quick[@]}")
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Light among plants against Mitsuba 3: the same trees, leaf spectra, sun and rays. First order, block by block: the lit crown
 # and the shaded ground. All orders, which Pitviper has in closed form (render/light/canopy.h): the mean of the leaves. A stand
-# of trees: test_plants_judge_deep.sh. labels: small
+# of trees: test_plants_judge_deep.sh.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/plants.sh"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A terminal sees the progress of a replay; without one: test_motion.sh. labels: small
+# A terminal sees the progress of a replay; without one: test_motion.sh.
 . "$(dirname "$0")/common.sh"
 needs "terminal to be had" script -qec true /dev/null </dev/null
 

@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
 # Radio waves in gases, rain and cloud against ITU-Rpy: what is taken per km, in airs hot and cold, wet and dry.
-# labels: small
 . "$(dirname "$0")/common.sh"
 
 judges python3.itur

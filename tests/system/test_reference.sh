@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The reference of the products (pitviper help TOPIC) against products of every kind, both ways, and the lines of Python
-# that it shows on them: tests/system/reference.py. labels: small
+# that it shows on them: tests/system/reference.py.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 judges python3.numpy python3.OpenEXR python3.PIL

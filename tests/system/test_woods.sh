@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Plants in a replay: the same planes to the bit for any number of threads, with every skip or none, causal as known; the
-# truth, run.json and a frame file of them; and what they change. labels: small
+# truth, run.json and a frame file of them; and what they change.
 . "$(dirname "$0")/common.sh"
 bare=("${quick[@]}" --set heat.shadow_m=64) # plants cast shadows that cool the ground
 
