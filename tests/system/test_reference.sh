@@ -39,12 +39,13 @@ for kind in truth sensor; do
     "$pitviper" exercise demo --send 127.0.0.1:$port >"$tmp/sender.out" 2>&1 &
     senders+=($!)
 done
-# all products; then what replaces or leaves out some of them
+# all products; then what replaces or leaves out some of them. Of three targets in view the radar's field of one is traced
+printf 'entity,signature\ntank,point.csv\n1:3001:22,point.csv\n' >"$tmp/but_one.csv"
 exercise demo "$tmp/demo.pcap"
 small=(--size 32x24 --rate 1 --threads 1)
 run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --from 1366 --to 1366 --pairs target --coco \
     --set sensor.preset=staring_lwir,staring_mwir,tv --set sensor.lens_k1=-0.1 --set sensor.lateral_r=0.001 \
-    --set radar.preset=search_ku --set radar.scan_deg=4
+    --set radar.preset=search_ku --set radar.scan_deg=4 --set radar.given="$tmp/but_one.csv"
 check "all products" [ $code = 0 ] || cat "$tmp/stderr"
 run replay "$tmp/demo.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 --bands optical --host observer \
     --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png \
