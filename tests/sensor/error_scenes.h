@@ -236,13 +236,13 @@ static inline void judge_ground(Tally *tally, const ErrorCase *c)
               apart(&a.picture, &b.picture, (Band)band));
 }
 
-/* Heat: of ground, against steps of 150 s, the most facets a side and elements of 1.2 mm. */
-static inline void judge_heat(Tally *tally, const ErrorCase *c)
+/* Heat: of ground, against shorter steps, more facets a side and elements of 1.2 mm. */
+static inline void judge_heat(Tally *tally, const ErrorCase *c, double step_s, int facets)
 {
     TrialScene fine;
     open_scene(&fine, &lab.ground, c->of);
     HeatConfig heat = heat_default_config();
-    heat.step_s = 150, heat.facets = heat_most_facets, heat.grid = (GroundGrid){0.0012, 1.17, 3, 0.002};
+    heat.step_s = step_s, heat.facets = facets, heat.grid = (GroundGrid){0.0012, 1.17, 3, 0.002};
     CHECK(trial_scene_warm(&fine, &heat) == STATUS_OK);
     fine.past_parts = 8;
     const TrialFrame better = frame_of(&fine, &c->request, 1);

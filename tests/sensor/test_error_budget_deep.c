@@ -25,7 +25,7 @@ static void estimates_are_near_the_truth(void **state)
         judge_ground(&ground, &c);
         judge_sum(&sum, &c);
         if (!scenes[k].smoke) judge_tables(&tables, &c); /* what leaves a surface is not told from smoke */
-        if (scenes[k].heat) judge_heat(&heat, &c), heated++;
+        if (scenes[k].heat) judge_heat(&heat, &c, 150, heat_most_facets), heated++;
         close_case(&c);
     }
     const bool held[] = {nine_in_ten(&rays, "sampling"), nine_in_ten(&ground, "level of detail"),

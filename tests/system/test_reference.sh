@@ -40,23 +40,32 @@ for kind in truth sensor; do
     "$pitviper" exercise demo --send 127.0.0.1:$port >"$tmp/sender.out" 2>&1 &
     senders+=($!)
 done
-# all products; then what replaces or leaves out some of them
+# all products; then what replaces or leaves out some of them. Of three targets in view the radar's field of one is traced
+printf 'entity,signature\ntank,point.csv\n1:3001:22,point.csv\n' >"$tmp/but_one.csv"
 exercise demo "$tmp/demo.pcap"
 small=(--size 32x24 --rate 1 --threads 1)
 run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --from 1366 --to 1366 --pairs target --coco \
     --set sensor.preset=staring_lwir,staring_mwir,tv --set sensor.lens_k1=-0.1 --set sensor.lateral_r=0.001 \
-    --set radar.preset=search_ku --set radar.scan_deg=4
+    --set radar.preset=search_ku --set radar.scan_deg=4 --set radar.given="$tmp/but_one.csv"
 check "all products" [ $code = 0 ] || cat "$tmp/stderr"
-run replay "$tmp/demo.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 --bands optical --host observer \
+cat >"$tmp/two.yaml" <<'Y'
+duration_s: 8
+vehicles:
+  - {name: Tank, type: tank, route_m: [[-15, -4], [0, 3], [20, 0], [50, 6]], speed_mps: 6}
+  - {name: Truck, type: truck, route_m: [12, 8]}
+  - {name: Jeep, type: jeep, route_m: [12.5, 8]} # behind and within the truck
+Y
+exercise "$tmp/two.yaml" "$tmp/two.pcap"
+run replay "$tmp/two.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 --bands optical --host observer \
     --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png \
     --set terrain.woods=on --set terrain.woods_half_m=300 --set terrain.woods_trees=5000
 check "other products" [ $code = 0 ] || cat "$tmp/stderr"
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
-run replay "$tmp/demo.pcap" --out "$tmp/sweep" "${small[@]}" --from 1366 --to 1366 --bands lwir --coco --sweep "$tmp/sweep.yaml"
+run replay "$tmp/two.pcap" --out "$tmp/sweep" "${small[@]}" --from 1356 --to 1356 --bands lwir --coco --sweep "$tmp/sweep.yaml"
 mkdir "$tmp/case"
 cat >"$tmp/case/case.yaml" <<Y
 purpose: a record
-log: $tmp/demo.pcap
+log: $tmp/two.pcap
 config: |
   sensor: {width_px: 32, height_px: 24, rate_hz: 1, optical: pan}
   terrain: {woods: off}
