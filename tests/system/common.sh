@@ -75,3 +75,6 @@ regress_case() {
     [ -s "$tmp/$1.yaml" ] || fail "$folder/case.yaml: no 'config: |'"
     [ -f "$tmp/$1.pcap" ] || exercise "$folder/scenario.yaml" "$tmp/$1.pcap"
 }
+# Options for tests that look at no shape closely: vehicles of fewer facets, ground of fewer posts; half of a replay's start.
+# shellcheck disable=SC2034
+coarse=(--set models.sag_m=0.02 --set terrain.spacing_m=30)
