@@ -5,12 +5,12 @@
 
 pitviper=$(realpath "$pitviper")
 exercise demo "$tmp/demo.pcap"
-# for radars: a truck, and a helicopter that flies past it a kilometre off
+# for radars: a person, and a helicopter that flies past it a kilometre off
 cat >"$tmp/past.yaml" <<'Y'
 duration_s: 6
 place: {lat_deg: 36, lon_deg: -123, height_m: 120}
 vehicles:
-  - {name: Truck, id: 11, type: truck, force: 2, route_m: [[0, 0]]}
+  - {name: Man, id: 11, type: person, force: 2, route_m: [[0, 0]]}
   - {name: Watch, id: 31, type: 1.2.225.20.1.0.0, force: 1, route_m: [[-985, -100], [-985, 300]], speed_mps: 40, height_m: 100}
 Y
 exercise "$tmp/past.yaml" "$tmp/past.pcap"
