@@ -53,18 +53,20 @@ Status library_load(Library *library)
 
 bool library_module(char *out, size_t out_size, const char *name)
 {
-    static const char *const beside[] = {"", "/../lib/pitviper"};
+    /* installed; built; of a test, and of a mutant */
+    static const char *const beside[] = {"/../lib/pitviper", "", "/..", "/../.."};
     char          program[4096];
     const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     program[length > 0 ? length : 0] = 0;
     char *slash = strrchr(program, '/');
     if (slash) *slash = 0;
-    const char *const folders[] = {program, program, "", ""};
-    const char *const rests[]   = {beside[0], beside[1], PITVIPER_MODULES_BUILT, PITVIPER_MODULES_INSTALLED};
-    bool              fits      = false;
-    for (int i = 0; i < 4; i++) {
-        fits = snprintf(out, out_size, "%s%s/%s", folders[i], rests[i], name) < (int)out_size;
-        if (fits && access(out, R_OK) == 0) break;
+    for (int i = 0; i < 5; i++) {
+        const int n = i < 4 ? snprintf(out, out_size, "%s%s/%s", program, beside[i], name)
+                            : snprintf(out, out_size, "%s/%s", PITVIPER_MODULES_INSTALLED, name);
+        if (n < (int)out_size && access(out, R_OK) == 0) return true;
     }
-    return fits;
+    log_error("the program's module %s is missing: looked beside %s, in %s/../lib/pitviper and in %s; install the whole (`cmake "
+              "--install BUILD --prefix DIR`) and run DIR/bin/pitviper, or copy lib/pitviper beside the program's folder",
+              name, program, program, PITVIPER_MODULES_INSTALLED);
+    return false;
 }

@@ -30,7 +30,7 @@ typedef struct Library {
  * own when it is loaded). STATUS_IO, logged with what to install, when it is missing or lacks a function. */
 Status library_load(Library *library);
 
-/* Where `pitviper` has modules of its own: beside the program, or in lib/pitviper of the installation. False: too long. */
+/* Path of a module of our own: beside the program, or in lib/pitviper of the installation. False, logged: it is not there. */
 bool library_module(char *out, size_t out_size, const char *name);
 
 /* The jumps are weak, so that a test can put a function of its own in place of one. */

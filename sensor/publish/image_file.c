@@ -11,13 +11,18 @@
 static char path_of_module[4200];
 LIBRARY(image_library, IMAGE_MODULE, "OpenImageIO", path_of_module, "libopenimageio2.4");
 
-static void find_module(void) { library_module(path_of_module, sizeof path_of_module, "pitviper-images.so"); }
+static bool module_is_there;
+
+static void find_module(void)
+{
+    module_is_there = library_module(path_of_module, sizeof path_of_module, "pitviper-images.so");
+}
 
 Status image_file_prepare(void)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, find_module);
-    return library_load(&image_library);
+    return module_is_there ? library_load(&image_library) : STATUS_IO;
 }
 
 Status image_write_exr_as(const char *path, const char *compression, const Plane *plane, int plane_count,

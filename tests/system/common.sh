@@ -122,3 +122,7 @@ regress_case() {
 # shellcheck disable=SC2034
 quick=("${bare[@]}" --set terrain.spacing_m=16 --set terrain.detail=off --set models.sag_m=0.05 --set heat.step_s=3600
     --set heat.shadow_m=0)
+
+# Options for tests that look at no shape closely: vehicles of fewer facets, ground of fewer posts; half of a replay's start.
+# shellcheck disable=SC2034
+coarse=(--set models.sag_m=0.02 --set terrain.spacing_m=30)

@@ -5,10 +5,10 @@
 here=$PWD
 real=$(realpath "$pitviper")
 mkdir "$tmp/bin" "$tmp/work"
-# as a user has it on the path; pictures small and one frame, which is all that is left out
+# as a user has it on the path; pictures small, one frame, quickly begun, which is all that is left out
 cat >"$tmp/bin/pitviper" <<END
 #!/bin/sh
-case \$1 in replay) exec "$real" "\$@" --size 64x48 --only 0 --no-png --threads 2 ;; *) exec "$real" "\$@" ;; esac
+case \$1 in replay) exec "$real" "\$@" --size 64x48 --only 0 --no-png --threads 1 ${bare[*]} ${coarse[*]} ;; *) exec "$real" "\$@" ;; esac
 END
 chmod +x "$tmp/bin/pitviper"
 blocks() { awk -v head="$1" '$0 ~ "^ *```" head "$" { on = 1; next } /^ *```/ { on = 0 } on' etc/ADDING.md; }
@@ -131,14 +131,14 @@ for model in us1976; do
     done
 done
 grep '^staring_lwir,' "$etc/sensors.csv" | sed 's/^staring_lwir,lwir/bolometer,lwir_wide/' >>"$etc/sensors.csv"
-PITVIPER_ETC=$etc run replay "$tmp/work/exercise.pcap" --bands optical,lwir_wide --set sensor.preset=bolometer --size 64x48 --only 0 --no-png --out "$tmp/wide"
+PITVIPER_ETC=$etc run replay "$tmp/work/exercise.pcap" --bands optical,lwir_wide --set sensor.preset=bolometer --size 64x48 --only 0 --no-png --threads 1 "${coarse[@]}" --out "$tmp/wide"
 check "channel: it runs" [ $code = 0 ]
 check "channel: a picture" [ -s "$tmp/wide/frames/lwir_wide/000000.exr" ]
 check "channel: truth has its sums" grep -q '"lwir_wide":{"contrast_k"' "$tmp/wide/truth.jsonl"
 check "channel: a detector looks at it" grep -q '^lwir_wide: bolometer, F/2' "$tmp/stdout"
 check "channel: run.json" grep -q 'optical,lwir_wide' "$tmp/wide/run.json"
 sed -i 's/,ext_lwir_wide/,ext_other/' "$etc/effects.csv"
-PITVIPER_ETC=$etc run replay "$tmp/work/exercise.pcap" --bands lwir_wide --size 64x48 --only 0 --no-png --out "$tmp/wide2"
+PITVIPER_ETC=$etc run replay "$tmp/work/exercise.pcap" --bands lwir_wide --size 64x48 --only 0 --no-png --threads 1 "${coarse[@]}" --out "$tmp/wide2"
 check "channel: a column that is missing" complained 'effects.csv.*ext_lwir_wide'
 run replay "$tmp/work/exercise.pcap" --bands lwir,lwir_wide --out "$tmp/o"
 check "channel: no such" complained "'lwir,lwir_wide' is not a list of .*mwir, lwir, swir"

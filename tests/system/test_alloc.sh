@@ -6,7 +6,7 @@
 build=$(realpath "$build")
 pitviper=$build/pitviper preload=$build/tests/libfail_alloc.so
 needs "$preload (sanitizers have an allocator of their own)" test -f "$preload"
-places_most=${PITVIPER_ALLOC_PLACES:-48} # for all commands together
+places_most=${PITVIPER_ALLOC_PLACES:-24} # for all commands together
 export pitviper preload tmp
 
 # ---- small things to read: three models, one visibility, a ground of 30 m; a model of somebody else's
@@ -36,7 +36,8 @@ printf 'newmtl green\nKd 0.1 0.3 0.1\n' >"$tmp/etc/box.mtl"
 printf 'axes: +x +z\norigin: auto\njoints:\n  - {nodes: hull, axis: up, pivot: centre, class: primary_turret_1, metric: azimuth, limits_deg: [-5, 5]}\nmaterials: {"*": paint_olive}\n' \
     >"$tmp/etc/box.yaml"
 exercise demo "$tmp/demo.pcap"
-printf 'sensor: {width_px: 48, height_px: 32, rate_hz: 0.1}\nmodels: {sag_m: 0.1}\nterrain: {spacing_m: 30, woods: off}\n' >"$tmp/config.yaml"
+printf 'sensor: {width_px: 48, height_px: 32, rate_hz: 0.1}\nmodels: {sag_m: 0.1}\nterrain: {spacing_m: 30, woods: off}
+heat: {facets: 3, step_s: 3600, shadow_m: 64, vehicle_step_s: 600}\n' >"$tmp/config.yaml"
 printf 'ox_m,oy_m,oz_m,dx,dy,dz\n-9,0,-1,1,0,0\n' >"$tmp/rays.csv"
 printf 'model,visibility_km,band,observer_m,target_m,range_km,temp_k\nus1976,23,lwir,10,10,1,290\n' >"$tmp/air.csv"
 printf 'lat_deg,lon_deg\n10,20\n' >"$tmp/geoid.csv"

@@ -4,6 +4,11 @@
 . "$(dirname "$0")/common.sh"
 judges python3
 
+# a small one: how a picture looks is not what is tested
+replay() {
+    local log=$1 out=$2; shift 2
+    run replay "$log" --out "$out" --size 32x24 --rate 1 --threads 1 --overwrite "${coarse[@]}" "$@"
+}
 next_step='next|use|give|check|see|choose|--[a-z]|inspect|wanted|are read'
 # nothing_shown NAME WHAT [NEXT]: the last run failed, named WHAT, and said what to do
 nothing_shown() {
@@ -56,7 +61,7 @@ shown "a truncated log" "$tmp/cut"
 check "a truncated log is called so" said 'truncat|cut short|ends inside|ended inside'
 
 exercise no-vehicles "$tmp/no-vehicles.pcap"
-replay "$tmp/no-vehicles.pcap" "$tmp/nv"
+replay "$tmp/no-vehicles.pcap" "$tmp/nv" --rate 0.5
 shown "no vehicles" "$tmp/nv"
 exercise no-missile "$tmp/no-missile.pcap"
 replay "$tmp/no-missile.pcap" "$tmp/nm" --rate 0.2
@@ -98,7 +103,7 @@ check "an unwritable folder: found before the first frame" [ "$(grep -c 'frames/
 (
     trap '' XFSZ
     ulimit -f 4
-    replay "$tmp/demo.pcap" "$tmp/full"
+    replay "$tmp/demo.pcap" "$tmp/full" --size 96x64 --to +14
     echo "$code" >"$tmp/full.code"
 ) >/dev/null 2>&1
 code=$(cat "$tmp/full.code" 2>/dev/null || echo 124)

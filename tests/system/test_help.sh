@@ -10,26 +10,26 @@ check "--help lists replay" grep -qx replay <<<"$commands"
 check "--help lists inspect" grep -qx inspect <<<"$commands"
 check "--help lists record" grep -qx record <<<"$commands"
 
+mkdir "$tmp/help"
 for command in $commands; do
     run $command --help
+    cp "$tmp/stdout" "$tmp/help/$command"
     check "$command --help ends well" [ $code = 0 ]
     check "$command --help shows its usage" grep -qi "usage: pitviper $command" "$tmp/stdout"
 done
 # the terms of etc/reference/glossary.md, and no others for the same things
-for each in replay run regress check exercise record; do "$pitviper" $each --help; done >"$tmp/words"
+cat "$tmp"/help/{replay,run,regress,check,exercise,record} >"$tmp/words"
 { "$pitviper" --help; "$pitviper" check --default; "$pitviper" regress --keys; "$pitviper" help --markdown; } >>"$tmp/words"
 grep -nwiE 'nobody|somebody|anybody|everybody|whoever|whom|invented|knobs?|graves?|veils?|even air|held against|a pixel|pictures?' \
     "$tmp/words" | grep -v 'of a pixel' >"$tmp/old_words"
 check "help in the glossary's terms" [ ! -s "$tmp/old_words" ] || head -n 5 "$tmp/old_words"
-run replay --help
 for option in --bands --size --rate --from --to --host --threads --seed --speed --isa --no-png --config --out --causal \
               --no-skip --samples --only; do
-    check "replay --help names $option" grep -q -- "$option" "$tmp/stdout"
+    check "replay --help names $option" grep -q -- "$option" "$tmp/help/replay"
 done
-run run --help
 for option in --address --interface --port --out --bands --size --rate --host --config --set --threads --seed --for --frames \
               --record --isa --no-png --no-files --no-skip; do
-    check "run --help names $option" grep -q -- "$option" "$tmp/stdout"
+    check "run --help names $option" grep -q -- "$option" "$tmp/help/run"
 done
 while read -r named arguments; do
     # shellcheck disable=SC2086

@@ -17,7 +17,8 @@ hidden() {
 cd "$tmp" || exit 1
 hidden "$tmp/prefix/bin/pitviper" exercise demo -o "$tmp/demo.pcap"
 check "the installed one: exercise demo" [ $code = 0 -a -s "$tmp/demo.pcap" ]
-hidden "$tmp/prefix/bin/pitviper" -v replay "$tmp/demo.pcap" --out "$tmp/out" --size 64x48 --only 0,1 --threads 2
+hidden "$tmp/prefix/bin/pitviper" -v replay "${bare[@]}" "${coarse[@]}" "$tmp/demo.pcap" --out "$tmp/out" --size 64x48 --only 0,1 --threads 1 \
+    --set terrain.woods=on --set terrain.woods_half_m=100 --set terrain.woods_trees=200
 check "the installed one: replay" [ $code = 0 -a "$(frames "$tmp/out")" = 2 ]
 check "its tables are its own" eval 'grep -q "table: $tmp/prefix/bin/../share\|table: $tmp/prefix/share/pitviper/catalog.csv" "$tmp/stderr"'
 check "and no others" not grep -q "table: $source" "$tmp/stderr"
@@ -36,7 +37,11 @@ check "alone: help needs none" [ $code = 0 ]
 hidden "$tmp/alone/bin/pitviper" check --default
 check "alone: neither do the defaults" [ $code = 0 ]
 cp -r "$tmp/prefix/share" "$tmp/alone/"
-hidden "$tmp/alone/bin/pitviper" replay "$tmp/demo.pcap" --out "$tmp/out2" --size 64x48 --only 0 --threads 2
-check "alone, share put beside it: replay" [ $code = 0 ]
+hidden "$tmp/alone/bin/pitviper" replay "${bare[@]}" "${coarse[@]}" "$tmp/demo.pcap" --out "$tmp/out2" --size 64x48 --only 0 --threads 1
+check "alone, share put beside it, without its module: exit code" [ $code = 1 ]
+check "alone: the module is named, and what to install" complained 'module pitviper-images.so is missing: looked .*copy lib/pitviper'
+cp -r "$tmp/prefix/lib" "$tmp/alone/"
+hidden "$tmp/alone/bin/pitviper" replay "${bare[@]}" "${coarse[@]}" "$tmp/demo.pcap" --out "$tmp/out2" --overwrite --size 64x48 --only 0 --threads 1
+check "alone, share and lib put beside it: replay" [ $code = 0 ]
 cd "$source" || exit 1
 finish

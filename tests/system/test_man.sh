@@ -3,6 +3,17 @@
 . "$(dirname "$0")/common.sh"
 judges groff
 
+# what the program says is asked for once, by etc/make_man and here
+cat >"$tmp/once" <<'END'
+#!/bin/sh
+file=$PITVIPER_SAID/$(echo "$*" | tr ' /' '__')
+[ -e "$file" ] || "$PITVIPER_PROGRAM" "$@" >"$file" || { code=$?; rm -f "$file"; exit $code; }
+cat "$file"
+END
+chmod +x "$tmp/once"
+mkdir "$tmp/said_once"
+export PITVIPER_PROGRAM=$pitviper PITVIPER_SAID=$tmp/said_once
+pitviper=$tmp/once
 etc/make_man "$pitviper" >"$tmp/pitviper.1" || fail "etc/make_man"
 for command in $("$pitviper" --help | sed -nE 's/^  ([a-z]+) +.*/\1/p'); do
     check "$command has its section" grep -qx "\.SH PITVIPER ${command^^}" "$tmp/pitviper.1"

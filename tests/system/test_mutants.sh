@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# A program with one thing wrong is caught by `pitviper regress`, against the records of tests/regress, and the channel
-# that the wrong thing is about is named first: each of tests/mutants, and a copy of etc/ with one reflectance off. That
-# the program itself passes these cases, to the bit: test_regress_suite.sh.
+# A program with one thing wrong is caught by `pitviper regress`, by the cases of tests/regress, and the channel that the
+# wrong thing is about is named first: each of tests/mutants, and a copy of etc/ with one reflectance off. The records are
+# made here, of coarse vehicles and ground that start quickly; against the approved ones: test_mutants_deep.sh. That the
+# program itself passes these cases, to the bit: test_regress_suite.sh. labels: two
 . "$(dirname "$0")/common.sh"
 mutants=$build/tests/mutants
 if [ ! -d "$mutants" ]; then
@@ -32,12 +33,27 @@ TABLE
 }
 check "each mutant is in the table" [ "$(printf '%s\n' "$mutants"/pitviper_mutant_* | sed 's/.*_mutant_//' | sort)" = "$(mutants_table | sed '/^material/d; s,/.*,,' | sort)" ]
 
+# the cases: copies with a quick start and a record of the program's own
+folders=tests/regress
+if [ "${PITVIPER_MUTANTS_APPROVED:-no}" = no ]; then
+    folders=$tmp/cases
+    mkdir "$folders"
+    for name in $(mutants_table | cut -d/ -f2 | sort -u); do
+        mkdir "$folders/$name"
+        exercise "tests/regress/$name/scenario.yaml" "$folders/$name/log.pcap"
+        sed 's/^scenario: .*/log: log.pcap/; s/^    woods: off/&\n    spacing_m: 30\n  models: {sag_m: 0.02}\n  heat: {facets: 3, step_s: 1800, shadow_m: 64, vehicle_step_s: 600}/' \
+            "tests/regress/$name/case.yaml" >"$folders/$name/case.yaml"
+    done
+    run regress --update "$folders"/*/ --why 'for mutants' --threads 1
+    check "records" [ $code = 0 ] || cat "$tmp/stdout" "$tmp/stderr"
+fi
+
 # regressed NAME PROGRAM CASE ...: in the background, as many at a time as there are processors
 regressed() {
     local name=$1 program=$2; shift 2
     while [ "$(jobs -pr | wc -l)" -ge "$(nproc)" ]; do wait -n; done
     {
-        "$program" regress "${@/#/tests/regress/}" --junit "$tmp/$name.xml" --work "$tmp/$name" --jobs 1 --threads 1 \
+        "$program" regress "${@/#/$folders/}" --junit "$tmp/$name.xml" --work "$tmp/$name" --jobs 1 --threads 1 \
             >"$tmp/$name.out" 2>&1
         echo $? >"$tmp/$name.code"
     } &
