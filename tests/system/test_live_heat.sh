@@ -61,7 +61,7 @@ check "the same temperatures" [ -z "$(comm -23 "$tmp/live.warmth" "$tmp/again.wa
 check "that change from frame to frame" [ "$(temps 1 | cut -d' ' -f4 | sort -u | wc -l)" -ge 5 ]
 check "driving and firing warm a patch by more than 0.2 K ($(rise))" is "$(rise)" '>' 0.2
 # the twin, of the first frames
-replay "$tmp/heat.pcapng" "$tmp/other" --causal --port 0 "${look[@]}" --only "$(frames_of heat | cut -d, -f-2)" --set weather.air_temp_k=289
+replay "$tmp/heat.pcapng" "$tmp/other" --causal --port 0 --to "${last:-0}" "${look[@]}" --only "$(frames_of heat | cut -d, -f-2)" --set weather.air_temp_k=289
 warmth "$tmp/other" >"$tmp/other.warmth"
 check "another weather: other temperatures" [ -s "$tmp/other.warmth" ]
 check "of every frame" [ -z "$(comm -12 "$tmp/live.warmth" "$tmp/other.warmth")" ]

@@ -34,7 +34,7 @@ check "two Data PDUs a frame" [ "$(live_counter "$tmp/loop" sent)" = $((2 * made
 own=$(run_json "$tmp/loop" | grep -oE '"own":[0-9]+' | cut -d: -f2)
 check "its own came back, but for those of the last frame that were still on their way" [ "$own" -le $((2 * made)) -a "$own" -ge $((2 * made - 2)) ]
 # three of them: a sanitizer takes seconds for a frame
-replay "$tmp/loop.pcapng" "$tmp/again" --causal --port 0 "${few[@]}" --no-files --only "$(frames_of loop | cut -d, -f3-5)"
+replay "$tmp/loop.pcapng" "$tmp/again" --causal --port 0 --to "$(time_of "$tmp/loop" '$')" "${few[@]}" --no-files --only "$(frames_of loop | cut -d, -f3-5)"
 check "its recording replays" [ $code = 0 ]
 check "to the same bits" agree "$tmp/loop" "$tmp/again" 3
 [ "$failures" = 0 ] || { tail -n 40 "$tmp/loop.out"; cat "$tmp/stderr"; }
