@@ -9,14 +9,14 @@ command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
 # boxes of six plates, whose signatures take little time: one drives away, one stands, each is of one bin of aspect
 cat >"$tmp/box.obj" <<'O'
 o box
-v -2 -1 0
-v 2 -1 0
-v 2 1 0
-v -2 1 0
-v -2 -1 2
-v 2 -1 2
-v 2 1 2
-v -2 1 2
+v -1 -0.5 0
+v 1 -0.5 0
+v 1 0.5 0
+v -1 0.5 0
+v -1 -0.5 1
+v 1 -0.5 1
+v 1 0.5 1
+v -1 0.5 1
 f 1 4 3 2
 f 5 6 7 8
 f 1 2 6 5
@@ -37,7 +37,7 @@ vehicles:
   - {name: Watch, id: 31, type: 1.2.225.20.1.0.0, force: 1, route_m: [[-985, 0]], height_m: 150}
 Y
 free_port
-few=(--size 32x24 --bands lwir --rate 2 --threads 1 --host 1:3001:31 --set exercise.listen_s=0.3 --set publish.dis=sensor
+few=(--size 32x24 --bands lwir --rate 4 --threads 1 --host 1:3001:31 --set exercise.listen_s=0.3 --set publish.dis=sensor
     --set publish.files=false --set sensor.gimbal_limit_deg=180 --set exercise.aim=1:3001:11 --set models.catalog="$tmp/catalog.csv"
     --set radar.preset=search_ku --set radar.ground=false --address 127.0.0.1 --port $port)
 # radar_of OUT: of each frame that has targets of the radar, `number radar`, the whole object
