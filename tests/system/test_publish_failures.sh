@@ -17,8 +17,6 @@ watched() {
         --speed 1 --no-files --set publish.truth=false "$@" >"$tmp/$name.out" 2>&1
     code=$?
 }
-readers=()
-trap 'kill -KILL "${readers[@]}" 2>/dev/null; wait "${readers[@]}" 2>/dev/null; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
 
 # ---- a full disk: the live node writes into a file system of its own, which is too small -------------------------
 own_disk() { unshare -rm true 2>/dev/null && unshare -rm bash -c "mount -t tmpfs -o size=4k none '$tmp'" 2>/dev/null; }
@@ -26,11 +24,10 @@ if own_disk; then
     mkdir "$tmp/disk"
     free_port
     unshare -rm bash -c "mount -t tmpfs -o size=16k none '$tmp/disk' && \"\$@\"" bash "$pitviper" run "${bare[@]}" --out "$tmp/disk/out" \
-        --address 127.0.0.1 --port $port --size 48x36 --rate 5 --frames 5 --for 25 --bands lwir --threads 1 \
+        --address 127.0.0.1 --port $port --size 48x36 --rate 5 --frames 5 --for 900 --bands lwir --threads 1 \
         --set exercise.listen_s=0.5 --set quality.budget=off >"$tmp/full.out" 2>&1 &
     node[full]=$!
-    "$pitviper" exercise demo --send 127.0.0.1:$port >/dev/null 2>&1 &
-    readers+=($!)
+    sender demo --set duration_s=900 --send 127.0.0.1:$port
 else
     echo "skipped in part: this user may not mount a file system of their own: no full disk"
 fi
@@ -39,14 +36,15 @@ fi
 name=pitviper_failures_$$
 stream=udp://127.0.0.1:$((port + 3001))
 if command -v cc >/dev/null && cc -O1 -I etc/include etc/examples/read_memory.c -o "$tmp/reader" 2>/dev/null; then
-    "$tmp/reader" $name --wait 20 >"$tmp/stopped" 2>&1 & stopped=$!
-    "$tmp/reader" $name --wait 20 >"$tmp/killed" 2>&1 & killed=$!
-    "$tmp/reader" $name --wait 20 --in-order >"$tmp/reads" 2>&1 & reads=$!
+    # slow, so that it misses frames however late it is stopped
+    "$tmp/reader" $name --wait $patience --slow 300 >"$tmp/stopped" 2>&1 & stopped=$!
+    "$tmp/reader" $name --wait $patience >"$tmp/killed" 2>&1 & killed=$!
+    "$tmp/reader" $name --wait $patience --in-order >"$tmp/reads" 2>&1 & reads=$!
     disown $killed
-    readers+=($stopped $killed $reads)
     (
-        for ((i = 0; i < 200; i++)); do [ -s "$tmp/stopped" ] && [ -s "$tmp/killed" ] && break; sleep 0.05; done
+        until_true test -s "$tmp/stopped"
         kill -STOP $stopped
+        until_true test -s "$tmp/killed"
         kill -KILL $killed
     ) &
 else
@@ -70,7 +68,7 @@ if [ -n "$reads" ]; then
     kill -CONT $stopped
     wait $reads
     check "a reader beside them gets every frame" [ "$(grep -c '^frame ' "$tmp/reads")" = 11 ] || tail -n 3 "$tmp/reads"
-    check "the one that was stopped did stop" [ "$(grep -c '^frame ' "$tmp/stopped")" -lt 11 ]
+    check "the one that was stopped misses some" [ "$(grep -c '^frame ' "$tmp/stopped")" -lt 11 ]
     wait $stopped 2>/dev/null
 fi
 if grep -q "^video: $stream" "$tmp/readers.out"; then
@@ -90,7 +88,8 @@ fi
 
 # ---- the disk, at the end -------------------------------------------------------------------------------------
 if [ -d "$tmp/disk" ]; then
-    ended full 40
+    ended full
+    end_sender
     check "a full disk: exit code 1" [ $code = 1 ]
     check "every frame is made" grep -q 'frames made 5,' "$tmp/full.out"
     check "said once of images, once of truth" is "$(said_times full 'going on without')" '<=' 2

@@ -4,8 +4,6 @@
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 
-others=()
-trap 'kill -KILL "${others[@]}" 2>/dev/null; wait "${others[@]}" 2>/dev/null; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
 exercise crowd "$tmp/crowd.pcap" scale=0.01 duration_s=80
 frames_of() { json_numbers "$tmp/$1/run.json" frames | tail -n 1; }
 consumer() { run_json "$tmp/$1" | grep -oE "\"$2\":\{\"[a-z][^}]*\}" | tail -n 1 | grep -oE "\"$3\":[0-9.]+" | cut -d: -f2; }
@@ -34,7 +32,6 @@ s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.bind(("127.0.0.1", int(s
 while True: s.recv(2048)' $((port + 3001)) >/dev/null 2>&1
         }
         { receiver 6; sleep 5; receiver 30; } 2>/dev/null &
-        others+=($!)
         watched receiver 25 --stream "$stream"
         check "a receiver that vanishes: the replay ends well" [ $code = 0 ]
         check "every frame is made and sent" [ "$(frames_of receiver)" = 126 -a "$(consumer receiver video count)" = 126 ]
@@ -45,9 +42,8 @@ fi
 
 if command -v cc >/dev/null && cc -O1 -I etc/include etc/examples/read_memory.c -o "$tmp/reader" 2>/dev/null; then
     name=pitviper_failures_$$
-    "$tmp/reader" $name --wait 20 >"$tmp/stopped" 2>&1 & stopped=$!
-    others+=($stopped)
-    ( for ((i = 0; i < 200; i++)); do [ -s "$tmp/stopped" ] && break; sleep 0.05; done; kill -STOP $stopped; sleep 60; kill -CONT $stopped ) &
+    "$tmp/reader" $name --wait $patience >"$tmp/stopped" 2>&1 & stopped=$!
+    ( until_true test -s "$tmp/stopped"; kill -STOP $stopped; sleep 60; kill -CONT $stopped ) &
     watched minute 66 --memory $name
     check "a reader stopped for a minute: every frame is made and written" \
         [ $code = 0 -a "$(frames_of minute)" = 331 -a "$(consumer minute memory count)" = 331 ]
@@ -61,12 +57,12 @@ if unshare -rm true 2>/dev/null && unshare -rm bash -c "mount -t tmpfs -o size=4
     mkdir "$tmp/disk"
     unshare -rm bash -c "mount -t tmpfs -o size=4m none '$tmp/disk' && head -c 4180000 /dev/zero >'$tmp/disk/ballast'
         (sleep 12; rm '$tmp/disk/ballast') & \"\$@\"; code=\$?; cp '$tmp/disk/out/run.json' '$tmp/disk.json'; exit \$code" \
-        bash "$pitviper" run "${bare[@]}" --out "$tmp/disk/out" --address 127.0.0.1 --port $port --size 64x48 --rate 2 --frames 60 --for 60 \
+        bash "$pitviper" run "${bare[@]}" --out "$tmp/disk/out" --address 127.0.0.1 --port $port --size 64x48 --rate 2 --frames 60 --for 900 \
         --bands lwir --threads 1 --set exercise.listen_s=0.5 --set quality.budget=off --no-png --set publish.planes=none >"$tmp/disk.out" 2>&1 &
     node[disk]=$!
-    heard_by disk 'listening on' 10
-    sender demo --send 127.0.0.1:$port
-    ended disk 80
+    heard_by disk 'listening on'
+    sender demo --set duration_s=900 --send 127.0.0.1:$port
+    ended disk
     end_sender
     check "a disk with room again: the node ends well" [ $code = 0 ]
     check "every frame is made" grep -q 'frames made 60,' "$tmp/disk.out"
