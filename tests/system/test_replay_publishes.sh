@@ -12,15 +12,15 @@ free_port; to=$port
 with_stream udp://127.0.0.1:$to
 free_port
 few+=("${stream[@]}" --address 127.0.0.1 --port $port)
-node live "${few[@]}" --frames 5 --for 30 --record "$tmp/live.pcapng"
-check "it listens" heard_by live 'listening on' 10
-sender demo --send 127.0.0.1:$port
-ended live 30
+node live "${few[@]}" --frames 5 --record "$tmp/live.pcapng"
+check "it listens" heard_by live 'listening on'
+sender demo --set duration_s=900 --send 127.0.0.1:$port
+ended live
 end_sender
 check "the node ends well" [ $code = 0 ] || tail -n 5 "$tmp/live.out"
 
 coproc receiver { "${pdus[@]}" receive 127.0.0.1 $port "$tmp/replayed"; }
-read -r -t 10 listening <&"${receiver[0]}"
+read -r -t $patience listening <&"${receiver[0]}"
 check "a receiver listens" [ "${listening:-}" = listening ]
 again() { run replay "$tmp/live.pcapng" --out "$tmp/again" --overwrite --causal --to "$(time_of "$tmp/live" '$')" "${few[@]}" "$@"; }
 again
