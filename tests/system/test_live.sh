@@ -76,7 +76,7 @@ if [ ${#nodes[@]} = 3 ]; then
     again chosen 3 "${chosen[@]}" --only "$(frames_of chosen)"
     whole=$(($(numbered "$tmp/chosen" | wc -l) - $(live_counter "$tmp/chosen" files_left_out)))
     check "chosen: a picture a frame and band" [ "$(frames "$tmp/chosen" lwir)$(frames "$tmp/chosen" optical)" = "$whole$whole" ]
-    again watch 10 "${watch[@]}" # and those between
+    again watch 10 "${watch[@]}" --only "$(frames_of watch)"
     check "watch: nobody flies at first, so an observer" grep -q '"observer"' "$tmp/watch/run.json"
     # two PDUs a frame, and each came back, but for those of the last frame that were still on their way
     sent=$(live_counter "$tmp/watch" sent)

@@ -80,12 +80,11 @@ good &= len({live[n]["map_sha256"] for n in live if live[n]}) > 3
 print("the same in the replay:", same)
 sys.exit(not (good and same))
 P
-# of what was recorded, with signatures made anew, and those frames alone, with signatures of the library
-last=$(time_of "$tmp/live" '$')
+# those frames of what was recorded, with signatures made anew, and with those of the library
+those=(--causal --to "$(time_of "$tmp/live" '$')" --only "$(frames_of live)" "${few[@]}")
 for library in "" "$tmp/library"; do
-    with=(--set radar.library="$library") of=
-    [ -z "$library" ] || { with+=(--only "$(frames_of live)"); of=", with the library"; }
-    run replay "$tmp/live.pcapng" --out "$tmp/again" --overwrite --causal --to "${last:-0}" "${few[@]}" "${with[@]}"
+    of=${library:+, with the library}
+    run replay "$tmp/live.pcapng" --out "$tmp/again" --overwrite "${those[@]}" --set radar.library="$library"
     check "a causal replay$of" [ $code = 0 ] || tail -n 3 "$tmp/stderr"
     check "it says which frames were without$of" complained 'frames are without radar: .* when it was recorded'
     radar_of "$tmp/again" | sort >"$tmp/again.radar"
@@ -98,7 +97,7 @@ check "the library had all that it takes" [ "$(ls "$tmp/library" | wc -l)" = "$f
 # a signature from elsewhere in place of the box: said, and of its level; what is wrong with one is refused
 printf 'entity,signature\nbox,points.csv\n' >"$tmp/given.csv"
 printf 'x_m,y_m,z_m,hh_dbsm,vv_dbsm\n0,0,0,20,21\n' >"$tmp/points.csv"
-given=(--out "$tmp/given" --causal --to "${last:-0}" "${few[@]}" --set radar.given="$tmp/given.csv")
+given=(--out "$tmp/given" "${those[@]}" --set radar.given="$tmp/given.csv")
 run replay "$tmp/live.pcapng" "${given[@]}"
 check "a given signature" [ $code = 0 ] || tail -n 3 "$tmp/stderr"
 check "its cross section is found, within 0.3 dB" python3 - "$tmp/given/truth.jsonl" <<'P'
