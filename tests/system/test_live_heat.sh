@@ -17,7 +17,7 @@ shots:
   - {from: Tank 1, at_m: [700, 300], time_s: 1, rounds: 800, every_s: 1, entity: false, type: 2.2.225.2.1.1.0,
      launch_mps: 1000, boost_mps: 0, drag_mps2: 0, loft_m: 0, weave_m: 0, hit: ground}
 YAML
-look=(--size 32x24 --bands lwir,mwir --rate 4 --host observer --no-files --set exercise.aim=1:3001:1
+look=(--size 32x24 --bands lwir,mwir --rate 2 --host observer --no-files --set exercise.aim=1:3001:1
     --set observer.range_m=60 --set observer.height_m=25 --set sensor.hfov_deg=50 --set exercise.listen_s=0.5)
 # warmth OUT: a line for each target of a frame: frame entity dt_k patch_temp_k
 warmth() {
