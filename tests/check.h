@@ -10,9 +10,13 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include <time.h>
 #include <unistd.h>
 
 #include "pitviper.h"
+
+/* Processor time of this process, s: what a test may limit, since a busy machine does not change it. */
+static inline double cpu_s(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
 /* Written as !(error <= tolerance) so that a NaN fails. */
 #define CHECK_NEAR(got, want, tolerance)                                                              \

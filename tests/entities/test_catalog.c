@@ -107,9 +107,9 @@ static void many_rows_in_the_worst_order(void **state)
                         : i < rows - 1 ? "2.1,unknown,base\n"
                                        : "2.2,marker,centre\n");
     Catalog     *catalog;
-    const double begun_s = wall_clock_s();
+    const double begun_s = cpu_s();
     CHECK(open_text(&catalog, text) == STATUS_OK);
-    CHECK(wall_clock_s() - begun_s < 20); /* 0.1 s here */
+    CHECK(cpu_s() - begun_s < 20); /* 0.1 s here */
     assert_string_equal(found(catalog, (DisEntityType){.kind = 2, .domain = 2}), "marker");
     assert_string_equal(found(catalog, (DisEntityType){.kind = 2, .domain = 1}), "unknown");
     catalog_close(catalog);

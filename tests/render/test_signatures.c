@@ -184,7 +184,7 @@ static void background_makes_the_same(void **state)
             CHECK(got == NULL || round == 1 || i > 0);
         }
     CHECK(signatures_waiting(later) <= 3 && signatures_counters(later).missing >= 3);
-    for (int tries = 0; tries < 600 && signatures_waiting(later) > 0; tries++)
+    for (int tries = 0; tries < 3000 && signatures_waiting(later) > 0; tries++)
         nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
     for (int i = 0; i < 3; i++) {
         const ScatterAntenna a = at(20 + i, 15, 2000);

@@ -11,6 +11,7 @@
 #include <netinet/in.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 
@@ -162,6 +163,8 @@ typedef struct Reading {
     uint64_t  missed, torn;
 } Reading;
 
+static atomic_int begun; /* readers that have read a frame */
+
 /* Of each kind: in order, newest, a slow one, and one that comes again and again. */
 static void *read_all(void *user)
 {
@@ -173,7 +176,7 @@ static void *read_all(void *user)
         if ((r->number == 0 ? pitviper_memory_take_next(&m) : pitviper_memory_take_newest(&m)) != 1) continue;
         r->good &= whole(&m) && m.record.frame > last;
         last = m.record.frame;
-        r->frames++;
+        if (r->frames++ == 0) atomic_fetch_add(&begun, 1);
         if (r->number == 2) usleep(300);
         if (r->number == 3 && r->frames % 64 == 0) {
             pitviper_memory_close(&m);
@@ -195,12 +198,13 @@ static void many_readers_see_whole_frames(void **state)
     (void)state;
     Reading     reading[readers] = {{0}};
     MemoryRing *ring             = make_ring(2);
+    atomic_store(&begun, 0);
     for (int i = 0; i < readers; i++) {
         reading[i].number = i;
         CHECK(pthread_create(&reading[i].thread, NULL, read_all, &reading[i]) == 0);
     }
     for (int n = 0; n < many; n++) put(ring, n);
-    usleep(20000); /* so that each has had its turn; the last frame stays */
+    for (int k = 0; k < 120000 && atomic_load(&begun) < readers; k++) usleep(1000); /* the last frame stays */
     memory_ring_close(ring);
     for (int i = 0; i < readers; i++) {
         pthread_join(reading[i].thread, NULL);
@@ -425,7 +429,7 @@ static void deliver(Detections *to, int socket_of, int port, const PitviperDetec
     detections_counters(to, count);
     for (int i = 0; i < DETECTIONS_REASONS; i++) before += count[i];
     CHECK(sendto(socket_of, d, size, 0, (const struct sockaddr *)&node, sizeof node) == (ssize_t)size);
-    for (int i = 0; i < 10000 && after != before + 1; i++) {
+    for (int i = 0; i < 1000000 && after != before + 1; i++) {
         usleep(100);
         after = 0;
         detections_counters(to, count);

@@ -11,7 +11,9 @@ build=${1:?usage: bash $0 BUILD_FOLDER}
 pitviper=$build/pitviper
 [ -x "$pitviper" ] || { echo "skipped: no $pitviper"; exit 77; }
 tmp=$(mktemp -d) || exit 1
-trap 'chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
+# also what it has in the background ends with a script
+clean_up() { kill -KILL $(jobs -p) 2>/dev/null; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"; }
+trap clean_up EXIT
 
 checks=0
 failures=0
@@ -100,6 +102,18 @@ is() { awk -v a="${1:-nan}" -v b="${3:-nan}" "BEGIN { exit !(a + 0 == a && b + 0
 same_hashes() { [ -n "$(hashes "$1")" ] && [ "$(hashes "$1")" = "$(hashes "$2")" ]; }
 not() { ! "$@"; }
 xml() { python3 -c 'import sys, xml.dom.minidom as d; d.parse(sys.argv[1])' "$1"; }
+# until_true CONDITION...: looks until it is true, however long that takes on a busy machine; false after $patience seconds,
+# which only a hang reaches
+patience=200
+until_true() {
+    local end=$((SECONDS + patience))
+    until "$@"; do
+        [ $SECONDS -lt $end ] || return 1
+        sleep 0.05
+    done
+}
+lines_in() { cat "$1" 2>/dev/null | wc -l; }
+has_lines() { [ "$(lines_in "$1")" -ge "$2" ]; } # has_lines FILE COUNT
 quiet() { "$@" >/dev/null 2>&1; }
 # same_planes A B: of the bands that both have, to the bit. What differs is printed.
 same_planes() {

@@ -67,7 +67,7 @@ def memory(folder):
 def watch(ring, path):
     import read_memory
     with open(path, "w") as to:
-        for frame in read_memory.Ring(ring, wait_s=30).frames(in_order=True):
+        for frame in read_memory.Ring(ring, wait_s=200).frames(in_order=True):
             box = {f"{t.site}:{t.application}:{t.entity}": list(t.box) for t in frame.targets}
             to.write(json.dumps({"frame": frame.record.frame, "box": box}) + "\n")
 

@@ -4,7 +4,7 @@ frames_of() { json_numbers "$tmp/$1/run.json" frames | tail -n 1; }
 consumer() { run_json "$tmp/$1" | grep -oE "\"$2\":\{\"[a-z][^}]*\}" | tail -n 1 | grep -oE "\"$3\":[0-9.]+" | cut -d: -f2; }
 said_times() { grep -cE -e "$2" "$tmp/$1.out"; } # said_times NAME TEXT
 others=() # processes that end with the test
-trap 'kill -KILL "${others[@]}" 2>/dev/null; wait "${others[@]}" 2>/dev/null; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
+trap 'kill -KILL "${others[@]}" 2>/dev/null; wait "${others[@]}" 2>/dev/null; clean_up' EXIT
 # own_disk: a file system of one's own can be mounted; by root of a user name space
 own_disk() { unshare -rm true && unshare -rm bash -c "mount -t tmpfs -o size=4k none '$tmp'"; }
 # encoder that fails: has_video and libfail_encoder.so, which sanitized builds have not
@@ -28,7 +28,7 @@ memory=pitviper_failures_$$
 reader() {
     local name=$1; shift
     [ -x "$tmp/reader" ] || cc -O1 -I etc/include etc/examples/read_memory.c -o "$tmp/reader" || fail "the example reader is not built"
-    "$tmp/reader" $memory --wait 20 "$@" >"$tmp/$name" 2>&1 &
+    "$tmp/reader" $memory --wait $patience "$@" >"$tmp/$name" 2>&1 &
     reader=$!
     others+=($reader)
 }

@@ -19,7 +19,7 @@ exercise "$tmp/column.yaml" "$tmp/column.pcap"
 # the log's port is 3000, so an address of this test's own
 address=127.$((1 + $$ % 250)).$((1 + RANDOM % 250)).1
 coproc receiver { python3 tests/system/data_pdus.py receive $address 3000 "$tmp/pdus"; }
-read -r -t 10 listening <&"${receiver[0]}"
+read -r -t $patience listening <&"${receiver[0]}"
 check "a receiver of Data PDUs listens" [ "${listening:-}" = listening ]
 options=(--size 96x64 --rate 1 --threads 2 --bands lwir --host 1:3001:14 --from 1353 --to 1355 --set sensor.hfov_deg=40
     --speed 2 --coco --address $address --set publish.dis=truth)

@@ -55,9 +55,9 @@ check "and all stays" cmp -s "$tmp/demo.pcap" "$tmp/log.pcap"
 
 # ---- signals: the frame in hand is finished; a replay in real time has seconds of nothing else
 stop_after_frames() { # stop_after_frames SIGNAL OUT options
-    local signal=$1 out=$2 i; shift 2
+    local signal=$1 out=$2; shift 2
     "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$out" "${small[@]}" --speed 2 "$@" >"$tmp/stdout" 2>"$tmp/stderr" &
-    for ((i = 0; i < 300; i++)); do [ -s "$out/truth.jsonl" ] && break; sleep 0.05; done
+    until_true test -s "$out/truth.jsonl"
     kill -s "$signal" $!
     wait $!
     code=$?
@@ -73,7 +73,8 @@ for signal in INT:130 HUP:129; do
 done
 printf 'axes: {seed: [1, 2]}\n' >"$tmp/two.yaml"
 "$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/s" "${small[@]}" --speed 2 --sweep "$tmp/two.yaml" >"$tmp/stdout" 2>"$tmp/stderr" &
-for ((i = 0; i < 300; i++)); do [ -n "$(cat "$tmp"/s/v*/truth.jsonl 2>/dev/null)" ] && break; sleep 0.05; done
+begun() { [ -n "$(cat "$tmp"/s/v*/truth.jsonl 2>/dev/null)" ]; }
+until_true begun
 kill $!
 wait $!
 check "a sweep: exit code" [ $? = 143 ]

@@ -6,16 +6,20 @@
 
 free_port
 few=(--size 320x216 --bands lwir --rate 30 --no-files --set entities.shown=10000)
-node crowd --address 127.0.0.1 --port $port "${few[@]}" --record "$tmp/crowd.pcapng" --for 120
-check "it listens" heard_by crowd 'listening on' 20
+node crowd --address 127.0.0.1 --port $port "${few[@]}" --record "$tmp/crowd.pcapng"
+check "it listens" heard_by crowd 'listening on'
 sender crowd --send 127.0.0.1:$port
-check "it finds them" heard_by crowd '^ground:' 60
-sleep 8
+check "it finds them" heard_by crowd '^ground:'
+# until it has shown eight seconds of them, by the exercise's clock: they are announced one after the other
+long() { is "$(time_of "$tmp/crowd" '$')" '>' "$(awk -v t="$(time_of "$tmp/crowd" 1)" 'BEGIN { print t + 8 }')"; }
+check "it makes frames" makes crowd 2
+check "of eight seconds" until_of crowd long
 kill "$sender"; wait "$sender" # TERM: what a script has in the background may not hear INT
 sent=$(grep -oE '[0-9]+ datagrams' "$tmp/sender.out" | cut -d' ' -f1)
-sleep 1
-kill -INT "${node[crowd]}"
-ended crowd 60
+# until what was sent is recorded: the recording goes on growing until then
+settled() { local was=$(stat -c %s "$tmp/crowd.pcapng"); sleep 1; [ "$was" = "$(stat -c %s "$tmp/crowd.pcapng")" ]; }
+until_true settled
+stop crowd
 check "ends well" [ $code = 0 ]
 check "sent $sent datagrams, heard $(live_counter "$tmp/crowd" datagrams)" [ "${sent:-none}" = "$(live_counter "$tmp/crowd" datagrams)" ]
 check "none lost" [ "$(live_counter "$tmp/crowd" lost_kernel)$(live_counter "$tmp/crowd" lost_queue)" = 00 ]

@@ -6,7 +6,7 @@
 
 exercise crowd "$tmp/crowd.pcap" scale=0.01 duration_s=80
 reader stopped; stopped=$reader
-( for ((i = 0; i < 200; i++)); do [ -s "$tmp/stopped" ] && break; sleep 0.05; done; kill -STOP $stopped; sleep 60; kill -CONT $stopped ) &
+( until_true test -s "$tmp/stopped"; kill -STOP $stopped; sleep 60; kill -CONT $stopped ) &
 watched_long minute 66 --memory $memory
 check "a reader stopped for a minute: every frame is made and written" \
     [ $code = 0 -a "$(frames_of minute)" = 331 -a "$(consumer minute memory count)" = 331 ]

@@ -9,12 +9,12 @@ needs "file system of one's own for this user to mount" own_disk
 mkdir "$tmp/disk"
 free_port
 unshare -rm bash -c "mount -t tmpfs -o size=16k none '$tmp/disk' && \"\$@\"" bash "$pitviper" run "${bare[@]}" --out "$tmp/disk/out" \
-    --address 127.0.0.1 --port $port --size 48x36 --rate 5 --frames 5 --for 25 --bands lwir --threads 1 \
+    --address 127.0.0.1 --port $port --size 48x36 --rate 5 --frames 5 --for 900 --bands lwir --threads 1 \
     --set exercise.listen_s=0.5 --set quality.budget=off >"$tmp/full.out" 2>&1 &
 node[full]=$!
-"$pitviper" exercise demo --send 127.0.0.1:$port >/dev/null 2>&1 &
-others+=($!)
-ended full 40
+sender demo --set duration_s=900 --send 127.0.0.1:$port
+ended full
+end_sender
 check "a full disk: exit code 1" [ $code = 1 ]
 check "every frame is made" grep -q 'frames made 5,' "$tmp/full.out"
 check "said once of images, once of truth" is "$(said_times full 'going on without')" '<=' 2

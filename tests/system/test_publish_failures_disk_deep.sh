@@ -9,12 +9,12 @@ free_port
 mkdir "$tmp/disk"
 unshare -rm bash -c "mount -t tmpfs -o size=4m none '$tmp/disk' && head -c 4180000 /dev/zero >'$tmp/disk/ballast'
     (sleep 12; rm '$tmp/disk/ballast') & \"\$@\"; code=\$?; cp '$tmp/disk/out/run.json' '$tmp/disk.json'; exit \$code" \
-    bash "$pitviper" run "${bare[@]}" --out "$tmp/disk/out" --address 127.0.0.1 --port $port --size 64x48 --rate 2 --frames 60 --for 60 \
+    bash "$pitviper" run "${bare[@]}" --out "$tmp/disk/out" --address 127.0.0.1 --port $port --size 64x48 --rate 2 --frames 60 --for 900 \
     --bands lwir --threads 1 --set exercise.listen_s=0.5 --set quality.budget=off --no-png --set publish.planes=none >"$tmp/disk.out" 2>&1 &
 node[disk]=$!
-heard_by disk 'listening on' 10
-sender demo --send 127.0.0.1:$port
-ended disk 80
+heard_by disk 'listening on'
+sender demo --set duration_s=900 --send 127.0.0.1:$port
+ended disk
 end_sender
 check "a disk with room again: the node ends well" [ $code = 0 ]
 check "every frame is made" grep -q 'frames made 60,' "$tmp/disk.out"

@@ -4,7 +4,6 @@
 . "$(dirname "$0")/common.sh"
 judges tshark capinfos
 recorder= # process of the recording that runs
-trap 'kill -9 $recorder 2>/dev/null; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
 
 # ---- usage and what cannot be ------------------------------------------------------------------------------
 run record --help
@@ -42,7 +41,7 @@ begin() {
         port=$((20000 + RANDOM % 12000))
         : >"$tmp/stderr" # what the one before said is not this one's
         # one that nobody ends, ends by itself
-        "$pitviper" record -o "$log" --address 127.0.0.1 --port $port --for 100 "$@" >"$tmp/stdout" 2>"$tmp/stderr" &
+        "$pitviper" record -o "$log" --address 127.0.0.1 --port $port --for 900 "$@" >"$tmp/stdout" 2>"$tmp/stderr" &
         recorder=$!
         while kill -0 $recorder 2>/dev/null; do
             grep -q 'record: listening' "$tmp/stderr" && return 0
@@ -90,10 +89,8 @@ fi
 # what a killed program had recorded a second before is whole
 if begin "$tmp/killed.pcapng"; then
     octets "$(entity 1)"
-    for try in $(seq 100); do
-        "$pitviper" inspect "$tmp/killed.pcapng" --port $port 2>/dev/null | grep -q 'Entity State' && break
-        sleep 0.1
-    done
+    is_there() { "$pitviper" inspect "$tmp/killed.pcapng" --port $port 2>/dev/null | grep -q 'Entity State'; }
+    until_true is_there
     kill -9 $recorder
     ending
     check "a killed recording is whole" grep -qE '1 Entity State' <("$pitviper" inspect "$tmp/killed.pcapng" --port $port)

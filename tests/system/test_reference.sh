@@ -33,11 +33,11 @@ for kind in truth sensor; do
     free_port
     radar=(--set radar.preset=search_ku --set radar.ground=false)
     [ $kind = truth ] || radar+=(--set radar.given="$tmp/given.csv")
-    node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 2 --for 30 --no-png --bands lwir,radar --threads 1 \
+    node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 2 --no-png --bands lwir,radar --threads 1 \
         "${stream[@]}" "${radar[@]}" --latest \
         --set publish.files=false --set publish.dis=$kind --set exercise.listen_s=1 --record "$tmp/$kind.pcapng"
-    heard_by $kind 'listening on' 10
-    "$pitviper" exercise demo --send 127.0.0.1:$port >"$tmp/sender.out" 2>&1 &
+    heard_by $kind 'listening on'
+    "$pitviper" exercise demo --set duration_s=900 --send 127.0.0.1:$port >"$tmp/sender.out" 2>&1 &
     senders+=($!)
 done
 # all products; then what replaces or leaves out some of them. Of three targets in view the radar's field of one is traced
@@ -77,7 +77,7 @@ cp -r "$tmp/work/case/out" "$tmp/case/out"
 "$pitviper" inspect "$tmp/demo.pcap" --pdus tsv --full | head -n 200 >"$tmp/full.tsv"
 "$pitviper" inspect "$tmp/demo.pcap" --pdus tsv | head -n 200 >"$tmp/short.tsv"
 for kind in truth sensor; do
-    ended $kind 40
+    ended $kind
     check "live, $kind" [ $code = 0 ] || cat "$tmp/$kind.out"
 done
 kill "${senders[@]}" 2>/dev/null

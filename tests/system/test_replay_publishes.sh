@@ -12,21 +12,23 @@ free_port; to=$port
 with_stream udp://127.0.0.1:$to
 free_port
 few+=("${stream[@]}" --address 127.0.0.1 --port $port)
-node live "${few[@]}" --frames 5 --for 30 --record "$tmp/live.pcapng"
-check "it listens" heard_by live 'listening on' 10
-sender demo --send 127.0.0.1:$port
-ended live 30
+node live "${few[@]}" --frames 5 --record "$tmp/live.pcapng"
+check "it listens" heard_by live 'listening on'
+sender demo --set duration_s=900 --send 127.0.0.1:$port
+ended live
 end_sender
 check "the node ends well" [ $code = 0 ] || tail -n 5 "$tmp/live.out"
 
 coproc receiver { "${pdus[@]}" receive 127.0.0.1 $port "$tmp/replayed"; }
-read -r -t 10 listening <&"${receiver[0]}"
+read -r -t $patience listening <&"${receiver[0]}"
 check "a receiver listens" [ "${listening:-}" = listening ]
-again() { run replay "$tmp/live.pcapng" --out "$tmp/again" --overwrite --causal --to "$(time_of "$tmp/live" '$')" "${few[@]}" "$@"; }
+again() {
+    run replay "$tmp/live.pcapng" --out "$tmp/again" --overwrite --causal --to "$(time_of "$tmp/live" '$')" --only "$(frames_of live)" "${few[@]}" "$@"
+}
 again
 check "at full speed: exit code" [ $code = 0 ]
 check "at full speed: nothing is sent, and how it would be" complained 'Data PDUs are not sent at full speed; add --speed 1'
-again --speed 4
+again --speed 20
 check "at a speed: exit code" [ $code = 0 ]
 check "at a speed: says to where, and how many" said "Data PDUs go to 127.0.0.1 port $port from 4711:1"
 sent=$(grep -oE 'Data PDUs sent [0-9]+, not sent 0' "$tmp/stderr" | grep -oE '[0-9]+' | head -n 1)

@@ -2,35 +2,38 @@
 # --stream and --video: independent programs (ffmpeg, GStreamer; tshark: test_video_tshark.sh) receive what is sent while it is sent, by multicast and by
 # unicast, and join in the middle: pictures equal to the PNG files within the codec's error, metadata to the bit.
 . "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/live.sh"
 needs "video: built without FFmpeg's libraries" has_video
 judges ffmpeg ffprobe gst-launch-1.0 gst.udpsrc gst.tsdemux gst.h264parse gst.avdec_h264 python3.numpy python3.PIL
 group=239.77.$((RANDOM % 200 + 10)).9 port=$((20000 + RANDOM % 10000 * 4))
 exercise demo "$tmp/demo.pcap"
+flight "$tmp/flight.yaml"
+exercise "$tmp/flight.yaml" "$tmp/flight.pcap" duration_s=120
 
 # receive PROGRAM ARGUMENTS: in the background until finish_receivers; its pid in $pids
 pids=()
 receive() { local name=$1; shift; "$@" >"$tmp/$name.out" 2>"$tmp/$name.err" & pids+=($!); }
 # they finish their files; ffmpeg, while it waits for a datagram, at a second signal. Without one they end by themselves
 finish_receivers() {
-    sleep 0.3; kill -INT "${pids[@]}" 2>/dev/null
+    kill -INT "${pids[@]}" 2>/dev/null
     sleep 0.2; kill -INT "${pids[@]}" 2>/dev/null
     wait "${pids[@]}"; pids=()
 }
-# bound PORT N: until N sockets are
-bound() {
-    local i
-    for i in $(seq 100); do
-        [ "$(awk -v p="$(printf ':%04X' "$1")" 'index($2, p) == 9' /proc/net/udp | wc -l)" -ge "$2" ] && return
-        sleep 0.05
-    done
-    fail "the receivers did not start"
+# has_received NAME N: so many pictures, and packets of metadata
+has_received() {
+    [ "$(stat -c %s "$tmp/$1.gray" 2>/dev/null || echo 0)" -ge $(($2 * 96 * 64)) ] &&
+        [ "$(grep -obUaP '\x06\x0e\x2b\x34\x02\x0b\x01\x01\x0e\x01\x03\x01' "$tmp/$1.klv" 2>/dev/null | wc -l)" -ge "$2" ]
 }
+# bound PORT N: until N sockets are
+sockets_at() { awk -v p="$(printf ':%04X' "$1")" 'index($2, p) == 9' /proc/net/udp | wc -l; }
+are_bound() { [ "$(sockets_at "$1")" -ge "$2" ]; }
+bound() { until_true are_bound "$@" || fail "the receivers did not start"; }
 live=(--bands lwir --from 1366 --rate 20 --planes none --set sensor.antialias=off --set quality.budget=off)
 watch() { receive "$1" ffmpeg -v info -y -analyzeduration 1200000 -copyts -i "$2" -map 0:v -fps_mode passthrough -vf showinfo -f rawvideo -pix_fmt gray -flush_packets 1 "$tmp/$1.gray" -map 0:d -c copy -flush_packets 1 -f data "$tmp/$1.klv"; }
 
 # ---- multicast, asynchronous metadata; targets of truth; the file beside it has every frame
-watch group "udp://$group:$port?localaddr=127.0.0.1&timeout=20000000"
-receive gst timeout 60 gst-launch-1.0 -e udpsrc multicast-group="$group" port="$port" multicast-iface=lo ! tsdemux name=d d. ! queue ! h264parse ! \
+watch group "udp://$group:$port?localaddr=127.0.0.1&timeout=${patience}000000"
+receive gst timeout $patience gst-launch-1.0 -e udpsrc multicast-group="$group" port="$port" multicast-iface=lo ! tsdemux name=d d. ! queue ! h264parse ! \
     avdec_h264 ! videoconvert ! video/x-raw,format=GRAY8 ! filesink sync=false location="$tmp/gst.gray" d. ! queue ! meta/x-klv ! filesink \
     sync=false async=false buffer-mode=unbuffered location="$tmp/gst.klv"
 bound "$port" 2
@@ -38,19 +41,23 @@ bound "$port" 2
     --stream "udp://$group:$port" --set network.interface=lo --set publish.vmti=truth >"$tmp/a.out" 2>&1 &
 senders=($!)
 
-# ---- unicast, synchronous metadata; the receiver joins while it is being sent
-"$pitviper" replay "${bare[@]}" "$tmp/demo.pcap" --out "$tmp/b" --size 96x64 --threads 1 "${live[@]}" --to 1369 --speed 2 --video "$tmp/b" \
+# ---- unicast, synchronous metadata; the receiver joins while it is being sent, which goes on until it has enough
+"$pitviper" replay "${bare[@]}" "$tmp/flight.pcap" --out "$tmp/b" --size 96x64 --threads 1 "${live[@]}" --speed 1 --video "$tmp/b" \
     --stream "udp://127.0.0.1:$((port + 2))" --set publish.klv=sync >"$tmp/b.out" 2>&1 &
 senders+=($!)
-for _ in $(seq 200); do [ -s "$tmp/b/truth.jsonl" ] && break; sleep 0.05; done
-watch host "udp://127.0.0.1:$((port + 2))?timeout=20000000"
+until_true test -s "$tmp/b/truth.jsonl"
+watch host "udp://127.0.0.1:$((port + 2))?timeout=${patience}000000"
 bound $((port + 2)) 1
 wait "${senders[0]}"
 check "the replay that streams" [ $? = 0 ]
+check "a receiver joins" until_true has_received host 15
+kill -INT "${senders[1]}"
 wait "${senders[1]}"
-check "the replay that streams without a receiver at first" [ $? = 0 ]
+check "the replay that streams without a receiver at first, and is stopped" [ $? = 130 ]
 check "that is reported once" [ "$(grep -c 'no program receives it' "$tmp/b.out")" = 1 ]
 check "how to watch it is printed" grep -q "ffplay .* udp://127.0.0.1:$((port + 2)) .*vlc udp://@:$((port + 2))" "$tmp/b.out"
+check "the group's receiver has what was sent" until_true has_received group 12
+check "GStreamer has what was sent" until_true has_received gst 20
 finish_receivers
 
 cat >"$tmp/check.py" <<'PY'
@@ -88,8 +95,9 @@ def is_some_of(part, whole):  # in order
     at = iter(whole)
     return all(p in at for p in part)
 most = 2.0  # of 256 levels, rms: tests/sensor/test_video_encoder.c
-for out, ts, name, all_of in (("a", "a.ts", "group", 41), ("b", "b/lwir.ts", "host", 61)):
+for out, ts, name, all_of in (("a", "a.ts", "group", 41), ("b", "b/lwir.ts", "host", None)):
     png, klv, pts = pngs(out), klv_of(ts), [int(p) for p in probe(ts, "v")]
+    all_of = all_of or len(png)
     assert len(png) == len(klv) == len(pts) == all_of, (len(png), len(klv), len(pts))
     assert [round(b - a) for a, b in zip(pts, pts[1:])] == [4500] * (all_of - 1), "time stamps: 20 Hz of exercise time"
     # exercise time, modulo 33 bits, in both
@@ -115,7 +123,7 @@ mp4 = subprocess.run(["ffmpeg", "-v", "error", "-i", f"{tmp}/b/lwir.mp4", "-f", 
 mp4 = np.frombuffer(mp4, np.uint8).reshape(-1, *png[0].shape).astype(float)
 errors = [error(a, b) for a, b in zip(mp4, png)]
 print(f"file: error {max(errors):.2f} levels rms at most")
-assert len(mp4) == 61 and max(errors) <= most, errors
+assert len(mp4) == len(png) and max(errors) <= most, errors
 png, klv = pngs("a"), klv_of("a.ts")
 seen = pictures("gst.gray", png[0])
 best = [min(range(41), key=lambda i: error(s, png[i])) for s in seen]
