@@ -26,8 +26,8 @@ static double sum_of(const double *x, const double *y, const double *z, int from
 static void eye_sees(double over_white[3], const double *reflectance)
 {
     for (int k = 0; k < 3; k++)
-        over_white[k] = sum_of(daylight, observer[k], reflectance, 0, spectrum_points, false) /
-                        sum_of(daylight, observer[k], NULL, 0, spectrum_points, false);
+        over_white[k] = sum_of(daylight_spectrum, observer[k], reflectance, 0, spectrum_points, false) /
+                        sum_of(daylight_spectrum, observer[k], NULL, 0, spectrum_points, false);
 }
 
 /* CIE 1976 L* a* b*. */
@@ -111,7 +111,7 @@ static void the_judge_is_right(void **state)
 /* What the three bands hold of a spectrum, R G B. */
 static void bands_see(double w[3], const double *reflectance)
 {
-    for (int c = 0; c < 3; c++) w[c] = sum_of(daylight, reflectance, NULL, 20 - 10 * c, 11, true);
+    for (int c = 0; c < 3; c++) w[c] = sum_of(daylight_spectrum, reflectance, NULL, 20 - 10 * c, 11, true);
 }
 
 /* One pixel from radiance to the screen's light: colour, level from black to white, 16 bits; back by sRGB's curve. */
@@ -136,8 +136,8 @@ static void difference(double *mean, double *most, double *hue, const Spectrum *
 {
     double        white[3];
     DisplayColour colour;
-    bands_see(white, daylight);
-    for (int c = 0; c < 3; c++) white[c] = sum_of(daylight, NULL, NULL, 20 - 10 * c, 11, true);
+    bands_see(white, daylight_spectrum);
+    for (int c = 0; c < 3; c++) white[c] = sum_of(daylight_spectrum, NULL, NULL, 20 - 10 * c, 11, true);
     display_colour(&colour, white, 0, INFINITY);
     *mean = *most = 0;
     for (int i = 0; i < count; i++) {
