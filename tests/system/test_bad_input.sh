@@ -85,9 +85,9 @@ check "JSON holds no NaN and no raw control character" \
 check "JSON is JSON" python3 -c '
 import json, sys
 for name in sys.argv[1:]:
-text = open(name).read()
-for part in text.splitlines() if name.endswith("l") else [text]:
-    json.loads(part, parse_constant=lambda c: sys.exit(c))' "$tmp"/{bad,good,nv,nm}/{run.json,truth.jsonl}
+    text = open(name).read()
+    for part in text.splitlines() if name.endswith("l") else [text]:
+        json.loads(part, parse_constant=lambda c: sys.exit(c))' "$tmp"/{bad,good,nv,nm}/{run.json,truth.jsonl}
 
 # ---- nowhere to put it
 : >"$tmp/file"
