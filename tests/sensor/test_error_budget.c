@@ -5,7 +5,6 @@
 static const ErrorScene scenes[] = {
     {"vehicles at 60 m", 60, 12, 40, 6, false, 0, true},
     {"vehicles at 600 m", 600, 60, 12, 10, false, 0, false},
-    {"horizon", 300, 8, 30, 3, false, 3, false},
 };
 enum { scene_count = sizeof scenes / sizeof *scenes };
 
