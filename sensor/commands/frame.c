@@ -9,6 +9,7 @@
 #include "sensor/framefile/frame_scene.h"
 #include "sensor/publish/consumers.h"
 #include "sensor/publish/frame_files.h"
+#include "sensor/publish/image_file.h"
 #include "sensor/publish/records.h"
 #include "sensor/truth/radar_error.h"
 #include "sensor/world/frame_radar.h"
@@ -288,6 +289,7 @@ int frame_command(int argc, char **argv)
     if (status == STATUS_OK) status = text_read_file(&bytes, &count, "frame", o.path, most_octets);
     if (status == STATUS_OK) status = frame_file_parse(file, (const uint8_t *)bytes, count, o.path, arena);
     if (status == STATUS_OK) describe(file);
+    if (status == STATUS_OK && o.out) status = image_file_prepare();
     if (status == STATUS_OK) status = pool_create(&pool, o.threads);
     if (status == STATUS_OK) status = frame_scene_open(scene, file, o.forced, "avx2", pool);
     if (status == STATUS_OK) status = show(&differ, &o, file, scene, pool, arena);

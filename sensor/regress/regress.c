@@ -3,6 +3,7 @@
 
 #include "sensor/node/stop.h"
 #include "sensor/publish/frame_files.h"
+#include "sensor/publish/image_file.h"
 #include "sensor/regress/report.h"
 #include "sensor/settings/next_option.h"
 
@@ -299,6 +300,7 @@ static bool run_all(Suite *s)
                        .allow_missing = s->o.allow_missing,
                        .why = s->o.why};
     s->begun_s = wall_clock_s();
+    if (image_file_prepare() != STATUS_OK) return false; /* baselines are images */
     if (pool_create(&pool, jobs) != STATUS_OK) {
         log_error("regress: cannot start %d threads; give fewer --jobs", jobs);
         return false;

@@ -278,7 +278,10 @@ def tests_of(path):
 
 def changed_files(root, branch):
     def git(*words):
-        return subprocess.run(('git', '-C', root) + words, check=True, capture_output=True, text=True).stdout.split('\n')
+        ran = subprocess.run(('git', '-C', root) + words, capture_output=True, text=True)
+        if ran.returncode:
+            sys.exit(f'git {" ".join(words)}: {ran.stderr.strip()}; next: etc/test without --changed, or git fetch origin {branch}')
+        return ran.stdout.split('\n')
 
     start = git('merge-base', branch, 'HEAD')[0]
     return sorted(set(git('diff', '--name-only', start) + git('ls-files', '--others', '--exclude-standard')) - {''})

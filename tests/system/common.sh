@@ -131,12 +131,18 @@ regress_case() {
     [ -f "$tmp/$1.pcap" ] || exercise "$folder/scenario.yaml" "$tmp/$1.pcap"
 }
 
-# What a replay sets up in half the time of ${bare[@]}, for tests that look at no radiance, ground or shape closely: coarse
-# posts, coarse shapes, no shadows. bare=("${quick[@]}") gives it to every run.
-# shellcheck disable=SC2034
-quick=("${bare[@]}" --set terrain.spacing_m=16 --set terrain.detail=off --set models.sag_m=0.05 --set heat.step_s=3600
-    --set heat.shadow_m=0)
+# box_obj NAME X0 X1 Y0 Y1 Z0 Z1 [MATERIAL]: a box as an OBJ file
+box_obj() {
+    local name=$1 x0=$2 x1=$3 y0=$4 y1=$5 z0=$6 z1=$7 z
+    echo "o $name"
+    for z in $z0 $z1; do printf 'v %s\n' "$x0 $y0 $z" "$x1 $y0 $z" "$x1 $y1 $z" "$x0 $y1 $z"; done
+    [ $# -lt 8 ] || echo "usemtl $8"
+    printf 'f %s\n' '1 4 3 2' '5 6 7 8' '1 2 6 5' '2 3 7 6' '3 4 8 7' '4 1 5 8'
+}
 
-# Options for tests that look at no shape closely: vehicles of fewer facets, ground of fewer posts; half of a replay's start.
+# For tests that look at no shape closely: vehicles of fewer facets, ground of fewer posts; half of a replay's start.
 # shellcheck disable=SC2034
 coarse=(--set models.sag_m=0.02 --set terrain.spacing_m=30)
+# And at no radiance or ground either; bare=("${quick[@]}") gives it to every run.
+# shellcheck disable=SC2034
+quick=("${bare[@]}" "${coarse[@]}" --set terrain.detail=off --set heat.step_s=3600 --set heat.shadow_m=0)

@@ -13,25 +13,7 @@ export pitviper preload tmp
 cp -r etc "$tmp/etc"
 printf 'type,model,origin\n1,truck,base\n2,missile,centre\n1.3,box.obj,base\n*,unknown,base\n' >"$tmp/etc/catalog.csv"
 sed -i '/^5000,/d' "$tmp/etc/atmosphere/us1976/visibilities.csv"
-cat >"$tmp/etc/box.obj" <<'OBJ'
-mtllib box.mtl
-o hull
-v 0 0 0
-v 4 0 0
-v 4 2 0
-v 0 2 0
-v 0 0 1
-v 4 0 1
-v 4 2 1
-v 0 2 1
-usemtl green
-f 1 4 3 2
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-OBJ
+{ echo "mtllib box.mtl"; box_obj hull 0 4 0 2 0 1 green; } >"$tmp/etc/box.obj"
 printf 'newmtl green\nKd 0.1 0.3 0.1\n' >"$tmp/etc/box.mtl"
 printf 'axes: +x +z\norigin: auto\njoints:\n  - {nodes: hull, axis: up, pivot: centre, class: primary_turret_1, metric: azimuth, limits_deg: [-5, 5]}\nmaterials: {"*": paint_olive}\n' \
     >"$tmp/etc/box.yaml"

@@ -2,24 +2,12 @@
 # pitviper bench by its quickest suite: the table, the page, two runs side by side, and what is refused. No time is judged.
 # The rows of all suites, and their limits: test_bench_deep.sh.
 . "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/bench_rows.sh"
 judges python3
 
 unset PITVIPER_DATA
 run bench dis --quick --threads 1 --csv "$tmp/dis.csv" --report "$tmp/dis.html"
-check "a suite ends well" [ $code = 0 ]
-[ $code = 0 ] || { grep -F '**' "$tmp/stdout"; cat "$tmp/stderr"; }
-check "it names the machine first" grep -q "pitviper [0-9]" <(head -n 1 "$tmp/stdout")
-check "the file too" grep -q "^# .*pitviper [0-9]" <(head -n 1 "$tmp/dis.csv")
-for key in version machine rounds threads libraries; do
-    check "the file says its $key" grep -q "^# $key: [^ ]" "$tmp/dis.csv"
-done
-check "every error keeps its limit" eval '! grep -q ",no," "$tmp/dis.csv"'
-check "every row has as many columns as the header" \
-    awk -F, 'NR == 1 { n = NF } NF != n { print; exit 1 } END { exit NR < 10 }' \
-    <(sed -e '/^#/d' -e 's/"[^"]*"//g' "$tmp/dis.csv")
-check "every row has a figure: a time, a rate, a ratio or an error" \
-    awk -F, 'NR > 1 && !($3 > 0 || $6 > 0 || $8 > 0 || $10 != "") { print; exit 1 }' \
-    <(sed -e '/^#/d' -e 's/"[^"]*"//g' "$tmp/dis.csv")
+ends_whole "$tmp/dis.csv"
 check "some rows have a limit" [ "$(grep -c "^dis,.*,yes," "$tmp/dis.csv")" -ge 2 ]
 check "a chapter of the page" grep -q '<h2 id="dis">' "$tmp/dis.html"
 for what in "Entity State: decode" "Entity State: encode" "Fire: decode" "Detonation: encode" bundles "capture: read" \

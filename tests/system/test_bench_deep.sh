@@ -2,26 +2,12 @@
 # pitviper bench all, quickly: every suite's rows are there and whole, and every error that has a limit keeps it. No time
 # is judged. What the command says, compares and refuses: test_bench.sh. labels: deep
 . "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/bench_rows.sh"
 judges python3
 
 unset PITVIPER_DATA
 run bench all --quick --threads 2 --csv "$tmp/all.csv" --report "$tmp/all.html"
-check "all ends well" [ $code = 0 ]
-[ $code = 0 ] || { grep -F '**' "$tmp/stdout"; cat "$tmp/stderr"; }
-check "it names the machine first" grep -q "pitviper [0-9]" <(head -n 1 "$tmp/stdout")
-check "the file too" grep -q "^# .*pitviper [0-9]" <(head -n 1 "$tmp/all.csv")
-for key in version machine rounds threads libraries; do
-    check "the file says its $key" grep -q "^# $key: [^ ]" "$tmp/all.csv"
-done
-check "every error keeps its limit" eval '! grep -q ",no," "$tmp/all.csv"'
-# the rows without comments and quoted texts
-sed -e '/^#/d' -e 's/"[^"]*"//g' "$tmp/all.csv" >"$tmp/bare.csv"
-check "every row has as many columns as the header" \
-    awk -F, 'NR == 1 { n = NF } NF != n { print; exit 1 }' "$tmp/bare.csv"
-# what a version or a machine does not have is named, and has none
-check "every row has a figure: a time, a rate, a ratio or an error" \
-    awk -F, 'NR > 1 && !($3 > 0 || $6 > 0 || $8 > 0 || $10 != "") { print; exit 1 }' \
-    <(grep -vE ': (none in this version|no grid here)' "$tmp/all.csv" | sed -e '/^#/d' -e 's/"[^"]*"//g')
+ends_whole "$tmp/all.csv"
 for suite in dis network speed; do
     check "$suite: some rows have a limit" [ "$(grep -c "^$suite,.*,yes," "$tmp/all.csv")" -ge 2 ]
     check "$suite: a chapter of the page" grep -q "<h2 id=\"$suite\">" "$tmp/all.html"

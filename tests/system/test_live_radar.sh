@@ -7,23 +7,7 @@
 judges python3
 
 # boxes of six plates, whose signatures take little time: one drives away, one stands, each is of one bin of aspect
-cat >"$tmp/box.obj" <<'O'
-o box
-v -1 -0.5 0
-v 1 -0.5 0
-v 1 0.5 0
-v -1 0.5 0
-v -1 -0.5 1
-v 1 -0.5 1
-v 1 0.5 1
-v -1 0.5 1
-f 1 4 3 2
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-O
+box_obj box -1 1 -0.5 0.5 0 1 >"$tmp/box.obj"
 printf 'materials: {"*": metal_steel_galvanized}\n' >"$tmp/box.yaml"
 printf 'type,model,origin,length_m,width_m,height_m\n1.1.225.83.7.0.0,box.obj,base,,,\n' >"$tmp/catalog.csv"
 cat >"$tmp/scene.yaml" <<'Y'

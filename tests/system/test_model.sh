@@ -60,23 +60,7 @@ check "no such file: exit code" [ $code = 1 ]
 check "no such file: said" complained 'none.glb'
 
 # a block 2 x 4 x 6
-cat >"$tmp/block.obj" <<'OBJ'
-v 0 0 0
-v 2 0 0
-v 2 4 0
-v 0 4 0
-v 0 0 6
-v 2 0 6
-v 2 4 6
-v 0 4 6
-o block
-f 1 4 3 2
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-OBJ
+box_obj block 0 2 0 4 0 6 >"$tmp/block.obj"
 rays() { # rays MODEL [AXES]: one ray along the file's +x, one that misses, one without a direction
     printf 'ox_m,oy_m,oz_m,dx,dy,dz\n-3,1,1,2,0,0\n-3,9,1,1,0,0\n0,0,0,0,0,0\n' |
         "$pitviper" probe rays "$@" >"$tmp/stdout" 2>"$tmp/stderr"

@@ -5,19 +5,9 @@
 . "$(dirname "$0")/common.sh"
 judges python3.pycocotools
 
-exercise demo "$tmp/demo.pcap"
-few=(--from 1366 --to 1366 --bands lwir --size 48x32 --threads 1 "${coarse[@]}")
-sweep() { local file=$1 out=$2; shift 2; replay "$tmp/demo.pcap" "$out" "${few[@]}" --sweep "$file" "$@"; }
-statuses() { grep -oE '"status":"[a-z]+"' "$1/manifest.jsonl" | sort | uniq -c | tr -s ' \n' ' '; }
+. "$(dirname "$0")/sweep.sh"
 folders() { grep -oE '"folder":"v[0-9a-f]{10}"' "$1/manifest.jsonl" | cut -d'"' -f4; }
 
-cat >"$tmp/grid.yaml" <<'Y'
-axes:
-  weather:
-    visibility_m: [5000, 23000]
-  seed: [1, 2]
-  sensor.hfov_deg: 5
-Y
 sweep "$tmp/grid.yaml" "$tmp/g" --coco
 check "a grid" [ "$code" = 0 ]
 check "four made" [ "$(statuses "$tmp/g")" = ' 4 "status":"made" ' ]

@@ -2,17 +2,7 @@
 # replay --sweep: random draws are kept as more are asked for, and a file with slips runs nothing.
 . "$(dirname "$0")/common.sh"
 
-exercise demo "$tmp/demo.pcap"
-few=(--from 1366 --to 1366 --bands lwir --size 48x32 --threads 1 "${coarse[@]}")
-sweep() { local file=$1 out=$2; shift 2; replay "$tmp/demo.pcap" "$out" "${few[@]}" --sweep "$file" "$@"; }
-statuses() { grep -oE '"status":"[a-z]+"' "$1/manifest.jsonl" | sort | uniq -c | tr -s ' \n' ' '; }
-cat >"$tmp/grid.yaml" <<'Y'
-axes:
-  weather:
-    visibility_m: [5000, 23000]
-  seed: [1, 2]
-  sensor.hfov_deg: 5
-Y
+. "$(dirname "$0")/sweep.sh"
 
 draws() { printf 'mode: random\ncount: %s\ndraw: %s\naxes: {sensor.hfov_deg: {from: 2, to: 6}, seed: {from: 1, to: 9}}\n' "$1" "$2"; }
 draws 1 5 >"$tmp/r1.yaml"; draws 2 5 >"$tmp/r2.yaml"; draws 1 6 >"$tmp/other.yaml"
