@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What is there is kept: nothing of an earlier run or recording is replaced unasked, a signal leaves whole records that say
-# so; and what part of a recording is shown, and which planes of truth are kept. labels: small
+# so; and what part of a recording is shown, and which planes of truth are kept.
 . "$(dirname "$0")/common.sh"
 bare=("${quick[@]}")
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A live node with a radar: its detections arrive as Data PDUs, those of truth.jsonl. What is seen before its signatures are
 # made is left out, counted and noted in the recording; `replay --causal` of that makes the same maps, detections and targets
-# to the bit, and leaves out the same frames. The library of signatures serves another run. labels: small
+# to the bit, and leaves out the same frames. The library of signatures serves another run.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 judges python3

@@ -4,11 +4,11 @@
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"
-replay "$tmp/demo.pcap" "$tmp/loop" --threads 4 --rate 1
+replay "$tmp/demo.pcap" "$tmp/loop" --threads 4 --rate 1 --size 48x32 "${coarse[@]}"
 check "the loop ends well" [ "$code" = 0 ]
 check "no race" [ "$(grep -c ThreadSanitizer "$tmp/stderr")" = 0 ]
 check "all frames" [ "$(frames "$tmp/loop")" -ge 8 ]
-replay "$tmp/demo.pcap" "$tmp/two" --threads 3 --rate 0.5 --host 1:3001:41 --host 1:3001:31
+replay "$tmp/demo.pcap" "$tmp/two" --threads 3 --rate 0.5 --size 48x32 "${coarse[@]}" --host 1:3001:41 --host 1:3001:31
 check "two hosts: ends well" [ "$code" = 0 ]
 check "two hosts: no race" [ "$(grep -c ThreadSanitizer "$tmp/stderr")" = 0 ]
 for host in 1-3001-41 1-3001-31; do

@@ -1,5 +1,4 @@
 # pitviper probe: every probe says what it needs, refuses what it cannot use, and answers what is known on paper.
-# labels: small
 . "$(dirname "$0")/common.sh"
 
 # probe NAME [ARGUMENT ...] < rows: the rows and their results in $tmp/stdout

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # `replay --causal --speed X` of a node's recording sends the Data PDUs that the node sent, octet for octet, time stamps
-# included, and the same announcements of its streams; at full speed it sends nothing, and says so. labels: small
+# included, and the same announcements of its streams; at full speed it sends nothing, and says so.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 judges python3
