@@ -15,6 +15,10 @@ check "no pictures, figures or scripts" [ -z "$(find "$tmp/prefix/share/pitviper
 check "the list that uninstalling goes by" grep -qF "$tmp/prefix/bin/pitviper" "$build/install_manifest.txt"
 check "man -M" eval 'man -M "$tmp/prefix/share/man" pitviper 2>/dev/null | grep -q "sensor simulation"'
 check "man -l" eval 'man -l "$build/pitviper.1" 2>/dev/null | grep -q "sensor simulation"'
+# what takes 0.2 s to load is not loaded by every command: pitviper_library.h
+ldd "$tmp/prefix/bin/pitviper" >"$tmp/libraries"
+check "libraries loaded on demand are not linked" not grep -E 'OpenImageIO|gdal|libav|assimp' "$tmp/libraries"
+check "others are" grep -q embree "$tmp/libraries"
 # uninstalled as etc/reference/commands.md says
 xargs rm -f <"$real/install_manifest.txt"
 check "uninstalled" [ -z "$(find "$tmp/prefix" -type f)" ]
