@@ -49,7 +49,7 @@ void base_tile(void *user, int worker, int task)
     block_trace(w, job, job->request->bands, listed);
     samples_sun(&w->shader, &job->scene, &w->samples);
     block_light(w, job);
-    block_write(w, job);
+    block_write(w, job, 1);
     block_add(w, job, 1);
     if (job->picture->target) block_add_areas(w, job, 1, listed);
     if (job->picture->entity) write_truth(w, job);

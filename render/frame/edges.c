@@ -5,15 +5,18 @@
  * plane explains. Between two ground classes no further ray is needed: the existing hit gives the plane of the
  * ground. Parts that fall between the samples (a barrel, a mast) lie within the bounding box of their target: pixels
  * in the boxes of targets that are too large for a target grid and small enough to have such parts are always
- * sampled again, and so is the ground where a small target's shadow falls. Pixels of plants and beside them get the
- * samples of a step. */
+ * sampled again, and so is the ground where a small target's shadow falls. Plants are no edges among themselves or
+ * against the ground behind them, or every pixel of a wood would be one: they are filtered (leaf_filter.c). Within a few
+ * pixels of a target they get the samples of a step. */
 #include "render/frame/edges.h"
 
 #include "render/frame/ground_mix.h"
+#include "render/frame/target_grid.h"
 
 /* Up to this size on the image, along its longer side, some part of a vehicle may be narrower than a pixel: a gun
  * barrel is a sixtieth of its tank's length. */
 static const double middling_px = 64;
+static const double about_px = 3; /* plants so near a target's box hide parts of it: they are refined */
 static const double thin_px = 6; /* a shadow of more rows than this is met by samples, and its edges are found */
 static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, with the sun at 45 degrees */
 static const double step_part = 0.05, step_ground = 0.5; /* of the range */
@@ -76,6 +79,8 @@ void mark_boxes(Job *job)
         double              shadow[4];
         if (!t->projected) continue;
         const double *box = t->projected_box;
+        const double  about[4] = {box[0] - about_px, box[1] - about_px, box[2] + about_px, box[3] + about_px};
+        if (i != job->request->hidden_entity && !target_grid_hidden(job, i)) mark_box(job, about, refine_leaves);
         if (!(fmax(box[2] - box[0], box[3] - box[1]) <= middling_px)) continue;
         if (!job->is_small[i]) mark_box(job, box, refine_all);
         if (shadows && shadow_box(shadow, job, i)) mark_box(job, shadow, refine_sun);
@@ -114,7 +119,14 @@ static bool steps_in_depth(const Job *job, size_t a, size_t b, int xa, int ya, i
     return either ? from_a || from_b : from_a && from_b;
 }
 
-static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
+static bool is_plant(const Job *job, int x, int y)
+{
+    const size_t px = pixel_index(job, x, y);
+    return job->picture->instance && job->picture->instance[px] && !job->picture->entity[px];
+}
+
+/* leaves: plants are edges. */
+static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, bool leaves)
 {
     const Picture *p = job->picture;
     const size_t   a = pixel_index(job, xa, ya), b = pixel_index(job, xb, yb);
@@ -122,7 +134,8 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
     const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
     if (sky_a && sky_b) return 0;
     if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return refine_all;
-    if (sky_a != sky_b || plants) return refine_step; /* between leaves most neighbours differ in light or kind */
+    if (sky_a != sky_b) return refine_step;
+    if (plants) return leaves ? refine_step : 0; /* most neighbours differ in light or kind */
     const bool   other = p->material[a] != p->material[b];
     const double cosine = p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] +
                           p->normal[2][a] * p->normal[2][b];
@@ -176,17 +189,20 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
             const int       k = x - x0;
             const uint32_t *plain[4] = {&across[k], &across[k + 1], &above[k], &below[k]};
             unsigned        flag = job->refine[pixel_index(job, x, y)];
+            bool            leafy = is_plant(job, x, y);
             for (int n = 0; n < 4 && !(flag & refine_all); n++) {
                 const int xb = x + beside[n][0], yb = y + beside[n][1];
                 if (xb < 0 || yb < 0 || xb >= view->width || yb >= view->height || *plain[n]) continue;
-                flag |= edge_between(job, x, y, xb, yb);
+                leafy |= is_plant(job, xb, yb);
+                flag |= edge_between(job, x, y, xb, yb, flag & refine_leaves);
             }
             const size_t px = pixel_index(job, x, y);
             if (grounds && !(flag & refine_all) && job->picture->cover[px] != SURFACE_NONE &&
                 corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
                 flag |= refine_ground;
+            if (leafy && !(flag & refine_leaves)) flag &= ~(unsigned)(refine_sun | refine_ground);
             if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* all flags set */
-            flags[(y - y0) * width + k] = (uint8_t)flag;
+            flags[(y - y0) * width + k] = (uint8_t)(flag & ~(unsigned)refine_leaves);
         }
         if (y + 1 < y1) memcpy(above, below, sizeof above);
     }

@@ -8,13 +8,15 @@
  * would then depend on the requested bands; and bare ground must stay cheap. */
 typedef enum RefineFlag {
     refine_all    = 1, /* edge_samples a side, every band */
-    refine_step   = 2, /* 2 a side, each split by ground class; every band: a crest of the ground, the horizon */
+    refine_step   = 2, /* step_samples a side, each split by ground class; every band: a crest of the ground, the
+                        * horizon, plants about a target */
     refine_sun    = 4, /* edge_samples a side, optical and MWIR: the edge of a shadow */
     refine_ground = 8, /* the plane of the existing hit, split by ground class, no ray; not the radar */
+    refine_leaves = 16, /* where this is set, plants are edges (refine_step): about the targets */
 } RefineFlag;
 
 /* Marks what is always refined: bounding boxes of medium-sized targets, and the ground where a target's shadow
- * falls. */
+ * falls; and where plants are refined. After the target grids. */
 void mark_boxes(Job *job);
 /* The flags of a tile's pixels, row by row, including those marked. Reads the truth planes and the plane of
  * sunlight. */

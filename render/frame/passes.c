@@ -72,14 +72,14 @@ float *block_values(const Worker *w, const Job *job, int plane)
     return NULL;
 }
 
-void block_add(Worker *w, const Job *job, int sign)
+void block_add(Worker *w, const Job *job, double share)
 {
     const Samples *s = &w->samples;
     if (job->picture->target) {
         target_sums_view(&w->sums, &w->block, &job->request->view);
         for (int plane = 0; plane < picture_plane_count; plane++) {
             const float *value = block_values(w, job, plane);
-            if (value) target_sums_radiance(&w->sums, &job->rules, &s->hits, &w->block, sign, value, plane);
+            if (value) target_sums_radiance(&w->sums, &job->rules, &s->hits, &w->block, share, value, plane);
         }
     }
     if (!s->radar || job->request->profile_bins == 0) return;
@@ -87,22 +87,22 @@ void block_add(Worker *w, const Job *job, int sign)
     for (int i = 0; i < s->hits.count; i++) {
         const int    p  = hit_pixel(&w->block, &s->hits, i);
         const size_t px = pixel_index(job, w->block.x[p], w->block.y[p]);
-        w->area_px[i]   = sign * (job->picture->covered ? 1 - (double)job->picture->covered[px] : 1) *
+        w->area_px[i]   = share * (job->picture->covered ? 1 - (double)job->picture->covered[px] : 1) *
                         hit_share(&w->block, &s->hits, i);
     }
     target_sums_profile(&w->sums, &job->rules, job->request, s, w->area_px);
 }
 
-void block_add_areas(Worker *w, const Job *job, int sign, int listed)
+void block_add_areas(Worker *w, const Job *job, double share, int listed)
 {
-    target_sums_areas(&w->sums, &job->rules, &w->samples, &w->block, sign, w->list, listed, &w->shader.counters);
+    target_sums_areas(&w->sums, &job->rules, &w->samples, &w->block, share, w->list, listed, &w->shader.counters);
 }
 
-void block_write(Worker *w, const Job *job)
+void block_write(Worker *w, const Job *job, double share)
 {
     for (int plane = 0; plane < picture_plane_count; plane++) {
         const float *value = block_values(w, job, plane);
         if (value)
-            pixels_average(picture_plane(job->picture, plane), job->picture->width, &w->block, &w->samples.hits, value);
+            pixels_average(picture_plane(job->picture, plane), job->picture->width, &w->block, &w->samples.hits, value, share);
     }
 }

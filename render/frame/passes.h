@@ -5,6 +5,7 @@
  *   small targets  each sampled on a grid over its own box                 target_grid.c
  *   base           every pixel, without the small targets                  base.c
  *   edges          pixels whose neighbours differ, with more rays          edges.c selects, refine.c samples
+ *   leaves         pixels of plants, smoothed among themselves              leaf_filter.c
  *   composite      the small targets, over the pixels                      target_grid_picture.c
  *   error estimate a few pixels, re-sampled                                error_budget.c
  * Each of them shades samples (shade.h) and sums the results in its own way; render.c runs them in turn. */
@@ -52,12 +53,15 @@ typedef struct Job {
     TargetGrid           *footprint; /* [small targets], by entity */
     int                  footprints;
     int                 *target_grid_order; /* [small targets]: the order in which they are sampled */
+    float               *before;    /* [pixels]: share of what hides small targets, which their grids know */
     int32_t             *coverer;   /* [pixels]: snapshot index of the small target that covers most; valid where
                                      * any does */
     double               target_variance[picture_plane_count]; /* squared errors over the pixels, summed */
     /* edges; NULL: not looked for */
     uint8_t             *refine;    /* a pixel: RefineFlag */
     float               *sun;       /* a pixel: Samples.sun of the sample that truth is of */
+    float              **smoothed; /* [channels]: each plane's pixels, smoothed (leaf_filter.h); NULL: they are not */
+    bool                *leafy;    /* [tiles]: some plant is in or beside it */
     double             (*law)[picture_plane_count]; /* [tiles]: squared errors, summed; NULL: no error estimate */
 } Job;
 
@@ -81,12 +85,12 @@ void ask_smoke(Worker *w, const Job *job, const double box_px[4]);
 void block_trace(Worker *w, const Job *job, unsigned bands, int listed);
 /* Light of the block's hits. */
 void block_light(Worker *w, const Job *job);
-/* Adds the block's contribution to the sums of the targets and of the range profile. */
-void block_add(Worker *w, const Job *job, int sign);
-/* Areas of the listed targets to the sums. */
-void block_add_areas(Worker *w, const Job *job, int sign, int listed);
-/* The block's means into the planes of its channels. */
-void block_write(Worker *w, const Job *job);
+/* Adds a share of the block's contribution to the sums of the targets and of the range profile; below 0: takes it back. */
+void block_add(Worker *w, const Job *job, double share);
+/* A share of the areas of the listed targets to the sums. */
+void block_add_areas(Worker *w, const Job *job, double share, int listed);
+/* The block's means into the planes of its channels, with this share; the rest is what they hold. */
+void block_write(Worker *w, const Job *job, double share);
 /* Array of a plane's values at the block's samples; NULL: not requested. */
 float *block_values(const Worker *w, const Job *job, int plane);
 

@@ -81,18 +81,25 @@ int pixels_centre_sample(int n)
     return best;
 }
 
-void pixels_average(float *plane, int width, const PixelBlock *block, const Hits *hits, const float *value)
+/* A mean into a pixel. */
+static void mix_in(float *pixel, double mean, double share)
+{
+    *pixel = (float)(share == 1 ? mean : (1 - share) * (double)*pixel + share * mean);
+}
+
+void pixels_average(float *plane, int width, const PixelBlock *block, const Hits *hits, const float *value,
+                    double share)
 {
     const int samples = block->n * block->n;
     if (hits->several) {
         for (int i = 0, p = 0; p < block->pixels; p++) {
             double sum = 0;
             for (; i < hits->count && hit_pixel(block, hits, i) == p; i++) sum += hit_share(block, hits, i) * value[i];
-            plane[(size_t)block->y[p] * (size_t)width + block->x[p]] = (float)sum;
+            mix_in(&plane[(size_t)block->y[p] * (size_t)width + block->x[p]], sum, share);
         }
         return;
     }
-    if (samples == 1) {
+    if (samples == 1 && share == 1) {
         for (int p = 0, run; p < block->pixels; p += run) {
             run = pixels_run(block, p);
             memcpy(plane + (size_t)block->y[p] * (size_t)width + block->x[p], value + p, (size_t)run * sizeof *plane);
@@ -102,6 +109,6 @@ void pixels_average(float *plane, int width, const PixelBlock *block, const Hits
     for (int p = 0; p < block->pixels; p++) {
         double sum = 0;
         for (int k = 0; k < samples; k++) sum += value[p * samples + k];
-        plane[(size_t)block->y[p] * (size_t)width + block->x[p]] = (float)(sum * (1.0 / samples));
+        mix_in(&plane[(size_t)block->y[p] * (size_t)width + block->x[p]], sum * (1.0 / samples), share);
     }
 }

@@ -46,7 +46,9 @@ void pixels_keys(uint64_t *key, const PixelBlock *block, const Hits *hits, int w
 int  pixels_run(const PixelBlock *block, int p);
 /* The sample nearest a pixel's centre; of equals, the first. */
 int  pixels_centre_sample(int n);
-/* Mean of a value over each pixel's hits, into a plane of this width. */
-void pixels_average(float *plane, int width, const PixelBlock *block, const Hits *hits, const float *value);
+/* Mean of a value over each pixel's hits, with this share, and what the plane holds there with the rest, into a plane of
+ * this width. */
+void pixels_average(float *plane, int width, const PixelBlock *block, const Hits *hits, const float *value,
+                    double share);
 
 #endif

@@ -1,5 +1,5 @@
-/* render/frame/refine.c: the edges pass: pixels marked by edges.c are sampled again with more samples, which replace
- * their first ones in the planes and in all sums over pixels. */
+/* render/frame/refine.c: the edges pass: pixels marked by edges.c are sampled with more samples, which join their first
+ * ones in the planes and in all sums over pixels: all count alike. */
 #include "render/frame/refine.h"
 
 #include "render/frame/edges.h"
@@ -20,9 +20,9 @@ static bool planes_remember(const Job *job)
            skips(job->request->skips_off, SKIP_RETRACE);
 }
 
-/* Subtracts from the sums what the block's pixels contributed with one sample each, restored from the planes before
- * they change. */
-static void take_back(Worker *w, const Job *job, unsigned bands, int listed, bool areas)
+/* Takes back from the sums a share of what the block's pixels contributed with one sample each, restored from the planes
+ * before they change. */
+static void take_back(Worker *w, const Job *job, unsigned bands, int listed, bool areas, double share)
 {
     const Picture *picture = job->picture;
     PixelBlock    *block   = &w->block;
@@ -45,8 +45,8 @@ static void take_back(Worker *w, const Job *job, unsigned bands, int listed, boo
         for (size_t p = 0; out && p < pixels; p++)
             out[p] = picture_plane(picture, plane)[pixel_index(job, block->x[p], block->y[p])];
     }
-    block_add(w, job, -1);
-    if (areas) block_add_areas(w, job, -1, listed);
+    block_add(w, job, -share);
+    if (areas) block_add_areas(w, job, -share, listed);
     w->shader.counters.skipped[SKIP_RETRACE] += (uint64_t)block->pixels;
 }
 
@@ -60,8 +60,8 @@ static int ground_side(const Job *job, int n)
 
 enum { step_kinds = 2 }; /* of ground, a sample at a step */
 
-/* Squared errors of the block's pixels, by their own samples. */
-static void add_variance(const Worker *w, const Job *job, double sum[picture_plane_count])
+/* Squared errors of the block's pixels, by their own samples, which are this share of all. */
+static void add_variance(const Worker *w, const Job *job, double share, double sum[picture_plane_count])
 {
     const PixelBlock *block = &w->block;
     const int         samples = block->n * block->n;
@@ -70,20 +70,21 @@ static void add_variance(const Worker *w, const Job *job, double sum[picture_pla
         for (int p = 0; value && p < block->pixels; p++) {
             const size_t px = pixel_index(job, block->x[p], block->y[p]);
             const double open = job->picture->covered ? 1 - (double)job->picture->covered[px] : 1;
-            sum[plane] += open * open * error_budget_sampling_variance(value + p * samples, block->n);
+            sum[plane] += share * open * open * error_budget_sampling_variance(value + p * samples, block->n);
         }
     }
 }
 
-/* Samples the block's pixels again with n samples a side, replacing the first ones. law: receives their squared
- * errors; NULL: not needed. */
+/* Samples the block's pixels with n more samples a side. law: receives their squared errors; NULL: not needed. */
 static void refine_block(Worker *w, const Job *job, const Refinement *how, int listed, double *law)
 {
     PixelBlock *block = &w->block;
     Samples    *s     = &w->samples;
     const bool  areas = job->picture->target && !(how->has & refine_sun), ground = how->has & refine_ground;
     const bool  sums  = job->picture->target || job->picture->profile, remembered = planes_remember(job);
-    if (sums && remembered && !ground) take_back(w, job, how->bands, listed, areas);
+    const int    own = job->request->samples * job->request->samples, more = how->n * how->n;
+    const double share = ground ? 1 : (double)more / (own + more); /* split ground has no sample more */
+    if (sums && remembered && !ground) take_back(w, job, how->bands, listed, areas, share);
     block->n = how->n;
     if (ground) {
         double box_px[4];
@@ -99,22 +100,22 @@ static void refine_block(Worker *w, const Job *job, const Refinement *how, int l
     const bool step = how->has & refine_step;
     if (step && areas) { /* of the samples as they were shot */
         samples_smoke(&job->scene, s);
-        block_add_areas(w, job, 1, listed);
+        block_add_areas(w, job, share, listed);
     }
     if (ground) split_ground(w, job, ground_side(job, 1), ground_mix_most);
     else if (step && job->scene.world->landscape) split_ground(w, job, ground_side(job, block->n), step_kinds);
     block_light(w, job);
-    if (law) add_variance(w, job, law);
-    block_write(w, job);
-    block_add(w, job, 1);
-    if (areas && !step && !ground) block_add_areas(w, job, 1, listed);
+    if (law) add_variance(w, job, share, law);
+    block_write(w, job, share);
+    block_add(w, job, share);
+    if (areas && !step && !ground) block_add_areas(w, job, share, listed);
     if (ground || !sums || remembered) return;
     block->n = job->request->samples;
     block_trace(w, job, how->bands, listed);
     samples_sun(&w->shader, &job->scene, s);
     block_light(w, job);
-    block_add(w, job, -1);
-    if (areas) block_add_areas(w, job, -1, listed);
+    block_add(w, job, -share);
+    if (areas) block_add_areas(w, job, -share, listed);
     w->counters.rays_edges += (uint64_t)s->rays.count;
 }
 
@@ -131,7 +132,7 @@ void refine_tile(void *user, int worker, int task)
 
     const Refinement ways[] = {
         {refine_all, 0, all, edge},
-        {refine_step, refine_all, all, 2},
+        {refine_step, refine_all, all, step_samples(job->request)},
         {refine_sun, refine_all | refine_step, sunlit, edge},
         {refine_ground, refine_all | refine_step | refine_sun, no_radar, 1},
         {refine_ground | refine_sun, refine_all | refine_step, lwir, 1},

@@ -5,6 +5,7 @@
 #include "render/frame/base.h"
 #include "render/frame/edges.h"
 #include "render/frame/error_estimate.h"
+#include "render/frame/leaf_filter.h"
 #include "render/frame/target_grid.h"
 #include "render/frame/passes.h"
 #include "render/frame/refine.h"
@@ -45,7 +46,7 @@ static Status create_job(Job *job, int workers, Arena *arena)
         if (!job->refine || !job->sun) return STATUS_NO_MEMORY;
         if (job->request->budget && !(job->law = arena_alloc(arena, tiles, sizeof *job->law))) return STATUS_NO_MEMORY;
     }
-    Status status = STATUS_OK;
+    Status status = leaf_filter_prepare(job, arena);
     for (int k = 0; k < workers && status == STATUS_OK; k++) status = create_worker(&job->worker[k], job, arena);
     return status;
 }
@@ -124,7 +125,6 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     status = prepare_sky(job, pool, arena);
     if (status == STATUS_OK && request->target_samples > 0) status = target_grids_plan(job, arena);
     job->rules.coverer = job->coverer;
-    if (status == STATUS_OK && looks_for_edges(request)) mark_boxes(job);
     return status;
 }
 
@@ -160,10 +160,12 @@ static Status run_passes(Job *job, Pool *pool, Arena *arena)
         pool_run(pool, job->footprints, target_grid_task, job);
         target_grids_cover(job);
     }
+    if (looks_for_edges(request)) mark_boxes(job);
     const double small_s = wall_clock_s();
     pool_run(pool, job->tiles_x * job->tiles_y, base_tile, job);
     const double base_s = wall_clock_s();
     if (looks_for_edges(request)) pool_run(pool, job->tiles_x * job->tiles_y, refine_tile, job);
+    if (job->smoothed) leaf_filter(job, pool);
     picture->times.target_grids_ms = 1e3 * (small_s - prepared_s);
     picture->times.base_ms       = 1e3 * (base_s - small_s);
     picture->times.edges_ms      = 1e3 * (wall_clock_s() - base_s);

@@ -5,10 +5,12 @@
  * sampled once. The grid moves with the target, not with the pixels: its sum does not change as the target crosses
  * them. A cell's result is distributed to the pixels below it by exact shares of its area, so that the sum over pixels
  * is that over the target. The pixels' own samples exclude small targets; the composite pixel is its own value times
- * its uncovered share, plus the grids' contribution.
+ * the share that the target's silhouette leaves, plus the grids' contribution: the target where a cell shows it, and what
+ * hides it where one does not (leaves, a crest, a larger entity). The pixel's own samples cannot tell what lies before the
+ * target from what lies behind it: with their mean in place of the leaves, ground would shine through gaps that the target
+ * fills.
  *
- * Behind a target the pixel's mean is used for what the target hides: exact where the ground is uniform over a
- * pixel. */
+ * Beside a silhouette the pixel's mean is used: exact where the ground is uniform over a pixel. */
 #include "render/frame/target_grid_private.h"
 
 #include <stdlib.h>
@@ -97,8 +99,12 @@ static Status plan_one(TargetGrid *f, const Job *job, int index, Arena *arena)
     f->y0 = (int)fmax(0, floor(f->box[1])), f->y1 = (int)fmin(view->height, ceil(f->box[3]));
     const size_t pixels = (size_t)(f->x1 - f->x0) * (size_t)(f->y1 - f->y0);
     bool         ok = (f->area = arena_alloc(arena, pixels, sizeof(double))) != NULL;
-    for (int k = 0; k < picture_plane_count; k++)
-        if (picture_plane(job->picture, k)) ok = (f->sum[k] = arena_alloc(arena, pixels, sizeof(double))) && ok;
+    ok = (f->before = arena_alloc(arena, pixels, sizeof(double))) && ok;
+    for (int k = 0; k < picture_plane_count; k++) {
+        if (!picture_plane(job->picture, k)) continue;
+        ok = (f->sum[k] = arena_alloc(arena, pixels, sizeof(double))) && ok;
+        ok = (f->before_sum[k] = arena_alloc(arena, pixels, sizeof(double))) && ok;
+    }
     if (job->picture->entity) {
         ok = (f->truth = arena_alloc(arena, pixels, sizeof *f->truth)) && ok;
         for (size_t i = 0; ok && i < pixels; i++) f->truth[i].square_px = INFINITY;
@@ -126,8 +132,9 @@ Status target_grids_plan(Job *job, Arena *arena)
     job->footprint = arena_alloc(arena, (size_t)count, sizeof *job->footprint);
     job->picture->covered   = arena_alloc(arena, px, sizeof *job->picture->covered);
     job->coverer   = arena_alloc(arena, px, sizeof *job->coverer);
+    job->before    = arena_alloc(arena, px, sizeof *job->before);
     job->target_grid_order = arena_alloc(arena, (size_t)count, sizeof *job->target_grid_order);
-    if (!job->footprint || !job->target_grid_order || !job->picture->covered || !job->coverer) return STATUS_NO_MEMORY;
+    if (!job->footprint || !job->target_grid_order || !job->picture->covered || !job->coverer || !job->before) return STATUS_NO_MEMORY;
     Status status = STATUS_OK;
     for (int i = 0; i < job->scene.snapshot->count && status == STATUS_OK; i++)
         if (job->is_small[i]) status = plan_one(&job->footprint[job->footprints++], job, i, arena);
@@ -147,6 +154,17 @@ Status target_grids_plan(Job *job, Arena *arena)
         job->target_grid_order[at] = n;
     }
     return status;
+}
+
+bool target_grid_hidden(const Job *job, int entity)
+{
+    int low = 0, high = job->footprints; /* by entity */
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (job->footprint[middle].entity < entity) low = middle + 1;
+        else high = middle;
+    }
+    return low < job->footprints && job->footprint[low].entity == entity && !(job->footprint[low].visible > 0);
 }
 
 /* ---- cells ---------------------------------------------------------------------------------- */
@@ -302,39 +320,84 @@ static void count_hidden(TargetGrid *f, Worker *w, const Job *job, const int *ce
     }
 }
 
-/* Compacts the samples that met the target: no other is shaded here. Returns their number. */
-static int keep_target(const TargetGrid *f, Samples *s, int *cell)
+/* Splits the samples into those that met the target, which stay, and those of its silhouette that something hides, which
+ * go to the worker's hits and `before`: no other is shaded here. What small targets hide is left to their own grids.
+ * Returns how many stay. */
+static int part_samples(const TargetGrid *f, Worker *w, const Job *job, int *cell, int *before)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
-    Hits          *hits = &s->hits;
-    Rays          *rays = &s->rays;
-    int            kept = 0;
+    Hits          *hits = &w->samples.hits;
+    Rays          *rays = &w->samples.rays;
+    int            kept = 0, hidden = 0;
     for (int i = 0; i < hits->count; i++) {
-        if (hits->entity[i] != id) continue;
-        cell[kept] = cell[i];
-        hits_copy(hits, rays, kept++, hits, rays, i);
+        if (hits->entity[i] == id) {
+            cell[kept] = cell[i];
+            hits_copy(hits, rays, kept++, hits, rays, i);
+        } else if (w->meets[i] && !(hits->entity[i] && job->is_small[hits->entity[i] - 1])) {
+            before[hidden] = cell[i];
+            hits_copy(&w->hits, &w->rays, hidden++, hits, rays, i);
+        }
     }
-    hits->count   = rays->count = kept;
-    hits->columns = rays->columns = 0;
+    hits->count    = rays->count = kept;
+    w->hits.count  = w->rays.count = hidden;
+    hits->columns  = rays->columns = w->hits.columns = w->rays.columns = 0;
+    w->hits.several = false;
     return kept;
 }
 
 static void add_area(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
 {
-    (void)user, (void)x, (void)y;
-    f->area[pixel] += area;
+    (void)f, (void)x, (void)y;
+    ((double *)user)[pixel] += area;
+}
+
+static void light_cells(const TargetGrid *f, Worker *w, const Job *job, const int *cell)
+{
+    Samples *s = &w->samples;
+    for (int i = 0; i < s->hits.count && job->scene.sky_samples > 0; i++) w->key[i] = cell_key(f, cell[i]);
+    s->key     = w->key;
+    s->per_rad = job->request->view.focal_px;
+    samples_sun(&w->shader, &job->scene, s);
+    samples_light(&w->shader, &job->scene, s);
+}
+
+static void find_shown(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
+{
+    (void)x, (void)y, (void)area;
+    if (f->area[pixel] > 0) *(bool *)user = true;
+}
+
+/* Light of the cells that something hides, into the pixels that show some of the target. */
+static void shade_hidden(TargetGrid *f, Worker *w, const Job *job, int *cell)
+{
+    Samples *s = &w->samples;
+    int      kept = 0;
+    for (int i = 0; i < w->hits.count; i++) {
+        bool shown = false;
+        over_pixels(f, cell[i], find_shown, &shown);
+        if (!shown) continue;
+        cell[kept] = cell[i];
+        hits_copy(&s->hits, &s->rays, kept++, &w->hits, &w->rays, i);
+    }
+    s->hits.count = s->rays.count = kept;
+    if (kept == 0) return;
+    light_cells(f, w, job, cell);
+    for (int plane = 0; plane < picture_plane_count; plane++) {
+        const float *value = block_values(w, job, plane);
+        for (int i = 0; value && i < kept; i++) {
+            Splat of = {f->before_sum[plane], value[i]};
+            over_pixels(f, cell[i], splat_pixel, &of);
+        }
+    }
+    for (int i = 0; i < kept; i++) over_pixels(f, cell[i], add_area, f->before);
 }
 
 /* Light of the samples that met the target, into its cells, its pixels and its sums. */
 static void shade_cells(TargetGrid *f, Worker *w, const Job *job, const int *cell, int count)
 {
     Samples *s = &w->samples;
-    for (int i = 0; i < count && job->scene.sky_samples > 0; i++) w->key[i] = cell_key(f, cell[i]);
-    s->key     = w->key;
-    s->per_rad = job->request->view.focal_px;
     ask_smoke(w, job, f->box);
-    samples_sun(&w->shader, &job->scene, s);
-    samples_light(&w->shader, &job->scene, s);
+    light_cells(f, w, job, cell);
     for (int plane = 0; plane < picture_plane_count; plane++) {
         const float *value = block_values(w, job, plane);
         if (value) splat(f, cell, count, value, plane);
@@ -344,7 +407,7 @@ static void shade_cells(TargetGrid *f, Worker *w, const Job *job, const int *cel
         f->visible += w->area_px[i];
         for (int b = 0; b < BAND_COUNT; b++)
             f->veiled[b] += w->area_px[i] * samples_smoke_taken(s, job->rules.smoke_channel[b], i);
-        over_pixels(f, cell[i], add_area, NULL);
+        over_pixels(f, cell[i], add_area, f->area);
         if (!f->truth) continue;
         TruthSample truth = {.s = s, .sample = i};
         cell_sample(truth.at_px, f, cell[i]);
@@ -378,8 +441,11 @@ static void sample_cells(TargetGrid *f, Worker *w, const Job *job, int first_cel
     w->shader.visibility_s += wall_clock_s() - t0;
     samples_trace(&w->shader, &job->scene, s, w->list, listed);
     if (job->picture->target) count_hidden(f, w, job, cell);
-    const int kept = keep_target(f, s, cell);
-    if (kept > 0) shade_cells(f, w, job, cell, kept);
+    int       before[hits_capacity];
+    const int kept = part_samples(f, w, job, cell, before);
+    if (kept == 0) return;
+    shade_cells(f, w, job, cell, kept);
+    shade_hidden(f, w, job, before);
 }
 
 void target_grid_task(void *user, int worker, int index)

@@ -8,6 +8,8 @@
 Status target_grids_plan(Job *job, Arena *arena);
 /* A pool task: samples one grid. */
 void   target_grid_task(void *job, int worker, int index);
+/* After all tasks: whether an entity has a grid, all of which is hidden. */
+bool   target_grid_hidden(const Job *job, int entity);
 /* After all tasks: the pixels that the grids cover. */
 void   target_grids_cover(Job *job);
 /* Errors of every grid, from its samples' variance, before compositing: into Job.target_variance and the targets. */

@@ -12,6 +12,7 @@ void target_grids_cover(Job *job)
             for (int x = f->x0; x < f->x1; x++, k++) {
                 const size_t px = pixel_index(job, x, y);
                 if (!(f->area[k] > 0)) continue;
+                job->before[px] += (float)f->before[k];
                 /* float sums, in a fixed order; two targets that overlap share the pixel, and their own samples
                  * resolve which is in front */
                 job->picture->covered[px] = fminf(job->picture->covered[px] + (float)f->area[k], 1);
@@ -48,7 +49,13 @@ static void cell_pairs(double sums[2], const TargetGrid *f, const Job *job, int 
         }
 }
 
-/* Behind a target the pixel's mean is used for what is hidden: its error is (1 - covered) covered times the
+/* Share of a pixel that its own samples stand for: what small targets, and what hides them, leave. */
+static double own_share(const Job *job, size_t px)
+{
+    return fmax(0, 1 - (double)job->picture->covered[px] - (double)job->before[px]);
+}
+
+/* Beside a target's silhouette the pixel's mean is used: its error is the pixel's own share times the rest, times the
  * variation of the ground there, for which the difference of the neighbours is taken. */
 static double hidden_ground(const TargetGrid *f, const Job *job, const float *value)
 {
@@ -56,7 +63,7 @@ static double hidden_ground(const TargetGrid *f, const Job *job, const float *va
     for (int y = f->y0; y < f->y1; y++)
         for (int x = f->x0; x < f->x1; x++) {
             const size_t px = pixel_index(job, x, y);
-            const double covered = (double)job->picture->covered[px], share = covered * (1 - covered);
+            const double own = own_share(job, px), share = own * (1 - own);
             if (job->coverer[px] == f->entity && share > 0)
                 sum += share * share * plane_contrast(job->picture, value, x, y);
         }
@@ -97,7 +104,7 @@ static void put_truth_on(const Job *job, const TargetGrid *f, int k, size_t px)
     for (int a = 0; a < 3; a++) picture->normal[a][px] = t->normal[a];
 }
 
-/* The cells and the pixels behind them, before compositing. */
+/* The cells and the light of their pixels beside them, before the targets' own is added. */
 static void hand_over(const Job *job, TargetGrid *f)
 {
     SmallTargets *small = &job->picture->small;
@@ -110,32 +117,56 @@ static void hand_over(const Job *job, TargetGrid *f)
         const float *value = picture_plane(job->picture, plane);
         if (!f->behind[plane]) continue;
         for (int y = f->y0, k = 0; y < f->y1; y++)
-            for (int x = f->x0; x < f->x1; x++, k++) f->behind[plane][k] = value[pixel_index(job, x, y)];
+            for (int x = f->x0; x < f->x1; x++, k++) {
+                const size_t px = pixel_index(job, x, y);
+                const float  open = 1 - job->picture->covered[px];
+                f->behind[plane][k] = open > 0 ? value[px] / open : 0;
+            }
         t->cell[plane]   = f->cell[plane];
         t->behind[plane] = f->behind[plane];
     }
 }
 
+/* A pixel's own mean, scaled to its share, and the light of what hides small targets there. */
+static void put_beside(const Job *job, const TargetGrid *f, int k, size_t px, bool own)
+{
+    const double open = 1 - (double)job->picture->covered[px], before = (double)job->before[px];
+    /* targets that overlap may be hidden by the same leaf */
+    const double share = before > open ? open / before : 1;
+    for (int plane = 0; plane < picture_plane_count; plane++) {
+        float *value = picture_plane(job->picture, plane);
+        if (!value) continue;
+        if (!own) value[px] += (float)(share * f->before_sum[plane][k]);
+        else if (job->coverer[px] == f->entity) value[px] *= (float)own_share(job, px);
+    }
+}
+
+static void put_target(const Job *job, const TargetGrid *f, int k, size_t px)
+{
+    for (int plane = 0; plane < picture_plane_count; plane++) {
+        float *value = picture_plane(job->picture, plane);
+        if (value) value[px] += (float)f->sum[plane][k];
+    }
+    if (f->truth) put_truth_on(job, f, k, px);
+}
+
 void target_grids_composite(Job *job)
 {
-    for (int n = 0; n < job->footprints && job->request->hand_over_cells; n++) hand_over(job, &job->footprint[n]);
-    /* first the share that they hide, then the light that they add: a pixel may hold parts of several */
-    for (int show = 0; show < 2; show++)
+    enum { own, before, target, steps }; /* a pixel may hold parts of several */
+    for (int step = own; step < steps; step++) {
+        for (int n = 0; n < job->footprints && step == target && job->request->hand_over_cells; n++)
+            hand_over(job, &job->footprint[n]);
         for (int n = 0; n < job->footprints; n++) {
             const TargetGrid *f = &job->footprint[n];
             for (int y = f->y0, k = 0; y < f->y1; y++)
                 for (int x = f->x0; x < f->x1; x++, k++) {
                     const size_t px = pixel_index(job, x, y);
                     if (!(f->area[k] > 0)) continue;
-                    for (int plane = 0; plane < picture_plane_count; plane++) {
-                        float *value = picture_plane(job->picture, plane);
-                        if (!value) continue;
-                        if (show) value[px] += (float)f->sum[plane][k];
-                        else if (job->coverer[px] == f->entity) value[px] *= 1 - job->picture->covered[px];
-                    }
-                    if (show && f->truth) put_truth_on(job, f, k, px);
+                    if (step == target) put_target(job, f, k, px);
+                    else put_beside(job, f, k, px, step == own);
                 }
         }
+    }
 }
 
 static void gather_one(TargetPixels *target, const Job *job, const TargetGrid *f)

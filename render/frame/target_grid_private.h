@@ -19,6 +19,7 @@ struct TargetGrid {
     int     x0, y0, x1, y1;            /* pixels that it may touch */
     double *sum[picture_plane_count];  /* of area x radiance, a pixel [(y1 - y0) (x1 - x0)] */
     double *area;                      /* px, a pixel */
+    double *before_sum[picture_plane_count], *before; /* the same of what hides the target, a pixel that shows some of it */
     TargetGridTruth *truth;             /* [pixels]; NULL: not needed */
     /* over the target, px within the image */
     double  visible, amodal, hidden_ground, hidden_entity, hidden_plants;

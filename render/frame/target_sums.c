@@ -17,9 +17,11 @@ Status target_sums_create(TargetSums *out, int entities, int profile_bins, Arena
 void sum_rules_choose(SumRules *rules, const RenderRequest *request, const RadarConfig *radar)
 {
     const double         pixels  = (double)request->view.width * request->view.height;
-    const int            edge    = looks_for_edges(request) ? request->edge_samples : 1;
-    /* 2 x 2 is for the ground's own edges: at most 2^2 (16 x 16)^2 2^16 = 2^34 a pixel, of 2^26 */
-    rules->steps_per_px     = (int64_t)4 * request->samples * request->samples * edge * edge << 16;
+    const int64_t        own = (int64_t)request->samples * request->samples; /* a pixel; with others: their sum */
+    const int64_t        edge = looks_for_edges(request) ? own + (int64_t)request->edge_samples * request->edge_samples : 1;
+    const int64_t        step = looks_for_edges(request) ? own + (int64_t)step_samples(request) * step_samples(request) : 1;
+    rules->steps_per_px = own * edge * step;
+    while (rules->steps_per_px < (int64_t)1 << 33) rules->steps_per_px *= 2; /* below 2^34 a pixel, of 2^26 */
     const double lobe_rad = fmax(radar->lobe_rad, 1e-9); /* as radar_lobe has it */
     rules->profile_limit    = exp2(ceil(log2(2 / (pi_rad * lobe_rad * lobe_rad))));
     rules->profile_quantum  = rules->profile_limit * exp2(ceil(log2(pixels)) - 61);
@@ -129,11 +131,10 @@ static void merge_box(int box[4], const int other[4])
     grow_box(box, other[2] - 1, other[3] - 1);
 }
 
-/* A sample's area in steps, and the part of it that no small target covers. Rounding is the same when it is
- * subtracted again. */
-static int64_t sample_steps(int64_t *seen, const SumRules *rules, const PixelBlock *block, int sign, size_t px)
+/* A sample's area in steps, which divide by every share, and the part of it that no small target covers. */
+static int64_t sample_steps(int64_t *seen, const SumRules *rules, const PixelBlock *block, double share, size_t px)
 {
-    const int64_t whole = rules->steps_per_px / (block->n * block->n) * sign;
+    const int64_t whole = llrint((double)rules->steps_per_px * share / (block->n * block->n));
     const double  covered = rules->picture->covered ? (double)rules->picture->covered[px] : 0;
     *seen = covered > 0 ? llrint((double)whole * (1 - covered)) : whole;
     return whole;
@@ -141,13 +142,13 @@ static int64_t sample_steps(int64_t *seen, const SumRules *rules, const PixelBlo
 
 /* One sample that shows the target. */
 static void count_seen(TargetSums *sums, int index, const SumRules *rules, const Samples *s, const PixelBlock *block,
-                       int sign, int sample)
+                       double share, int sample)
 {
     const int     pixel = sample / (block->n * block->n), x = block->x[pixel], y = block->y[pixel];
     const size_t  px = picture_index(rules->picture, x, y);
     TargetCount  *count = &sums->target[index];
     int64_t       seen;
-    const int64_t whole = sample_steps(&seen, rules, block, sign, px);
+    const int64_t whole = sample_steps(&seen, rules, block, share, px);
     count->visible += seen;
     for (int b = 0; b < BAND_COUNT && s->smoke.any; b++)
         count->veiled[b] += llrint((double)seen * samples_smoke_taken(s, rules->smoke_channel[b], sample));
@@ -159,7 +160,7 @@ static void count_seen(TargetSums *sums, int index, const SumRules *rules, const
     occlusion_add(&sums->hidden, rules->arena, index, rules->coverer[px], whole - seen, 0);
 }
 
-void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s, const PixelBlock *block, int sign,
+void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s, const PixelBlock *block, double share,
                        const int *list, int listed, VisibilityCounters *counters)
 {
     const int samples = block->n * block->n;
@@ -174,7 +175,7 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
         some->count = some->columns = 0;
         for (int i = 0; i < s->hits.count; i++) {
             if (s->hits.entity[i] == id) {
-                count_seen(sums, index, rules, s, block, sign, i);
+                count_seen(sums, index, rules, s, block, share, i);
                 continue;
             }
             const double o_enu[3] = {s->rays.o_enu[0][i], s->rays.o_enu[1][i], s->rays.o_enu[2][i]};
@@ -198,7 +199,7 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
             if (!sums->meets[k]) continue;
             const int     i = sums->some_index[k], x = block->x[i / samples], y = block->y[i / samples];
             int64_t       seen;
-            const int64_t whole = sample_steps(&seen, rules, block, sign, picture_index(rules->picture, x, y));
+            const int64_t whole = sample_steps(&seen, rules, block, share, picture_index(rules->picture, x, y));
             count->amodal += whole;
             grow_box(count->amodal_box, x, y);
             if (s->hits.entity[i]) {
@@ -220,7 +221,7 @@ void target_sums_view(TargetSums *sums, const PixelBlock *block, const View *vie
     for (int p = 0; p < block->pixels; p++) sums->cosine3[p] = pixel_cosine3(view, block->x[p], block->y[p]);
 }
 
-void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *hits, const PixelBlock *block, int sign,
+void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *hits, const PixelBlock *block, double share,
                           const float *value, int plane)
 {
     const double  per_quantum = 1 / rules->radiance_quantum; /* powers of two: exact */
@@ -236,7 +237,7 @@ void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *h
         const int    pixel = hit_pixel(block, hits, i);
         const double open = covered ? 1 - (double)covered[picture_index(rules->picture, block->x[pixel], block->y[pixel])] : 1;
         const double held = clamp(value[i], -rules->radiance_limit, rules->radiance_limit);
-        sum += sign * llrint(held * (open * hit_share(block, hits, i)) * sums->cosine3[pixel] * per_quantum);
+        sum += llrint(held * (share * open * hit_share(block, hits, i)) * sums->cosine3[pixel] * per_quantum);
     }
     if (of) sums->target[of - 1].radiance[plane] += sum;
 }

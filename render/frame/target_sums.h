@@ -2,7 +2,7 @@
  * its occluders, its own radiance; and the radar's range profile.
  *
  * Sums are integers in fixed steps, one set per worker, added at the end: independent of the order in which threads
- * finish. A block's samples may be subtracted again (sign -1) when others replace them. */
+ * finish. A share of a block's samples may be taken back (share below 0) when others join them. */
 #ifndef RENDER_FRAME_TARGET_SUMS_H
 #define RENDER_FRAME_TARGET_SUMS_H
 
@@ -66,12 +66,12 @@ void   sum_rules_choose(SumRules *rules, const RenderRequest *request, const Rad
 /* cos^3 of the angle off the axis at a pixel's centre: what its solid angle has less than 1 / focal_px^2. */
 double pixel_cosine3(const View *view, int x, int y);
 
-/* Visible and amodal area of the listed entities: all that the block can show. */
-void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s, const PixelBlock *block, int sign,
+/* A share of the visible and amodal area of the listed entities: all that the block can show. */
+void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s, const PixelBlock *block, double share,
                        const int *list, int listed, VisibilityCounters *counters);
 /* The block's radiance of a plane, weighted by area, to the targets that it shows. target_sums_view comes first. */
 void target_sums_view(TargetSums *sums, const PixelBlock *block, const View *view);
-void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *hits, const PixelBlock *block, int sign,
+void target_sums_radiance(TargetSums *sums, const SumRules *rules, const Hits *hits, const PixelBlock *block, double share,
                           const float *value, int plane);
 /* Radar returns of samples of these areas (px; below 0: taken back) to the range profile. */
 void target_sums_profile(TargetSums *sums, const SumRules *rules, const RenderRequest *request, const Samples *s,
