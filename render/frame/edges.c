@@ -7,7 +7,7 @@
  * in the boxes of targets that are too large for a target grid and small enough to have such parts are always
  * sampled again, and so is the ground where a small target's shadow falls. Plants are no edges among themselves or
  * against the ground behind them, or every pixel of a wood would be one: they are filtered (leaf_filter.c). Within a few
- * pixels of a target they get the samples of a step. */
+ * pixels of a target they are refined. */
 #include "render/frame/edges.h"
 
 #include "render/frame/ground_mix.h"
@@ -135,7 +135,7 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, boo
     if (sky_a && sky_b) return 0;
     if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return refine_all;
     if (sky_a != sky_b) return refine_step;
-    if (plants) return leaves ? refine_step : 0; /* most neighbours differ in light or kind */
+    if (plants) return leaves ? refine_plants : 0; /* most neighbours differ in light or kind */
     const bool   other = p->material[a] != p->material[b];
     const double cosine = p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] +
                           p->normal[2][a] * p->normal[2][b];
@@ -201,7 +201,7 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
                 corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
                 flag |= refine_ground;
             if (leafy && !(flag & refine_leaves)) flag &= ~(unsigned)(refine_sun | refine_ground);
-            if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* all flags set */
+            if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_plants | refine_ground); /* all flags set */
             flags[(y - y0) * width + k] = (uint8_t)(flag & ~(unsigned)refine_leaves);
         }
         if (y + 1 < y1) memcpy(above, below, sizeof above);

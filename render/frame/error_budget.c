@@ -64,7 +64,7 @@ static unsigned planes_to_ask(const Job *job, size_t px)
     if (flags & refine_all || (job->picture->covered && job->picture->covered[px] > 0)) return 0;
     for (int k = 0; k < picture_plane_count; k++) {
         const bool sunlit = picture_band(k) == BAND_OPTICAL || picture_band(k) == BAND_MWIR;
-        if (picture_plane(job->picture, k) && !(flags & refine_sun && !(flags & refine_step) && sunlit))
+        if (picture_plane(job->picture, k) && !(flags & refine_sun && !(flags & (refine_step | refine_plants)) && sunlit))
             planes |= 1u << k;
     }
     return planes;

@@ -127,8 +127,8 @@ Band picture_band(int plane);
 
 /* Whether pixels are sampled again where neighbours differ. */
 static inline bool looks_for_edges(const RenderRequest *request) { return request->edge_samples > request->samples; }
-/* Samples a side at steps, which need fewer than edges of parts: half as many, at least 2. */
-static inline int step_samples(const RenderRequest *request) { return request->edge_samples < 4 ? 2 : request->edge_samples / 2; }
+/* Samples a side of plants about a target, beside the first one: half as many as at edges, at least 2. */
+static inline int leaf_samples(const RenderRequest *request) { return request->edge_samples < 4 ? 2 : request->edge_samples / 2; }
 static inline bool has_band(unsigned bands, Band band) { return bands >> band & 1; }
 static inline size_t picture_index(const Picture *picture, int x, int y)
 {

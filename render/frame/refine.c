@@ -1,5 +1,7 @@
-/* render/frame/refine.c: the edges pass: pixels marked by edges.c are sampled with more samples, which join their first
- * ones in the planes and in all sums over pixels: all count alike. */
+/* render/frame/refine.c: the edges pass: pixels marked by edges.c are sampled again with more samples, which replace
+ * their first ones in the planes and in all sums over pixels. Of plants the first samples stay, and all count alike: they
+ * are as good as any other there. At a straight edge the grid alone is more accurate than the grid and a sample at the
+ * centre. */
 #include "render/frame/refine.h"
 
 #include "render/frame/edges.h"
@@ -60,8 +62,8 @@ static int ground_side(const Job *job, int n)
 
 enum { step_kinds = 2 }; /* of ground, a sample at a step */
 
-/* Squared errors of the block's pixels, by their own samples, which are this share of all. */
-static void add_variance(const Worker *w, const Job *job, double share, double sum[picture_plane_count])
+/* Squared errors of the block's pixels, by their own samples. */
+static void add_variance(const Worker *w, const Job *job, double sum[picture_plane_count])
 {
     const PixelBlock *block = &w->block;
     const int         samples = block->n * block->n;
@@ -70,7 +72,7 @@ static void add_variance(const Worker *w, const Job *job, double share, double s
         for (int p = 0; value && p < block->pixels; p++) {
             const size_t px = pixel_index(job, block->x[p], block->y[p]);
             const double open = job->picture->covered ? 1 - (double)job->picture->covered[px] : 1;
-            sum[plane] += share * open * open * error_budget_sampling_variance(value + p * samples, block->n);
+            sum[plane] += open * open * error_budget_sampling_variance(value + p * samples, block->n);
         }
     }
 }
@@ -82,8 +84,7 @@ static void refine_block(Worker *w, const Job *job, const Refinement *how, int l
     Samples    *s     = &w->samples;
     const bool  areas = job->picture->target && !(how->has & refine_sun), ground = how->has & refine_ground;
     const bool  sums  = job->picture->target || job->picture->profile, remembered = planes_remember(job);
-    const int    own = job->request->samples * job->request->samples, more = how->n * how->n;
-    const double share = ground ? 1 : (double)more / (own + more); /* split ground has no sample more */
+    const double share = how->has & refine_plants ? (double)(how->n * how->n) / (1 + how->n * how->n) : 1; /* of them in all */
     if (sums && remembered && !ground) take_back(w, job, how->bands, listed, areas, share);
     block->n = how->n;
     if (ground) {
@@ -105,7 +106,7 @@ static void refine_block(Worker *w, const Job *job, const Refinement *how, int l
     if (ground) split_ground(w, job, ground_side(job, 1), ground_mix_most);
     else if (step && job->scene.world->landscape) split_ground(w, job, ground_side(job, block->n), step_kinds);
     block_light(w, job);
-    if (law) add_variance(w, job, share, law);
+    if (law) add_variance(w, job, law);
     block_write(w, job, share);
     block_add(w, job, share);
     if (areas && !step && !ground) block_add_areas(w, job, share, listed);
@@ -132,10 +133,11 @@ void refine_tile(void *user, int worker, int task)
 
     const Refinement ways[] = {
         {refine_all, 0, all, edge},
-        {refine_step, refine_all, all, step_samples(job->request)},
-        {refine_sun, refine_all | refine_step, sunlit, edge},
-        {refine_ground, refine_all | refine_step | refine_sun, no_radar, 1},
-        {refine_ground | refine_sun, refine_all | refine_step, lwir, 1},
+        {refine_step, refine_all, all, 2},
+        {refine_plants, refine_all | refine_step, all, leaf_samples(job->request)},
+        {refine_sun, refine_all | refine_step | refine_plants, sunlit, edge},
+        {refine_ground, refine_all | refine_step | refine_plants | refine_sun, no_radar, 1},
+        {refine_ground | refine_sun, refine_all | refine_step | refine_plants, lwir, 1},
     };
     uint8_t flags_of[hits_capacity];
     refine_flags(flags_of, job, tile.x0, tile.y0, tile.x1, tile.y1);
@@ -151,7 +153,7 @@ void refine_tile(void *user, int worker, int task)
     for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
         const Refinement *how = &ways[k];
         if ((any & how->has) != how->has || how->bands == 0) continue;
-        double *law = job->law && !(how->has & (refine_step | refine_ground)) ? job->law[task] : NULL;
+        double *law = job->law && !(how->has & (refine_step | refine_plants | refine_ground)) ? job->law[task] : NULL;
         w->block.pixels = w->block.columns = 0;
         for (int y = tile.y0; y < tile.y1; y++)
             for (int x = tile.x0; x < tile.x1; x++) {

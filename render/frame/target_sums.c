@@ -17,11 +17,11 @@ Status target_sums_create(TargetSums *out, int entities, int profile_bins, Arena
 void sum_rules_choose(SumRules *rules, const RenderRequest *request, const RadarConfig *radar)
 {
     const double         pixels  = (double)request->view.width * request->view.height;
-    const int64_t        own = (int64_t)request->samples * request->samples; /* a pixel; with others: their sum */
-    const int64_t        edge = looks_for_edges(request) ? own + (int64_t)request->edge_samples * request->edge_samples : 1;
-    const int64_t        step = looks_for_edges(request) ? own + (int64_t)step_samples(request) * step_samples(request) : 1;
-    rules->steps_per_px = own * edge * step;
-    while (rules->steps_per_px < (int64_t)1 << 33) rules->steps_per_px *= 2; /* below 2^34 a pixel, of 2^26 */
+    const int            edge = looks_for_edges(request) ? request->edge_samples : 1, leaf = leaf_samples(request);
+    /* areas divide by samples^2 (every pixel), edge^2, 2^2 (steps) and 1 + leaf^2, and those by leaf^2 when the first
+     * sample's share falls; below 2^34 a pixel, of 2^26 */
+    rules->steps_per_px = (int64_t)request->samples * request->samples * edge * edge * leaf * leaf * (1 + leaf * leaf) * 4;
+    while (rules->steps_per_px < (int64_t)1 << 33) rules->steps_per_px *= 2;
     const double lobe_rad = fmax(radar->lobe_rad, 1e-9); /* as radar_lobe has it */
     rules->profile_limit    = exp2(ceil(log2(2 / (pi_rad * lobe_rad * lobe_rad))));
     rules->profile_quantum  = rules->profile_limit * exp2(ceil(log2(pixels)) - 61);
