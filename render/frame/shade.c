@@ -114,6 +114,16 @@ static void find_footprints(Shader *shader, const Samples *s)
     }
 }
 
+/* Area of the detail's slope at a hit over that of the stored ground below it. With it light per area of the ground is
+ * linear in the slopes, so that its mean does not depend on how many of them a footprint resolves, and is that of the
+ * class, whose reflectance was measured over such slopes. */
+static float bent_area(const Shader *shader, const Hits *hits, int i)
+{
+    const float up = hits->n_enu[2][i];
+    const float x = hits->n_enu[0][i] - shader->slope_x[i] * up, y = hits->n_enu[1][i] - shader->slope_y[i] * up;
+    return hits->surface[i] ? sqrtf(x * x + y * y + up * up) : 1;
+}
+
 /* The ground's detail at each hit, as far as the channels show it: its reflectance relative to that of its class, in
  * the optical channels and (of the photograph) in the one that governs solar heating (pan); temperature, backscatter,
  * slopes. */
@@ -137,6 +147,7 @@ static void resolve_detail(Shader *shader, const ShadeScene *scene, const Sample
                           hits->p_enu[1], &(GroundFootprint){shader->across_m, shader->along_m});
         for (int i = 0; i < hits->count && out.slope_x; i++)
             shader->sloped |= shader->slope_x[i] != 0 || shader->slope_y[i] != 0;
+        for (int i = 0; i < hits->count && shader->sloped && optical; i++) pattern[i] *= bent_area(shader, hits, i);
     }
     for (int c = 0; c < optical_channel_count; c++)
         if (channels >> c & 1 && c != optical_channel_pan)
