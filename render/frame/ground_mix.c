@@ -67,10 +67,57 @@ typedef struct GroundPatch {
     double  place[2]; /* sum of its places, px */
 } GroundPatch;
 
+/* The square that a sample stands for, on the plane of its hit: places a side x side apart, row by row. */
+typedef struct SquarePlaces {
+    double at_px[2][ground_mix_places]; /* on the picture */
+    double x_m[ground_mix_places], y_m[ground_mix_places];
+} SquarePlaces;
+
+/* Their places on the picture, from the sample's, for a square of 1 / n px. */
+static void places_about(SquarePlaces *out, double offset_px[2][ground_mix_places], const double centre_px[2], int places)
+{
+    for (int c = 0; c < 2; c++)
+        for (int k = 0; k < places; k++) out->at_px[c][k] = centre_px[c] + offset_px[c][k];
+}
+
+/* As plane_through, of many directions: without a lens they are linear in the place on the picture. */
+static void places_on_plane(SquarePlaces *out, const View *view, const double n[3], const double d_hit[3], double range_m,
+                            const double centre_px[2], int places)
+{
+    const double *r = view->r_enu_from_cam, per_px = 1 / view->focal_px;
+    double        d_centre[3], axis_x[3], axis_y[3];
+    for (int k = 0; k < 3; k++) {
+        axis_x[k]   = r[3 * k] * per_px, axis_y[k] = r[3 * k + 1] * per_px;
+        d_centre[k] = r[3 * k + 2] + axis_x[k] * (centre_px[0] - 0.5 * view->width) +
+                      axis_y[k] * (centre_px[1] - 0.5 * view->height);
+    }
+    const double length = v3_length(d_centre), on_plane = range_m * v3_dot(n, d_hit), flat = range_m / length;
+    const double n_centre = v3_dot(n, d_centre), n_x = v3_dot(n, axis_x), n_y = v3_dot(n, axis_y);
+    for (int k = 0; k < places; k++) {
+        const double dx = out->at_px[0][k] - centre_px[0], dy = out->at_px[1][k] - centre_px[1];
+        const double share = on_plane / (n_centre + n_x * dx + n_y * dy); /* of the direction, whose length is not 1 */
+        const double at = share < 2 * flat && share > 0.5 * flat ? share : flat;
+        out->x_m[k] = view->p_enu[0] + at * (d_centre[0] + axis_x[0] * dx + axis_y[0] * dy);
+        out->y_m[k] = view->p_enu[1] + at * (d_centre[1] + axis_x[1] * dx + axis_y[1] * dy);
+    }
+}
+
+static void places_through_lens(SquarePlaces *out, const View *view, const double n[3], const double d_hit[3],
+                                double hit_range_m, int places)
+{
+    for (int k = 0; k < places; k++) {
+        double d[3];
+        view_ray(d, view, out->at_px[0][k], out->at_px[1][k]);
+        const double range_m = plane_through(n, d_hit, hit_range_m, d);
+        out->x_m[k] = view->p_enu[0] + range_m * d[0];
+        out->y_m[k] = view->p_enu[1] + range_m * d[1];
+    }
+}
+
 /* Classes of the points over a square of 1 / n px about a sample's position, the most frequent first; the rest is
  * counted to the first. Returns their number, 1 .. most; 0: no ground there. */
 static int find_patches(GroundPatch patch[ground_mix_most], const Worker *w, const Job *job, int i, const double centre_px[2],
-                        int side, int most)
+                        double offset_px[2][ground_mix_places], int side, int most)
 {
     const View  *view = &job->request->view;
     const Hits  *hits = &w->samples.hits;
@@ -78,23 +125,17 @@ static int find_patches(GroundPatch patch[ground_mix_most], const Worker *w, con
     const int    places = side * side;
     const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
     const double d_hit[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
-    double       at_px[ground_mix_places][2], x_m[ground_mix_places], y_m[ground_mix_places];
+    SquarePlaces square;
     uint8_t      surface[ground_mix_places];
-    GroundPatch        found[SURFACE_COUNT] = {{0}};
-    for (int k = 0; k < places; k++) {
-        double place[2], d[3];
-        sample_place(place, side, k);
-        for (int c = 0; c < 2; c++) at_px[k][c] = centre_px[c] + (place[c] - 0.5) / w->block.n;
-        view_ray(d, view, at_px[k][0], at_px[k][1]);
-        const double range_m = plane_through(n, d_hit, hits->range_m[i], d);
-        x_m[k] = view->p_enu[0] + range_m * d[0];
-        y_m[k] = view->p_enu[1] + range_m * d[1];
-    }
-    landscape_surfaces(surface, job->scene.world->landscape, places, x_m, y_m);
+    GroundPatch  found[SURFACE_COUNT] = {{0}};
+    places_about(&square, offset_px, centre_px, places);
+    if (view_has_lens(view)) places_through_lens(&square, view, n, d_hit, hits->range_m[i], places);
+    else places_on_plane(&square, view, n, d_hit, hits->range_m[i], centre_px, places);
+    landscape_surfaces_square(surface, job->scene.world->landscape, side, square.x_m, square.y_m);
     for (int k = 0; k < places; k++) {
         GroundPatch *of = &found[surface[k] < SURFACE_COUNT ? surface[k] : SURFACE_NONE];
         of->count++;
-        of->place[0] += at_px[k][0], of->place[1] += at_px[k][1];
+        of->place[0] += square.at_px[0][k], of->place[1] += square.at_px[1][k];
     }
     int count = 0, total = 0;
     for (; count < most; count++) {
@@ -138,7 +179,13 @@ void split_ground(Worker *w, const Job *job, int side, int most)
     Rays     *rays = &w->rays;
     float     sun[hits_capacity];
     int       count = 0;
+    double    offset_px[2][ground_mix_places];
     assert(before * most <= hits_capacity && most <= ground_mix_most && side * side <= ground_mix_places);
+    for (int k = 0; k < side * side; k++) {
+        double place[2];
+        sample_place(place, side, k);
+        for (int c = 0; c < 2; c++) offset_px[c][k] = (place[c] - 0.5) / block->n;
+    }
     for (int i = 0; i < before; i++) {
         GroundPatch        patch[ground_mix_most];
         const int    pixel = i / samples;
@@ -146,7 +193,7 @@ void split_ground(Worker *w, const Job *job, int side, int most)
         double       centre_px[2];
         sample_place(centre_px, block->n, i % samples);
         centre_px[0] += block->x[pixel], centre_px[1] += block->y[pixel];
-        const int patches = ground ? find_patches(patch, w, job, i, centre_px, side, most) : 0;
+        const int patches = ground ? find_patches(patch, w, job, i, centre_px, offset_px, side, most) : 0;
         for (int k = 0; k < (patches > 1 ? patches : 1); k++, count++) {
             hits_copy(hits, rays, count, &s->hits, &s->rays, i);
             sun[count]          = s->sun[i];

@@ -147,6 +147,25 @@ static void post_slope(double slope[2], const ElevationLevel *e, double cells_pe
     slope[1] = (elevation_post(e, i, north) - elevation_post(e, i, south)) * cells_per_post / (north - south);
 }
 
+/* post_slope of the three posts of a triangle, all of whose neighbours are in its cell's tile: the same bits. False: some
+ * are not. */
+static bool slopes_in_tile(double at_sw[2], double at_ne[2], double at_corner[2], const ElevationLevel *e,
+                           double cells_per_post, const GroundHit *hit)
+{
+    const int i = hit->i % elevation_tile_cells, j = hit->j % elevation_tile_cells, most = elevation_tile_cells - 2;
+    if (i < 1 || j < 1 || i > most || j > most || hit->i + 2 >= e->nx || hit->j + 2 >= e->ny) return false;
+    const ElevationTile of = e->tile[elevation_tile_index(e, hit->i, hit->j)];
+    const uint16_t     *sw = e->stored + elevation_stored_index(e, hit->i, hit->j);
+    const ptrdiff_t     row = elevation_tile_side, corner = hit->north_west ? row : 1, at[3] = {0, row + 1, corner};
+    double             *slope[3] = {at_sw, at_ne, at_corner};
+    for (int k = 0; k < 3; k++) {
+        const uint16_t *post = sw + at[k];
+        slope[k][0] = (elevation_of_tile(of, post[1]) - elevation_of_tile(of, post[-1])) * cells_per_post / 2;
+        slope[k][1] = (elevation_of_tile(of, post[row]) - elevation_of_tile(of, post[-row])) * cells_per_post / 2;
+    }
+    return true;
+}
+
 static void upward(double n[3], double slope_x, double slope_y)
 {
     const double s = 1 / sqrt(slope_x * slope_x + slope_y * slope_y + 1);
@@ -170,9 +189,11 @@ void ground_normals(double n_geo[3], double n_enu[3], const Ground *ground, cons
     const double a = clamp((x_m - g->x0_m) * g->cells_per_m - hit->i, 0, 1);
     const double b = clamp((y_m - g->y0_m) * g->cells_per_m - hit->j, 0, 1);
     double       at_sw[2], at_ne[2], at_corner[2];
-    post_slope(at_sw, e, scale, hit->i, hit->j);
-    post_slope(at_ne, e, scale, hit->i + 1, hit->j + 1);
-    post_slope(at_corner, e, scale, hit->i + !hit->north_west, hit->j + hit->north_west);
+    if (!slopes_in_tile(at_sw, at_ne, at_corner, e, scale, hit)) {
+        post_slope(at_sw, e, scale, hit->i, hit->j);
+        post_slope(at_ne, e, scale, hit->i + 1, hit->j + 1);
+        post_slope(at_corner, e, scale, hit->i + !hit->north_west, hit->j + hit->north_west);
+    }
     /* weights of SW, NE and the third post: 1 - max, min, the difference */
     const double low = fmin(a, b), high = fmax(a, b);
     double       slope[2];

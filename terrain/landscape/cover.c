@@ -4,6 +4,7 @@
  * of the position, eight positions at once. */
 #include "terrain/landscape/ways_private.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 
@@ -158,7 +159,7 @@ static const double track_half_m = 2, hedge_half_m = 1.5, hedge_beyond_m = 3.6, 
 
 /* Cover on the border of two fields, at a position near one; SURFACE_NONE: nothing of its own. crop: of the field that
  * the position is in once the border has wandered. */
-static SurfaceClass border_surface(int32_t *crop, const PlotCell *cell, uint64_t seed, int site, int other, float x_m,
+static SurfaceClass border_surface(int32_t *crop, PlotCell *cell, uint64_t seed, int site, int other, float x_m,
                                    float y_m, float wander)
 {
     const PlotBorder border = plot_border(cell, seed, site, other, x_m, y_m);
@@ -199,18 +200,33 @@ static unsigned near_border(I32x8 *other, const PlotCell *cell, F32x8 x, F32x8 y
     return f32x8_bits(near);
 }
 
+/* What the synthetic cover follows, of wavelengths from 17 m on, at eight places. */
+typedef struct SlowFields {
+    F32x8 large, middle, patch; /* noise of 310, 83 and 17 m */
+    F32x8 slope, wet;
+    F32x8 bend_x, bend_y;       /* plot_bend_by */
+} SlowFields;
+
+static void find_slow_fields(SlowFields *out, const Cover *cover, const double x_m[8], const double y_m[8], F32x8 slope)
+{
+    const uint64_t seed = cover->seed;
+    out->middle = noise_eight(seed + 11, 83, x_m, y_m), out->patch = noise_eight(seed + 12, 17, x_m, y_m);
+    out->wet    = cover->ways ? ways_wet(cover->ways, x_m, y_m) : f32x8_set(0);
+    out->large  = noise_eight(seed + 10, 310, x_m, y_m);
+    out->slope  = slope;
+    plot_bend_by(&out->bend_x, &out->bend_y, seed, x_m, y_m);
+}
+
 static void invented_surfaces(int32_t surface[8], const Cover *cover, const double x_m[8],
-                              const double y_m[8], F32x8 slope, unsigned lanes)
+                              const double y_m[8], const SlowFields *slow, unsigned lanes)
 {
     static const double wild_wander = 0.02; /* some metres of the patches' borders */
     const uint64_t      seed = cover->seed;
     const F32x8         zero = f32x8_set(0), step = f32x8_set(wild_wander);
     /* wild patches, wider where it is steep; rock shows through in their hearts and on worn crests, scrub and wet
      * grass grow in hollows */
-    const F32x8 middle = noise_eight(seed + 11, 83, x_m, y_m), patch = noise_eight(seed + 12, 17, x_m, y_m);
-    const F32x8 wet = cover->ways ? ways_wet(cover->ways, x_m, y_m) : zero;
-    F32x8       wild = noise_eight(seed + 10, 310, x_m, y_m);
-    wild = f32x8_fma(f32x8_set(0.5), middle, wild);
+    const F32x8 middle = slow->middle, patch = slow->patch, wet = slow->wet, slope = slow->slope;
+    F32x8       wild = f32x8_fma(f32x8_set(0.5), middle, slow->large);
     wild = f32x8_fma(f32x8_set(0.14), patch, wild);
     wild = f32x8_fma(f32x8_set(4), slope, wild);
     F32x8       grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, zero), wild) - f32x8_set(0.88);
@@ -226,7 +242,7 @@ static void invented_surfaces(int32_t surface[8], const Cover *cover, const doub
     F32x8    x, y;
     I32x8    class = i32x8_set(SURFACE_NONE), sites = i32x8_set(0), others = i32x8_set(0);
     unsigned near = 0, touched = 0;
-    plot_bend(bent_x, bent_y, seed, x_m, y_m);
+    plot_bent(bent_x, bent_y, seed, x_m, y_m, slow->bend_x, slow->bend_y);
     plot_cells_of(i, j, &x, &y, bent_x, bent_y);
     for (unsigned left = lanes, same; left; left &= ~same) {
         same = plot_cell_lanes(i, j, left);
@@ -269,7 +285,7 @@ static void invented_surfaces(int32_t surface[8], const Cover *cover, const doub
     unsigned     bordered = 0;
     for (unsigned left = near & ~f32x8_bits(rock); left; left &= left - 1) {
         const int       k = __builtin_ctz(left);
-        const PlotCell *cell = plot_cell_at(seed, (int64_t)i[k], (int64_t)j[k]);
+        PlotCell *cell = plot_cell_at(seed, (int64_t)i[k], (int64_t)j[k]);
         on_border[k] = border_surface(&found[k], cell, seed, site_of[k], other_of[k], in_x[k], in_y[k], wander_of[k]);
         if (on_border[k] != SURFACE_NONE) bordered |= 1u << k;
     }
@@ -382,7 +398,10 @@ static void real_surfaces(int32_t surface[8], const Landscape *landscape, const 
                                                (double)woods[k]);
         if (surface[k] == SURFACE_NONE) invented |= 1u << k;
     }
-    if (invented) invented_surfaces(surface, cover, x_m, y_m, slopes, invented);
+    if (!invented) return;
+    SlowFields slow;
+    find_slow_fields(&slow, cover, x_m, y_m, slopes);
+    invented_surfaces(surface, cover, x_m, y_m, &slow, invented);
 }
 
 /* ---- both ----------------------------------------------------------------------------------- */
@@ -415,22 +434,126 @@ static unsigned grounded(const Elevation *elevation, const double x_m[8], const 
     return lanes;
 }
 
-void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
+/* ---- a few metres --------------------------------------------------------------------------- */
+
+/* Nodes about places of a few metres, two by four: between them the slow fields are linear. */
+typedef struct SlowNodes {
+    bool       known;
+    bool       east;             /* four of them from west to east; else from south to north */
+    double     x0_m, y0_m;       /* the south-west one */
+    double     per_x_m, per_y_m; /* nodes a metre */
+    SlowFields field;            /* lane: along the longer side, then across */
+} SlowNodes;
+
+/* Longest side and shorter side of the places: the linear field of 17 m is within 0.04 of the true one there. */
+static const double slow_long_m = 12, slow_short_m = 4;
+
+static void span_of(double *low, double *high, int count, const double *v_m)
+{
+    *low = INFINITY, *high = -INFINITY;
+    for (int k = 0; k < count; k++) *low = v_m[k] < *low ? v_m[k] : *low, *high = v_m[k] > *high ? v_m[k] : *high;
+}
+
+static void find_nodes(SlowNodes *out, const Landscape *landscape, int count, const double *x_m, const double *y_m)
+{
+    static const double margin_m = 0.01;
+    double low[2], high[2], x[8], y[8];
+    *out = (SlowNodes){.known = false};
+    span_of(&low[0], &high[0], count, x_m);
+    span_of(&low[1], &high[1], count, y_m);
+    const double wide_m = high[0] - low[0] + 2 * margin_m, high_m = high[1] - low[1] + 2 * margin_m;
+    out->east = wide_m > high_m;
+    if (!(fmax(wide_m, high_m) <= slow_long_m && fmin(wide_m, high_m) <= slow_short_m)) return;
+    out->x0_m    = low[0] - margin_m, out->y0_m = low[1] - margin_m;
+    out->per_x_m = (out->east ? 3 : 1) / wide_m, out->per_y_m = (out->east ? 1 : 3) / high_m;
+    for (int k = 0; k < 8; k++) {
+        const int along = k & 3, across = k >> 2;
+        x[k] = out->x0_m + (out->east ? along : across) / out->per_x_m;
+        y[k] = out->y0_m + (out->east ? across : along) / out->per_y_m;
+    }
+    if (grounded(&landscape->elevation, x, y) != 0xff) return;
+    out->known = true;
+    find_slow_fields(&out->field, landscape->cover, x, y, slopes_of_terrain(&landscape->elevation, x, y, 0xff));
+}
+
+static inline F32x8 between_nodes(F32x8 node, I32x8 cell, F32x8 along, F32x8 across)
+{
+    const I32x8 one = i32x8_set(1), four = i32x8_set(4);
+    const F32x8 near = f32x8_lerp(_mm256_permutevar8x32_ps(node, cell),
+                                  _mm256_permutevar8x32_ps(node, i32x8_add(cell, one)), along);
+    const F32x8 far  = f32x8_lerp(_mm256_permutevar8x32_ps(node, i32x8_add(cell, four)),
+                                  _mm256_permutevar8x32_ps(node, i32x8_add(cell, i32x8_add(four, one))), along);
+    return f32x8_lerp(near, far, across);
+}
+
+static void slow_between(SlowFields *out, const SlowNodes *nodes, const double x_m[8], const double y_m[8])
+{
+    double along[8], across[8];
+    for (int k = 0; k < 8; k++) {
+        const double x = (x_m[k] - nodes->x0_m) * nodes->per_x_m, y = (y_m[k] - nodes->y0_m) * nodes->per_y_m;
+        along[k] = nodes->east ? x : y, across[k] = nodes->east ? y : x;
+    }
+    const F32x8 at = f32x8_clamp(f32x8_of_doubles(along), 0, 2.999f), whole = f32x8_floor(at);
+    const F32x8 u = at - whole, v = f32x8_clamp(f32x8_of_doubles(across), 0, 1);
+    const I32x8 cell = i32x8_truncate(whole);
+    const SlowFields *f = &nodes->field;
+    *out = (SlowFields){between_nodes(f->large, cell, u, v),  between_nodes(f->middle, cell, u, v),
+                        between_nodes(f->patch, cell, u, v),  between_nodes(f->slope, cell, u, v),
+                        between_nodes(f->wet, cell, u, v),    between_nodes(f->bend_x, cell, u, v),
+                        between_nodes(f->bend_y, cell, u, v)};
+}
+
+/* nodes: NULL, or about the places. */
+static void find_surfaces(uint8_t *surface, const Landscape *landscape, const SlowNodes *nodes, int count, const double *x_m,
+                          const double *y_m)
 {
     const Cover *cover = landscape->cover;
     for (int first = 0; first < count; first += 8) {
-        double    x[8], y[8];
-        int32_t   found[8] = {0};
-        const int some = count - first < 8 ? count - first : 8;
+        double     x[8], y[8];
+        int32_t    found[8] = {0};
+        SlowFields slow;
+        const int  some = count - first < 8 ? count - first : 8;
         for (int k = 0; k < 8; k++) x[k] = k < some ? x_m[first + k] : NAN, y[k] = k < some ? y_m[first + k] : NAN;
         unsigned lanes = cover ? grounded(&landscape->elevation, x, y) : 0;
         if (lanes && cover->coast.sea_count) lanes = coast_surfaces(found, &cover->coast, x, y, lanes);
-        if (lanes && cover->real)
+        if (lanes && cover->real) {
             real_surfaces(found, landscape, x, y, lanes);
-        else if (lanes)
-            invented_surfaces(found, cover, x, y, slopes_of_terrain(&landscape->elevation, x, y, lanes), lanes);
+        } else if (lanes) {
+            if (nodes && nodes->known) slow_between(&slow, nodes, x, y);
+            else find_slow_fields(&slow, cover, x, y, slopes_of_terrain(&landscape->elevation, x, y, lanes));
+            invented_surfaces(found, cover, x, y, &slow, lanes);
+        }
         for (int k = 0; k < some; k++) surface[first + k] = (uint8_t)found[k];
     }
+}
+
+void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
+{
+    find_surfaces(surface, landscape, NULL, count, x_m, y_m);
+}
+
+/* Whether a place of a square is looked up first: a quarter of them in a regular pattern, half of few. */
+static bool looks_first(int side, int row, int column)
+{
+    return side < 8 ? (row + column) % 2 == 0 : row % 2 == 0 && (column + row / 2) % 2 == 0;
+}
+
+void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m, const double *y_m)
+{
+    double    x[landscape_square_most], y[landscape_square_most];
+    uint8_t   found[landscape_square_most];
+    int       place[landscape_square_most], differ = 0;
+    SlowNodes nodes = {.known = false};
+    assert(side * side <= landscape_square_most);
+    if (landscape_is_synthetic(landscape)) find_nodes(&nodes, landscape, side * side, x_m, y_m);
+    for (int pass = 0; pass == 0 || (pass == 1 && differ); pass++) {
+        int count = 0;
+        for (int k = 0; k < side * side; k++)
+            if (looks_first(side, k / side, k % side) == (pass == 0)) place[count] = k, x[count] = x_m[k], y[count++] = y_m[k];
+        find_surfaces(found, landscape, &nodes, count, x, y);
+        for (int k = 0; k < count; k++) surface[place[k]] = found[k], differ |= found[k] != found[0];
+    }
+    for (int k = 0; k < side * side && !differ; k++) surface[k] = found[0];
 }
 
 SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m)

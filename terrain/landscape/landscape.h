@@ -104,6 +104,12 @@ bool         landscape_is_synthetic(const Landscape *landscape);
  * many positions at once a tenth of the time each, and the same results. */
 SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m);
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m);
+/* The same of side x side places, row by row, of a square as small as a pixel's, for a fraction of the time: where a regular
+ * pattern of a quarter of them (half, for sides below 8) is of one class, all are; and over squares of up to 12 x 4 m what
+ * the synthetic cover follows over 17 m and more is interpolated, which moves borders by some decimetres
+ * (tests/terrain/test_cover.c). */
+enum { landscape_square_most = 256 };
+void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m, const double *y_m);
 /* Where there is a photograph: its brightness relative to its own mean over that class, a channel, averaged over the
  * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. The
  * detail (terrain/landscape/detail.h) then adds only what is finer than the photograph's pixels. factor: red, green,

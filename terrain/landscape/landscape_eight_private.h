@@ -114,6 +114,12 @@ static inline F32x8 noise_pair_eight(F32x8 *second, uint64_t seed, double wavele
 static const double plot_m = 160;
 enum { plot_sites = 9, plot_cells_kept = 128 };
 
+/* The border between two sites, found when it is first asked for. */
+typedef struct PlotEdge {
+    bool   known, first, track, hedge; /* as PlotBorder */
+    double apart_m;                    /* the sites */
+} PlotEdge;
+
 /* One cell of the grid of fields, and the nine sites a place in it can belong to. From the cell's south-west corner. */
 typedef struct PlotCell {
     int64_t  i, j;
@@ -124,6 +130,7 @@ typedef struct PlotCell {
     int32_t  field[plot_sites];                       /* the same within this cell: the first site of the field */
     int32_t  crop[plot_sites];                        /* SurfaceClass */
     float    across_x[plot_sites], across_y[plot_sites]; /* unit vector across its rows */
+    PlotEdge edge[plot_sites][plot_sites];
 } PlotCell;
 
 /* The border between two sites of different fields, at a place in the first of them. */
@@ -133,7 +140,7 @@ typedef struct PlotBorder {
     bool   track, hedge; /* along it */
 } PlotBorder;
 
-PlotBorder plot_border(const PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m);
+PlotBorder plot_border(PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m);
 
 /* The nearest border about a place, the unit vector away from it, but for the bend, and a number of its two fields. */
 bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m);
@@ -148,18 +155,25 @@ static inline void plot_turn(double *cosine, double *sine, uint64_t seed)
     *cosine = of[h >> 61][swap], *sine = of[h >> 61][1 - swap];
 }
 
-/* The fields are laid out on a plane that is turned, and bent over hundreds of metres: where eight places are on it. */
-static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8], const double y_m[8])
+/* The fields are laid out on a plane that is turned, and bent over hundreds of metres: by how much at eight places. */
+static inline void plot_bend_by(F32x8 *by_x, F32x8 *by_y, uint64_t seed, const double x_m[8], const double y_m[8])
 {
     static const double wave_m[] = {2300, 330}, away_m[] = {260, 28};
     F32x8               dx = f32x8_set(0), dy = f32x8_set(0);
-    float               by_x[8], by_y[8];
     for (int n = 0; n < 2; n++) {
         F32x8 wave_y;
         dx = f32x8_fma(f32x8_set(away_m[n]), noise_pair_eight(&wave_y, seed + 26 + (uint64_t)n, wave_m[n], x_m, y_m),
                        dx);
         dy = f32x8_fma(f32x8_set(away_m[n]), wave_y, dy);
     }
+    *by_x = dx, *by_y = dy;
+}
+
+/* Where eight places are on that plane. */
+static inline void plot_bent(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8], const double y_m[8],
+                             F32x8 dx, F32x8 dy)
+{
+    float by_x[8], by_y[8];
     f32x8_store(by_x, dx), f32x8_store(by_y, dy);
     double c, t;
     plot_turn(&c, &t, seed);
@@ -169,8 +183,15 @@ static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, 
     }
 }
 
+static inline void plot_bend(double bent_x[8], double bent_y[8], uint64_t seed, const double x_m[8], const double y_m[8])
+{
+    F32x8 dx, dy;
+    plot_bend_by(&dx, &dy, seed, x_m, y_m);
+    plot_bent(bent_x, bent_y, seed, x_m, y_m, dx, dy);
+}
+
 /* Valid until the thread's next call. */
-const PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j);
+PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j);
 
 /* Of the places in `left`, those in the same cell as the first of them. */
 static inline unsigned plot_cell_lanes(const double i[8], const double j[8], unsigned left)

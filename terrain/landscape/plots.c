@@ -55,7 +55,7 @@ static void find_cell(PlotCell *cell, uint64_t seed, int64_t ci, int64_t cj)
 
 /* Cells of earlier look-ups: what a cell holds is of its seed and place alone, so that results do not depend on which
  * are kept. */
-const PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j)
+PlotCell *plot_cell_at(uint64_t seed, int64_t i, int64_t j)
 {
     static _Thread_local PlotCell kept[plot_cells_kept];
     PlotCell *cell = &kept[(uint64_t)(i + 11 * j) % plot_cells_kept];
@@ -69,19 +69,27 @@ static uint64_t block_of(const PlotCell *cell, uint64_t seed, int site)
     return landscape_hash(seed + 8, (cell->i + site % 3 - 1) >> 2, (cell->j + site / 3 - 1) >> 2);
 }
 
-PlotBorder plot_border(const PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m)
+/* The line between two sites: what all its places share. */
+static PlotEdge find_edge(const PlotCell *cell, uint64_t seed, int site, int other)
+{
+    const double dx = (double)(cell->x_m[other] - cell->x_m[site]), dy = (double)(cell->y_m[other] - cell->y_m[site]);
+    const uint64_t one = block_of(cell, seed, site), two = block_of(cell, seed, other);
+    const double   u = unit_from_hash(landscape_hash(seed + 6, (int64_t)(cell->id[other] ^ cell->id[site]), 0));
+    const double   v = unit_from_hash(landscape_hash(seed + 9, (int64_t)(one ^ two), 0));
+    return (PlotEdge){.known = true, .first = cell->id[site] < cell->id[other], .track = one != two ? v < 0.7 : u < 0.05,
+                      .hedge = u > 0.66, .apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3)};
+}
+
+PlotBorder plot_border(PlotCell *cell, uint64_t seed, int site, int other, float x_m, float y_m)
 {
     /* distance to the perpendicular bisector */
     const double own_x = (double)(x_m - cell->x_m[site]), own_y = (double)(y_m - cell->y_m[site]);
     const double off_x = (double)(x_m - cell->x_m[other]), off_y = (double)(y_m - cell->y_m[other]);
-    const double dx = (double)(cell->x_m[other] - cell->x_m[site]), dy = (double)(cell->y_m[other] - cell->y_m[site]);
-    const double apart_m = fmax(sqrt(dx * dx + dy * dy), 1e-3);
     const double more = off_x * off_x + off_y * off_y - (own_x * own_x + own_y * own_y);
-    const uint64_t one = block_of(cell, seed, site), two = block_of(cell, seed, other);
-    const double   u = unit_from_hash(landscape_hash(seed + 6, (int64_t)(cell->id[other] ^ cell->id[site]), 0));
-    const double   v = unit_from_hash(landscape_hash(seed + 9, (int64_t)(one ^ two), 0));
-    return (PlotBorder){.away_m = 0.5 * more / apart_m, .first = cell->id[site] < cell->id[other],
-                        .track = one != two ? v < 0.7 : u < 0.05, .hedge = u > 0.66};
+    PlotEdge *edge = &cell->edge[site][other];
+    if (!edge->known) *edge = find_edge(cell, seed, site, other);
+    return (PlotBorder){.away_m = 0.5 * more / edge->apart_m, .first = edge->first, .track = edge->track,
+                        .hedge = edge->hedge};
 }
 
 bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, uint64_t seed, double x_m, double y_m)
@@ -94,7 +102,7 @@ bool plot_border_about(PlotBorder *out, double away_from[2], uint64_t *fields, u
     plot_bend(bent_x, bent_y, seed, x, y);
     plot_cells_of(i, j, &in_x, &in_y, bent_x, bent_y);
     f32x8_store(from_x, in_x), f32x8_store(from_y, in_y);
-    const PlotCell *cell = plot_cell_at(seed, (int64_t)i[0], (int64_t)j[0]);
+    PlotCell *cell = plot_cell_at(seed, (int64_t)i[0], (int64_t)j[0]);
     for (int n = 0; n < plot_sites; n++) {
         const double dx = (double)(from_x[0] - cell->x_m[n]), dy = (double)(from_y[0] - cell->y_m[n]);
         if (dx * dx + dy * dy < near_least) near_least = dx * dx + dy * dy, site = n;
