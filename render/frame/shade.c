@@ -120,8 +120,9 @@ static void find_footprints(Shader *shader, const Samples *s)
 static float bent_area(const Shader *shader, const Hits *hits, int i)
 {
     const float up = hits->n_enu[2][i];
+    if (!hits->surface[i] || (shader->slope_x[i] == 0 && shader->slope_y[i] == 0)) return 1;
     const float x = hits->n_enu[0][i] - shader->slope_x[i] * up, y = hits->n_enu[1][i] - shader->slope_y[i] * up;
-    return hits->surface[i] ? sqrtf(x * x + y * y + up * up) : 1;
+    return sqrtf(x * x + y * y + up * up);
 }
 
 /* The ground's detail at each hit, as far as the channels show it: its reflectance relative to that of its class, in

@@ -55,7 +55,7 @@ static void hand_plant_direction(double d[3], uint32_t stream, uint64_t index)
 }
 
 /* whole: outlines are the whole card; else diamonds with a notch. size: of leaves. */
-static void hand_grow(bool whole, double size)
+static inline void hand_grow(bool whole, double size)
 {
     static const float diamond[5][2] = {{0.5f, 0}, {1, 0.5f}, {0.55f, 0.6f}, {0.5f, 1}, {0, 0.5f}};
     for (int kind = 0; kind < PLANT_KINDS; kind++) {

@@ -194,6 +194,35 @@ static void a_moving_eye_sees_no_shimmer(void **state)
     }
 }
 
+/* Light of slopes is linear in them: its mean over a picture is the same with one ray a pixel, with 64, and without any
+ * slopes; with normals of unit length it falls by half of their variance, 2 % here. */
+static void slopes_keep_the_mean_light(void **state)
+{
+    DetailStatistics statistics[SURFACE_COUNT][detail_fields] = {{{0}}};
+    const View       view = view_from(120, 450, -200, 50, width, height);
+    DetailTable     *bumps = NULL;
+    double           mean[3] = {0};
+    (void)state;
+    for (int s = 1; s < SURFACE_COUNT; s++) statistics[s][DETAIL_HEIGHT] = (DetailStatistics){0.06, 0.8, 0.2, 1.5, 0.8, 0};
+    CHECK(detail_table_create(&bumps, (const DetailStatistics(*)[detail_fields])statistics, detail_cut_off) == STATUS_OK);
+    Material        *grass = &hand.world.materials.material[hand.world.materials.surface[SURFACE_GRASS]];
+    const float      gloss = grass->gloss;
+    grass->gloss = 0; /* what mirrors is not linear */
+    for (int k = 0; k < 3; k++) {
+        const RenderRequest request = request_from(&view, k == 2 ? 8 : 1);
+        hand.world.detail = k == 0 ? NULL : bumps;
+        arena_reset(hand.arena);
+        const Picture p = hand_render(&request, hand.pool);
+        for (int i = 0; i < pixels; i++) mean[k] += (double)picture_plane(&p, 0)[i] / pixels;
+    }
+    hand.world.detail = NULL;
+    grass->gloss = gloss;
+    detail_table_close(bumps);
+    print_message("mean light with slopes over that without: %.4f with one ray, %.4f with 64\n", mean[1] / mean[0], mean[2] / mean[0]);
+    CHECK_NEAR(mean[1] / mean[0], 1, 0.004);
+    CHECK_NEAR(mean[2] / mean[0], 1, 0.004);
+}
+
 /* Off: the class's one value, to the bit that of a table without noise; but along ways, whose wear and ruts are on with
  * any table. */
 static void off_is_even(void **state)
@@ -224,6 +253,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(statistics_are_those_of_the_filtered_class),
         cmocka_unit_test(a_moving_eye_sees_no_shimmer),
+        cmocka_unit_test(slopes_keep_the_mean_light),
         cmocka_unit_test(off_is_even),
     };
     return cmocka_run_group_tests(tests, open_world, close_world);

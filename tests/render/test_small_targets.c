@@ -239,6 +239,44 @@ static void overlap_occlusion_and_the_picture_s_edge(void **state)
     CHECK_NEAR(hand_irradiance(&picture, &view, picture_lwir, 0) * 4000 * 4000 / (hand_emitted(BAND_LWIR) * 2), 1, 0.01);
 }
 
+/* A plate behind a row of masts half a pixel wide, all of one radiance, before a brighter sky: the sky goes where the plate
+ * stands between the masts, all of it. The pixels' own samples see half sky there. */
+static void nothing_shines_through_gaps_that_it_fills(void **state)
+{
+    enum { masts = 14 };
+    static const double range_m = 250, sky_w_m2_sr = 200, turn = 75 * rad_per_deg, pitch_m = 0.12;
+    (void)state;
+    const View          view    = east();
+    RenderRequest       request = hand_request(&view);
+    double              r[9], upright[9], p_enu[3], irradiance[2];
+    request.samples = 8, request.edge_samples = 0; /* one ray a pixel misses most of the masts */
+    hand_air_off(sun_enu);
+    for (int i = 0; i <= air_sky_ups; i++) hand.air.sky_eye[AIR_LWIR].thermal_w_m2_sr[i] = sky_w_m2_sr;
+    hand_attitude(r, pi_rad + turn, 0);
+    hand_attitude(upright, pi_rad, 0);
+    for (int with_plate = 0; with_plate < 2; with_plate++) {
+        hand_clear();
+        for (int k = 0; k < masts; k++) {
+            place_at(p_enu, &view, range_m - 2, 0.31, 0);
+            p_enu[1] += (k - 0.5 * masts) * pitch_m, p_enu[2] -= 4;
+            hand_add(hand_mast_model, p_enu, upright);
+        }
+        place_at(p_enu, &view, range_m, 0.31, 0.2);
+        p_enu[2] -= hand_plate_z_m;
+        if (with_plate) hand_add(hand_plate_model, p_enu, r);
+        arena_reset(hand.arena);
+        const Picture picture = hand_render(&request, hand.pool);
+        irradiance[with_plate] = hand_irradiance(&picture, &view, picture_lwir, sky_w_m2_sr);
+        if (!with_plate) continue;
+        const TargetPixels *t = &picture.target[masts];
+        CHECK(t->small && !picture.target[masts / 2].small);
+        CHECK_NEAR(t->visible / t->amodal, 0.47, 0.02); /* of masts 6 cm thick, 12 cm apart, 2 m nearer */
+        const double area_m2 = 4 * hand_plate_y_m * hand_plate_z_m * cos(turn) * t->visible / t->amodal;
+        const double want = (hand_emitted(BAND_LWIR) - sky_w_m2_sr) * area_m2 / (range_m * range_m);
+        CHECK_NEAR((irradiance[1] - irradiance[0]) / want, 1, 0.03); /* 0.5 with the pixels' means in place of the masts */
+    }
+}
+
 /* Every pair of target and occluder counts, however many a tile of pixels holds: 24 walls, one behind the other. */
 static void all_that_is_hidden_names_what_hides_it(void **state)
 {
@@ -376,6 +414,7 @@ int main(void)
         cmocka_unit_test(without_footprints_it_flickers),
         cmocka_unit_test(the_background_gives_way_by_as_much),
         cmocka_unit_test(overlap_occlusion_and_the_picture_s_edge),
+        cmocka_unit_test(nothing_shines_through_gaps_that_it_fills),
         cmocka_unit_test(all_that_is_hidden_names_what_hides_it),
         cmocka_unit_test(a_crowd_keeps_the_footprints_near_the_boresight),
         cmocka_unit_test(a_pixel_is_whose_most_of_it_is),

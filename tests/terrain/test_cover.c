@@ -238,6 +238,40 @@ static void company_changes_nothing(void **state)
         CHECK(again[n] == surface[some - 1 - n]);
 }
 
+/* Squares of a pixel's size: where all of one class, it is that; on borders as much of each class, within a few places. */
+static void squares_are_their_places(void **state)
+{
+    enum { squares = 4000, a_side = 8, all = a_side * a_side };
+    static const double sides_m[][2] = {{0.2, 0.2}, {0.3, 2}, {1, 1}, {0.4, 9}, {3, 11}, {5, 5}};
+    (void)state;
+    for (size_t size = 0; size < sizeof sides_m / sizeof *sides_m; size++) {
+        int    bordered = 0, same = 0;
+        double off = 0;
+        for (int n = 0; n < squares; n++) {
+            double  x[all], y[all];
+            uint8_t got[all], want[all];
+            int     count[2][SURFACE_COUNT] = {{0}}, differ = 0;
+            const double east_m = 2600 * (2 * random_uniform(12, 0, 0, (uint64_t)n) - 1);
+            const double north_m = 2600 * (2 * random_uniform(12, 1, 0, (uint64_t)n) - 1);
+            for (int k = 0; k < all; k++) {
+                x[k] = east_m + sides_m[size][0] * (k % a_side + 0.5) / a_side;
+                y[k] = north_m + sides_m[size][1] * (k / a_side + 0.5) / a_side + 0.2 * (x[k] - east_m);
+            }
+            landscape_surfaces_square(got, &land, a_side, x, y);
+            landscape_surfaces(want, &land, all, x, y);
+            for (int k = 0; k < all; k++) count[0][got[k]]++, count[1][want[k]]++;
+            for (int c = 0; c < SURFACE_COUNT; c++) differ += abs(count[0][c] - count[1][c]);
+            bordered += count[1][want[0]] < all;
+            same += memcmp(got, want, sizeof got) == 0;
+            off += 0.5 * differ / all;
+        }
+        print_message("squares of %.1f x %.1f m: %d of %d on borders, %d the same, %.2f %% of their area off\n", sides_m[size][0],
+                      sides_m[size][1], bordered, (int)squares, same, 100 * off / bordered);
+        CHECK(bordered > 20 && same > 0.85 * squares);
+        CHECK(off / bordered < 0.03);
+    }
+}
+
 /* Where the class changes from south to north near a line, by halves. */
 static double border_y(const Landscape *of, double x, double low, double high)
 {
@@ -291,6 +325,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cover_is_what_it_is_defined_to_be),
         cmocka_unit_test(company_changes_nothing),
+        cmocka_unit_test(squares_are_their_places),
         cmocka_unit_test(borders_of_files_have_no_steps),
     };
     return cmocka_run_group_tests(tests, make_land, drop_land);
