@@ -23,6 +23,22 @@ Status forest_status(const Forest *forest)
 
 /* ---- prototypes ------------------------------------------------------------------------------- */
 
+/* How far a shape reaches towards equally spaced azimuths. */
+static void find_reach(ShapeScene *out, int quads)
+{
+    for (int a = 0; a < shape_azimuths; a++) {
+        const double cosine = cos(2 * pi_rad * a / shape_azimuths), sine = sin(2 * pi_rad * a / shape_azimuths);
+        double       most = -INFINITY;
+        for (int q = 0; q < quads; q++)
+            for (int k = 0; k < 4; k++) {
+                const float *p = out->shape->quad[q].corner[k];
+                most = fmax(most, cosine * (double)p[0] + sine * (double)p[1]);
+            }
+        out->reach[a] = most;
+    }
+    out->reach[shape_azimuths] = out->reach[0];
+}
+
 static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int level)
 {
     const PlantShape *shape = &forest->plants->shape[kind][level];
@@ -35,6 +51,7 @@ static Status build_shape(ShapeScene *out, const Forest *forest, int kind, int l
         out->half[c] = 0.5 * ((double)shape->high[c] - (double)shape->low[c]) + 1e-4;
     }
     if (quads == 0) return STATUS_OK;
+    find_reach(out, quads);
     RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_QUAD);
     float      *vertex = geometry ? rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                             3 * sizeof(float), (size_t)quads * 4) : NULL;

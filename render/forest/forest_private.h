@@ -6,12 +6,16 @@
 
 #include "render/forest/forest.h"
 
+enum { shape_azimuths = 64 };
+
 /* A prototype, ready to be traced: its quads about their middle, and Embree's tree over them. */
 typedef struct ShapeScene {
     RTCScene          scene;
     const PlantShape *shape;
     const LeafOutline *outline; /* [plant_outlines] */
     double            centre[3], half[3]; /* box, of a plant 1 m high */
+    double            reach[shape_azimuths + 1]; /* how far it reaches towards azimuths from x to y, from its axis; the last
+                                                  * is the first */
 } ShapeScene;
 
 /* Plants that one tree of boxes holds. */

@@ -1,6 +1,14 @@
 /* render/forest/forest_trace.c: rays against plants: from a plant's box to its prototype's axes, to the quads there. */
 #include "render/forest/forest_private.h"
 
+/* Where a plant stands and how it is turned: the same for every ray of a frame. */
+typedef struct PlantFrame {
+    const Plant *plant; /* NULL: not known */
+    double       foot_enu[3], axis[3][3], per[2];
+} PlantFrame;
+
+enum { frames_kept = 128 };
+
 /* A ray through a list of plants. */
 typedef struct ListRay {
     struct RTCIntersectContext base; /* first: Embree passes it to the callbacks */
@@ -11,6 +19,7 @@ typedef struct ListRay {
     bool      met;
     uint64_t  entered;       /* plants' boxes */
     ForestHit hit;
+    PlantFrame kept[frames_kept]; /* of plants that earlier rays met */
 } ListRay;
 
 /* The same in the axes of a prototype, about the middle of its box, from where it enters that. */
@@ -43,12 +52,38 @@ static void axes_of(double axis[3][3], double scale[2], const ForestFrame *frame
     plant_axes(axis, scale, plant, sway_rad);
 }
 
-/* Of a vector of ENU, in the prototype's axes, 1 high. */
+static const PlantFrame *frame_of(ListRay *ray, const PlantList *list, const Plant *plant)
+{
+    PlantFrame *f = &ray->kept[(uintptr_t)plant / sizeof *plant % frames_kept];
+    double      scale[2];
+    if (f->plant == plant) return f;
+    f->plant = plant;
+    foot_of(f->foot_enu, list, plant);
+    axes_of(f->axis, scale, ray->frame, plant);
+    for (int k = 0; k < 2; k++) f->per[k] = 1 / scale[k];
+    return f;
+}
+
+/* A vector of ENU in the prototype's axes, scaled so that its height is 1. */
 static void to_prototype(double out[3], const double axis[3][3], const double per[2], const double v_enu[3])
 {
     out[0] = v3_dot(axis[0], v_enu) * per[0];
     out[1] = v3_dot(axis[1], v_enu) * per[0];
     out[2] = v3_dot(axis[2], v_enu) * per[1];
+}
+
+/* How far a shape reaches along a vector of its axes: at least, and by a thousandth more at most. The reach between two
+ * azimuths is no more than the same mix of theirs as the azimuth is, since that of a sum of vectors is at most the sum. */
+static double reach_along(const ShapeScene *shape, const double along[3])
+{
+    static const double step_rad = 2 * pi_rad / shape_azimuths;
+    const double        across = sqrt(along[0] * along[0] + along[1] * along[1]);
+    const double        turn = atan2(along[1], along[0]), at = (turn < 0 ? turn + 2 * pi_rad : turn) / step_rad;
+    const int           k = (int)fmin(at, shape_azimuths - 1);
+    const double        mix = (shape->reach[k] * sin((k + 1 - at) * step_rad) + shape->reach[k + 1] * sin((at - k) * step_rad)) /
+                       sin(step_rad);
+    const double up = shape->centre[2] + shape->half[2], down = shape->centre[2] - shape->half[2];
+    return across * (mix + 1e-4) + fmax(along[2] * up, along[2] * down);
 }
 
 void plant_box(const struct RTCBoundsFunctionArguments *a)
@@ -62,14 +97,15 @@ void plant_box(const struct RTCBoundsFunctionArguments *a)
     float            *bound[2] = {&a->bounds_o->lower_x, &a->bounds_o->upper_x};
     plant_transform(m, plant, NULL);
     for (int l = 0; l < plant_levels; l++) {
-        double centre[3];
-        m3_mul_v3(centre, m, level[l]->centre);
+        if (!level[l]->scene) continue;
         for (int c = 0; c < 3; c++) {
-            const double half = fabs(m[3 * c]) * level[l]->half[0] + fabs(m[3 * c + 1]) * level[l]->half[1] +
-                                fabs(m[3 * c + 2]) * level[l]->half[2] + room_m + swing_m;
-            low[c] = fmin(low[c], centre[c] - half), high[c] = fmax(high[c], centre[c] + half);
+            const double along[3] = {m[3 * c], m[3 * c + 1], m[3 * c + 2]}, back[3] = {-along[0], -along[1], -along[2]};
+            low[c]  = fmin(low[c], -reach_along(level[l], back) - room_m - swing_m);
+            high[c] = fmax(high[c], reach_along(level[l], along) + room_m + swing_m);
         }
     }
+    for (int c = 0; c < 3; c++) /* of a kind without quads */
+        if (!(low[c] <= high[c])) low[c] = high[c] = 0;
     for (int c = 0; c < 3; c++) {
         bound[0][c] = (float)((double)plant->p_m[c] + low[c]);
         bound[1][c] = (float)((double)plant->p_m[c] + high[c]);
@@ -77,19 +113,17 @@ void plant_box(const struct RTCBoundsFunctionArguments *a)
 }
 
 /* The ray in the prototype's axes; false: it misses the box, or is stopped before. start_m: of the new origin. */
-static bool enter_plant(QuadRay *q, double *start_m, const ListRay *ray, const PlantList *list, uint32_t place)
+static bool enter_plant(QuadRay *q, double *start_m, ListRay *ray, const PlantList *list, uint32_t place)
 {
     const Plant *plant = &list->plant[place];
-    double       foot_enu[3], from[3], axis[3][3], scale[2], o[3], in = 0, out = ray->limit_m;
-    foot_of(foot_enu, list, plant);
-    const int level = !ray->real && forest_is_low_in_picture(ray->frame, plant, foot_enu);
+    const PlantFrame *stands = frame_of(ray, list, plant);
+    double       from[3], o[3], in = 0, out = ray->limit_m;
+    const int level = !ray->real && forest_is_low_in_picture(ray->frame, plant, stands->foot_enu);
     q->shape = &list->forest->shape[plant->kind][level];
     if (!q->shape->scene) return false;
-    axes_of(axis, scale, ray->frame, plant);
-    const double per[2] = {1 / scale[0], 1 / scale[1]};
-    v3_sub(from, ray->o_enu, foot_enu);
-    to_prototype(o, axis, per, from);
-    to_prototype(q->d, axis, per, ray->d_enu);
+    v3_sub(from, ray->o_enu, stands->foot_enu);
+    to_prototype(o, stands->axis, stands->per, from);
+    to_prototype(q->d, stands->axis, stands->per, ray->d_enu);
     for (int c = 0; c < 3; c++) {
         const double half = q->shape->half[c], to = q->shape->centre[c] - o[c], inverse = 1 / q->d[c];
         double       a = (to - half) * inverse, b = (to + half) * inverse;
@@ -246,6 +280,12 @@ void plant_occlude(const struct RTCOccludedFunctionNArguments *a)
 
 /* ---- rays ------------------------------------------------------------------------------------- */
 
+static void open_rays(ListRay *ray)
+{
+    ray->entered = 0;
+    for (int k = 0; k < frames_kept; k++) ray->kept[k].plant = NULL;
+}
+
 /* False: a ray that Embree does not accept (not finite, or from too far), which meets nothing. */
 static bool open_ray(ListRay *ray, const ForestFrame *frame, const double *const o_enu[3], const double *const d_enu[3],
                      int i, double limit_m, bool real)
@@ -267,7 +307,8 @@ uint64_t forest_first_hits(double *range_m, ForestHit *hit, const ForestFrame *f
                            const double *const o_enu[3], const double *const d_enu[3], const uint8_t *real)
 {
     const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
-    ListRay          ray = {.entered = 0};
+    ListRay          ray;
+    open_rays(&ray);
     for (int i = 0; i < count; i++) {
         if (!open_ray(&ray, frame, o_enu, d_enu, i, range_m[i], real && real[i])) continue;
         for (int k = 0; k < 2; k++) {
@@ -290,7 +331,8 @@ uint64_t forest_any_hits(uint8_t *dark, const ForestFrame *frame, int count, con
                          const double *const d_enu[3], const double *far_m, const uint8_t *real)
 {
     const PlantList *lists[2] = {&frame->forest->standing, low_plants_list(frame)};
-    ListRay          ray = {.entered = 0};
+    ListRay          ray;
+    open_rays(&ray);
     for (int i = 0; i < count; i++) {
         if (dark[i]) continue;
         if (!open_ray(&ray, frame, o_enu, d_enu, i, far_m[i], real && real[i])) continue;
