@@ -102,9 +102,10 @@ View trial_view(const TrialScene *scene, double back_m, double above_m, double h
 
 RenderRequest trial_default_request(const TrialScene *scene, const View *view, double range_m)
 {
-    const Config c = config_default();
-    return (RenderRequest){.view = *view, .bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR | 1u << BAND_RADAR,
-                           .truth = true, .optical = config_optical(&c), .sky_samples = c.sensor.sky_samples,
+    const Config   c = config_default();
+    const unsigned all = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR | 1u << BAND_RADAR;
+    return (RenderRequest){.view = *view, .bands = all, .truth = true, .optical = config_optical(&c),
+                           .sky_samples = c.sensor.sky_samples,
                            .sky_visibility = strcmp(c.sensor.sky_visibility, "on") == 0, .samples = c.sensor.samples,
                            .edge_samples = c.sensor.edge_samples, .target_samples = c.sensor.target_samples,
                            .budget = strcmp(c.quality.budget, "on") == 0,

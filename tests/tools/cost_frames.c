@@ -111,7 +111,8 @@ static Status plant_world(void)
         stand.clear[stand.clears++] = (WoodsPath){{40.0 * k - 80, 0}, {40.0 * k - 80, 0}, 6, 6};
     World  *world = &stage.world;
     char    optics[512], ground[512];
-    if (!etc_path(optics, sizeof optics, "plant_optics.csv") || !etc_path(ground, sizeof ground, "woods.csv")) return STATUS_BAD_VALUE;
+    if (!etc_path(optics, sizeof optics, "plant_optics.csv") || !etc_path(ground, sizeof ground, "woods.csv"))
+        return STATUS_BAD_VALUE;
     Status status = woods_stand_create(&stage.woods, &stand, stage.pool);
     if (status == STATUS_OK) status = materials_add_plants(&world->materials, optics, ground);
     if (status == STATUS_OK) status = plants_create(&world->plants, 1995, stage.pool);
@@ -196,9 +197,11 @@ static Status count_frame(Picture *out, const CostFrame *f)
 static void print_frame(const CostFrame *f, const Picture *picture)
 {
     const RenderCounters *c = &picture->counters;
-    printf("%s,%llu,%llu,%llu,%llu,%llu,%llu,%llu\n", f->name, (unsigned long long)c->rays_primary, (unsigned long long)c->rays_edges,
-           (unsigned long long)c->rays_small_targets, (unsigned long long)(c->visibility.rays_sun_ground),
-           (unsigned long long)c->visibility.rays_plants, (unsigned long long)c->pixels_refined, (unsigned long long)c->small_targets);
+    const uint64_t value[] = {c->rays_primary, c->rays_edges, c->rays_small_targets, c->visibility.rays_sun_ground,
+                              c->visibility.rays_plants, c->pixels_refined, c->small_targets};
+    fputs(f->name, stdout);
+    for (size_t k = 0; k < sizeof value / sizeof *value; k++) printf(",%llu", (unsigned long long)value[k]);
+    putchar('\n');
     fflush(stdout);
 }
 

@@ -139,9 +139,11 @@ static Status time_sweep(Speed *s)
     snprintf(out, sizeof out, "%s/out", folder);
     snprintf(said, sizeof said, "%s/said.txt", folder);
     const char *const exercise[] = {"pitviper", "exercise", "demo", "-o", log, NULL};
-    const char *const replay[] = {"pitviper", "replay", log, "--size", "96x64", "--only", "30", "--no-files", "--sweep", sweep, "--out", out, NULL};
+    const char *const replay[] = {"pitviper", "replay", log, "--size", "96x64", "--only", "30", "--no-files",
+                                  "--sweep", sweep, "--out", out, NULL};
+    const char *const gains = variants == 2 ? "[1, 1.1]" : "[1, 1.1, 1.2, 1.3]";
     FILE             *file = fopen(sweep, "w");
-    bool              ok = file && fputs(variants == 2 ? "axes:\n  detector.gain: [1, 1.1]\n" : "axes:\n  detector.gain: [1, 1.1, 1.2, 1.3]\n", file) >= 0;
+    bool              ok = file && fprintf(file, "axes:\n  detector.gain: %s\n", gains) > 0;
     ok = file && fclose(file) == 0 && ok;
     bench_progress(s->bench, "a sweep");
     ok = ok && run_s(exercise, said) >= 0;
