@@ -3,6 +3,7 @@
 
 #include "entities/motion/dead_reckoning.h"
 #include "render/scene/upright.h"
+#include "sensor/settings/config.h"
 
 /* ---- entities ----------------------------------------------------------------------------- */
 
@@ -97,6 +98,20 @@ View trial_view(const TrialScene *scene, double back_m, double above_m, double h
     v3_scale(d_enu, 1 / v3_length(d_enu), d_enu);
     camera_upright(view.r_enu_from_cam, d_enu);
     return view;
+}
+
+RenderRequest trial_default_request(const TrialScene *scene, const View *view, double range_m)
+{
+    const Config   c = config_default();
+    const unsigned all = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR | 1u << BAND_RADAR;
+    return (RenderRequest){.view = *view, .bands = all, .truth = true, .optical = config_optical(&c),
+                           .sky_samples = c.sensor.sky_samples,
+                           .sky_visibility = strcmp(c.sensor.sky_visibility, "on") == 0, .samples = c.sensor.samples,
+                           .edge_samples = c.sensor.edge_samples, .target_samples = c.sensor.target_samples,
+                           .budget = strcmp(c.quality.budget, "on") == 0,
+                           .low_plants_m = scene->world.forest ? c.terrain.woods_low_m : 0, .hidden_entity = -1,
+                           .profile_bins = c.radar.bins, .profile_bin_m = c.radar.bin_m,
+                           .profile_near_m = fmax(0, range_m - 0.5 * c.radar.bins * c.radar.bin_m)};
 }
 
 /* ---- one frame -------------------------------------------------------------------------------- */

@@ -31,6 +31,8 @@ for what in "ground: " "ground: pyramid" "40 m up: frame" "100 m up: frame" "300
             "heat of the ground: shadows of a day" "heat of the ground: a hit, with shadows" \
             "heat of the ground: a hit, without" "heat of the ground: 100 m up.*as the air" \
             "heat of the ground: 100 m up.*no shadows" "heat of the ground: 100 m up.*with shadows" "heat of a vehicle: a step" "heat of the vehicles: the longest" "heat of the vehicles: the mean" \
+            "100 m up: default quality.*,yes," "set-up: ground" "set-up: catalog" "set-up: places of plants" "set-up: plants grown" \
+            "set-up: ground warmed up" "set-up: twenty tanks" "set-up: all" "sweep: a variant" \
             "memory: posts" "memory: arena" "memory: resident"; do
     has speed "$what"
 done
@@ -107,6 +109,8 @@ table woods
 for view in "100 m up, 5 degrees down" "300 m up, 10 degrees down" "300 m up, 8 down, 6 wide" "1000 m up, 20 degrees down"; do
     has woods "$view: one ray a pixel, full detail.*planes of one thread, nothing skipped\",yes,"
     has woods "$view: one ray a pixel, two levels.*planes of one thread, nothing skipped\",yes,"
+    has woods "$view: default quality, full detail"
+    has woods "$view: default quality: pixels sampled again"
     for plane in red green blue "3-5 um" "8-12 um"; do has woods "$view: two levels, $plane"; done
 done
 has woods "memory: with frames of all views, full detail.*,yes,"

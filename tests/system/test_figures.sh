@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
-# The figures of etc/reference/speed.md are those of the run in etc/figures, and none by hand; README is short, and every
+# The figures of etc/reference/speed.md are those of the run in etc/figures, none by hand and none older than the code; README is short, and every
 # link of the documentation leads to a file, every anchor to a heading.
 . "$(dirname "$0")/common.sh"
+needs git command -v git
 page=etc/reference/speed.md
-check "speed.md is as etc/make_figures writes it" etc/make_figures --check
+check "speed.md is as etc/make_figures writes it, of this code" etc/make_figures --check
 
-mkdir -p "$tmp/house/etc/reference"
+mkdir -p "$tmp/house/etc/reference" "$tmp/house/tests"
 cp -r etc/figures etc/make_figures "$tmp/house/etc/"
+cp tests/cost.csv "$tmp/house/tests/"
+cp tests/cost.csv "$tmp/house/etc/figures/"
 cp $page "$tmp/house/$page"
 make_figures() { "$tmp/house/etc/make_figures" "$@" >"$tmp/stdout" 2>"$tmp/stderr"; }
 check "nor in a copy of them" make_figures --check
@@ -15,6 +18,38 @@ sed -i 's/\(one ray per pixel.*| \)[0-9.]* |/\11.5 |/' "$tmp/house/$page"
 check "a figure by hand is seen" refused 'not what etc/figures makes' --check
 check "and written over" make_figures
 check "with what was there" cmp -s $page "$tmp/house/$page"
+# frame NAME FACTOR: what the frame costs, beside when the figures were measured
+frame() { awk -F, -v OFS=, -v n="$1" -v f="$2" '$1 == n { $2 = sprintf("%.0f", $2 * f) } { print }' tests/cost.csv >"$tmp/house/tests/cost.csv"; }
+frame smoke 1.08
+check "a frame of 8 % more makes them no older" make_figures --check
+for factor in 1.12 0.88; do
+    frame smoke $factor
+    check "a frame of $factor times its cost does" refused 'older than the code: .*: smoke [+-]12 %; next.*--run' --check
+done
+frame smoke 1
+check "and not when it is as it was" make_figures --check
+sed 's/^| pseudo-radar/{{if dis|Fire: decode}}\nWITH\n{{else}}\nWITHOUT\n{{end}}\n{{if dis|nothing}}\nNEVER {{dis|nothing|s}}\n{{end}}\n&/' \
+    etc/figures/tables.md >"$tmp/house/etc/figures/tables.md"
+check "text for a row that there is" make_figures
+check "is alone written" [ "$(grep -cE 'WITH$|WITHOUT|NEVER' "$tmp/house/$page")" = 1 ]
+cp etc/figures/tables.md "$tmp/house/etc/figures/"
+
+# a run is kept with the commit and the costs that it is of
+in_house() { git -C "$tmp/house" -c user.name=a -c user.email=a@example.org -c commit.gpgsign=false "$@" >/dev/null 2>&1; }
+in_house init
+in_house add .
+in_house commit -m all
+echo "<svg/>" >"$tmp/rays-a-pixel.svg"
+cp etc/figures/bench_all.csv "$tmp/full.csv"
+echo more >>"$tmp/house/$page"
+check "of a checkout that differs from its commit: refused" refused 'commit first' "$tmp/full.csv" "$tmp"
+in_house checkout .
+frame smoke 1.5
+in_house commit -am dearer
+check "of a commit: kept" make_figures "$tmp/full.csv" "$tmp"
+check "the page says which" grep -q "(commit $(git -C "$tmp/house" rev-parse --short=8 HEAD); " "$tmp/house/$page"
+check "and the costs are those of now" cmp -s "$tmp/house/tests/cost.csv" "$tmp/house/etc/figures/cost.csv"
+check "which are of this code" make_figures --check
 sed -i '/^dis,Entity State: decode/d' "$tmp/house/etc/figures/bench_all.csv"
 check "a row that is gone" refused 'no such row: dis|Entity State: decode' --check
 cp etc/figures/bench_all.csv "$tmp/quick.csv"

@@ -14,7 +14,7 @@ const BenchSuite sensor_benches[] = {
      .options = "size=WxH: 720x486,ground=KMxKM: 12x16; of posts 1 m apart,model=FILE: fills the picture; "
                 "models/brlcad/ktank.obj of the reference data or else the built-in tank,"
                 "bands=optical|radar: pictures of all bands or the radar with phase alone; both",
-     .help = "frames over a large ground with twenty vehicles: whole, by stage, against the tracer alone",
+     .help = "frames over a large ground with twenty vehicles: whole, by stage, against the tracer alone; set-up, a sweep",
      .run = bench_speed,
      .reads =
          "Frames are whole, planes of truth and all, handed over in memory; stages are of one thread, where they add "
@@ -28,7 +28,7 @@ const BenchSuite sensor_benches[] = {
      .options = "trees=N: at most; 3000000,level1-px=PX: plants lower than this are simplified; 24",
      .help = "frames of three million trees over 192 M posts, in full detail and with two levels of it",
      .run = bench_woods,
-     .reads = "Frames are whole, of all bands, one ray a pixel. Errors are against 16 rays in every pixel in full "
+     .reads = "Frames are whole, of all bands, one ray a pixel but for rows of the default quality. Errors are against 16 rays in every pixel in full "
               "detail; of two levels also by the same 16 rays in both, where no sampling is part of it."},
     {.name = "network", .help = "a live node, an exercise sent to it: what is lost, how late it is", .run = bench_live},
     {.name = "network",

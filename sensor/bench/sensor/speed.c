@@ -485,8 +485,11 @@ static Status time_all(Speed *s)
     const View wide = trial_view(&s->scene, places[1].back_m, places[1].above_m, hfov_rad, s->width, s->height);
     const RenderRequest radar = speed_request(&wide, 1u << BAND_RADAR, true);
     if (status == STATUS_OK) status = time_picture(s, "100 m up: radar alone, truth", &s->scene, &radar);
+    const RenderRequest usual = trial_default_request(&s->scene, &wide, places[1].back_m);
+    if (status == STATUS_OK) status = time_picture(s, "100 m up: default quality, all bands, truth and its error", &s->scene, &usual);
     if (status == STATUS_OK) status = speed_files(s);
     if (status == STATUS_OK) status = speed_heat(s);
+    if (status == STATUS_OK) status = speed_start(s);
     if (status == STATUS_OK) speed_memory(s);
     return status;
 }

@@ -30,6 +30,8 @@ TrialFrame    speed_frame(const Speed *s, const TrialScene *scene, const RenderR
 /* The rows of a frame's files; of memory. */
 Status        speed_files(Speed *s);
 void          speed_memory(Speed *s);
+/* The rows of a world's set-up by parts, and of a sweep's variant. */
+Status        speed_start(Speed *s);
 /* The rows of the ground's heat; warms the scene's world. */
 Status        speed_heat(Speed *s);
 

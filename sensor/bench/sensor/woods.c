@@ -290,6 +290,37 @@ static Status time_view(WoodsBench *w, int v)
     return STATUS_OK;
 }
 
+/* As a node asks for it: edges, small targets and the estimate of its error. Its bits are those of one ray a pixel and of the
+ * tests: here time alone. */
+static Status time_default(WoodsBench *w, int v)
+{
+    const View    view = view_of(w, v);
+    RenderRequest request[2] = {trial_default_request(&w->scene, &view, places[v].above_m / sin(places[v].down_deg * rad_per_deg)),
+                                request_of(w, v, 1)};
+    const int     rounds = bench_quick(w->bench) ? 1 : 3;
+    BenchTime     time[2] = {{.rounds = rounds}, {.rounds = rounds}};
+    char          what[what_size];
+    double        refined = 0;
+    for (int r = 0; r < rounds; r++)
+        for (int k = 0; k < 2; k++) {
+            WoodsFrame   f = frame_of(w, 0, &request[k], w->many, w->arena[0]);
+            const double start_s = wall_clock_s();
+            render_frame(&f);
+            if (f.frame.status != STATUS_OK) return f.frame.status;
+            time[k].item_s[r] = wall_clock_s() - start_s;
+            if (k == 0) refined = (double)f.frame.picture.counters.pixels_refined;
+        }
+    for (int k = 0; k < 2; k++) bench_time_finish(&time[k]);
+    snprintf(what, sizeof what, "%s: default quality, %s", places[v].name, detail_name[0]);
+    BenchRow row = bench_row_of(what, &time[0], "frames/s", 1);
+    row.ratio    = bench_ratio(&time[0], &time[1]);
+    row.to       = "one ray a pixel";
+    bench_add(w->bench, &row);
+    snprintf(what, sizeof what, "%s: default quality: pixels sampled again", places[v].name);
+    say(w, what, 100 * refined / ((double)w->width * w->height), "%");
+    return STATUS_OK;
+}
+
 /* A piece about the middle, a third of the picture's sides, with one ray and with 16. */
 static Status price_view(WoodsBench *w, int v)
 {
@@ -393,6 +424,7 @@ static Status time_all(WoodsBench *w)
     if (status == STATUS_OK) status = make_forest(w, 1);
     for (int v = 0; v < views && status == STATUS_OK; v++) {
         status = time_view(w, v);
+        if (status == STATUS_OK) status = time_default(w, v);
         if (status == STATUS_OK) status = price_view(w, v);
     }
     for (int v = 0; v < views && status == STATUS_OK; v++) status = time_stages(w, v);
