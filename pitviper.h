@@ -248,6 +248,9 @@ Status settings_set(void *out, bool *given, const SettingTable *table, const cha
 Status settings_set_from(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                          const char *source, const char *file);
 bool   settings_is_path(const Setting *row);
+/* Whether each path is of a regular file, of a folder, or of nothing that is there; else logged: a FIFO or a device would
+ * be waited for. outputs: names of keys, `a.b,c.d`, that may be of anything. */
+bool   settings_paths_good(const void *from, const SettingTable *table, const char *outputs);
 /* Paths become absolute, as far as they fit: for files in other folders, and for hashes. */
 void   settings_absolute(void *out, const SettingTable *table);
 /* Line of a key in a file that was read; 0: absent. */

@@ -1,5 +1,5 @@
 /* pitviper_text.c: tables of text, numbers from text, sanitizing of untrusted bytes. */
-#include "pitviper.h"
+#include "pitviper_file.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -128,38 +128,7 @@ void text_print(FILE *to, const char *format, ...)
 
 Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most)
 {
-    size_t size = 0, capacity = 1 << 16;
-    FILE  *file = fopen(path, "rb");
-    if (!file) {
-        log_error("%s: cannot open %s: %s", module, path, strerror(errno));
-        return STATUS_IO;
-    }
-    Status status = STATUS_OK;
-    char  *text = malloc(capacity);
-    if (!text) status = STATUS_NO_MEMORY;
-    while (status == STATUS_OK) {
-        size += fread(text + size, 1, capacity - size - 1, file);
-        if (size < capacity - 1 || size > most) break;
-        char *larger = realloc(text, capacity *= 2);
-        if (larger) text = larger;
-        else status = STATUS_NO_MEMORY;
-    }
-    if (status == STATUS_OK && ferror(file)) {
-        log_error("%s: cannot read %s: %s", module, path, strerror(errno));
-        status = STATUS_IO;
-    } else if (status == STATUS_OK && size > most) {
-        log_error("%s: %s: larger than %zu octets", module, path, most);
-        status = STATUS_BAD_VALUE;
-    }
-    fclose(file);
-    if (status != STATUS_OK) {
-        free(text);
-        return status;
-    }
-    text[size] = 0;
-    *out    = text;
-    *octets = size;
-    return STATUS_OK;
+    return file_read_whole(out, octets, module, path, most, FILE_FROM_DISK);
 }
 
 /* ---- tables ------------------------------------------------------------------------------- */

@@ -4,11 +4,14 @@
  * liblzma, with decoders that verify the checksums of the formats. */
 #include "dis/log_stream.h"
 
+#include "pitviper_file.h"
+
 #include <bzlib.h>
 #include <errno.h>
 #include <lzma.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 #include <zlib.h>
 #include <zstd.h>
 #include <zstd_errors.h>
@@ -22,7 +25,7 @@ typedef enum Packing { PACKING_NONE, PACKING_GZIP, PACKING_ZSTD, PACKING_BZIP2, 
 static const char *const packing_name[PACKING_COUNT] = {NULL, "gzip", "zstd", "bzip2", "xz"};
 
 struct DisStream {
-    FILE       *file;
+    int         file; /* a descriptor */
     char       *path;
     Packing     packing;
     bool        file_over;  /* end of the file */
@@ -57,11 +60,11 @@ static void fill(DisStream *s, size_t octets)
     memmove(s->in, s->in + s->at, s->count - s->at);
     s->count -= s->at;
     s->at = 0;
-    const size_t got = fread(s->in + s->count, 1, sizeof s->in - s->count, s->file);
-    s->count += got;
-    s->read += got;
+    const long got = file_read(s->file, s->in + s->count, sizeof s->in - s->count);
+    s->count += got > 0 ? (size_t)got : 0;
+    s->read += got > 0 ? (uint64_t)got : 0;
     s->file_over = s->count < sizeof s->in;
-    if (s->file_over && ferror(s->file)) stop(s, STATUS_IO, strerror(errno));
+    if (got < 0) stop(s, STATUS_IO, errno == ECANCELED ? "stopped by a signal" : strerror(errno));
 }
 
 static Packing packing_of(const uint8_t *p, size_t octets)
@@ -261,9 +264,10 @@ static Status open_stream(DisStream *s, const char *path)
 {
     s->path = strdup(path);
     if (!s->path) return STATUS_NO_MEMORY;
-    s->file = fopen(path, "rb");
-    if (!s->file) {
-        log_error("log: cannot open %s: %s", path, strerror(errno));
+    char why[file_why_size];
+    s->file = file_open(why, NULL, path, FILE_FROM_PIPE);
+    if (s->file < 0) {
+        log_error("log: cannot open %s: %s", path, why);
         return STATUS_IO;
     }
     fill(s, magic_octets);
@@ -283,6 +287,7 @@ Status dis_stream_open(DisStream **out, const char *path)
 {
     DisStream *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
+    s->file             = -1;
     s->xz               = (lzma_stream)LZMA_STREAM_INIT;
     const Status status = open_stream(s, path);
     if (status == STATUS_OK) *out = s;
@@ -294,7 +299,7 @@ void dis_stream_close(DisStream *s)
 {
     if (!s) return;
     end_decoder(s);
-    if (s->file) fclose(s->file);
+    if (s->file >= 0) close(s->file);
     free(s->path);
     free(s);
 }

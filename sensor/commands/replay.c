@@ -173,6 +173,8 @@ static Status open_log(Run *run, DisLog *log)
     const Options *o = &run->options;
     DisLog         heard;
     Status         status = dis_log_open(log, o->log, o->config.exercise.port);
+    run->stopped = status != STATUS_OK && stop_asked(); /* while a pipe was waited for */
+    if (run->stopped) return status;
     if (status == STATUS_OK) status = sha256_file(run->log_sha256, o->log);
     if (status != STATUS_OK) return status;
     run->link = &log->counters;
@@ -294,7 +296,9 @@ int replay_command(int argc, char **argv)
     if (status == STATUS_NO_MEMORY)
         log_error("replay: out of memory; smaller pictures (--size), fewer bands (--bands) or more memory");
 
+    const bool unheard = run.stopped && log.count == 0;
     run_close(&run);
     dis_log_close(&log);
-    return status != STATUS_OK ? 1 : run.stopped ? stop_exit_code() : 0;
+    if (status != STATUS_OK && !unheard) return 1;
+    return run.stopped ? stop_exit_code() : 0;
 }

@@ -285,7 +285,7 @@ static Status write_file(const char *path, const char *text, size_t octets)
     return STATUS_IO;
 }
 
-/* Passes on a stop by SIGTERM, so that the child ends after its frame; Ctrl-C reaches it from the terminal. */
+/* Passes on a stop as SIGTERM, so that the child ends after its frame; Ctrl-C reaches it from the terminal. */
 static void wait_for(int *state, pid_t child)
 {
     bool told = false;

@@ -339,7 +339,8 @@ Status session_open(Session **out, const SessionShared *shared, const HostPlan *
     Status status = STATUS_OK;
     if (snprintf(s->out, sizeof s->out, "%s", folder) >= (int)sizeof s->out) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = open_session(s);
-    if (status == STATUS_OK) *out = s;
+    s->opened = status == STATUS_OK;
+    if (s->opened) *out = s;
     else session_close(s, NULL);
     return status;
 }
@@ -483,9 +484,10 @@ Status session_close(Session *s, SessionResult *result)
     detections_close(s->detections);
     geoid_close(&s->geoid);
     if (status == STATUS_OK) status = s->listed;
-    if (s->table && *s->shared->config->heat.marks && status == STATUS_OK)
+    /* of a session that could not be opened nothing is written over what it could not read */
+    if (s->opened && *s->shared->config->heat.marks && status == STATUS_OK)
         status = entity_table_marks_save(s->table, s->shared->unix_s, s->shared->config->heat.marks);
-    if (s->vehicles && *s->shared->config->heat.vehicles && status == STATUS_OK)
+    if (s->opened && s->vehicles && *s->shared->config->heat.vehicles && status == STATUS_OK)
         status = vehicle_heat_keep(world_vehicles_heat(s->vehicles), s->shared->config->heat.vehicles);
     s->result.frames         = s->published;
     s->result.files_failed   = s->written.failed + s->lines_failed;

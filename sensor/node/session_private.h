@@ -20,6 +20,7 @@ struct Session {
     HostPlan             plan;          /* host and aim are filled in when they are received */
     char                 out[4096];
     char                 host_text[dis_id_text_size];
+    bool                 opened;        /* all of it */
     EntityTable         *table;
     Player              *player;        /* the caller's */
     GivenHeat           *given;         /* of vehicles; NULL: none */

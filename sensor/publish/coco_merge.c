@@ -2,6 +2,7 @@
 #include "sensor/publish/coco_merge.h"
 
 #include "sensor/publish/coco_file.h"
+#include "sensor/publish/json_read.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -75,13 +76,12 @@ static Status add_annotations(CocoMerge *m, const NewId *id, size_t ids, json_t 
 Status coco_merge_add(CocoMerge *m, const char *name)
 {
     char         path[2 * coco_path_size];
-    json_error_t error;
     Status       status = STATUS_OK;
     snprintf(path, sizeof path, "%s/%s/coco.json", m->folder, name);
     if (!m->open) status = coco_file_open(&m->file, m->folder);
     if (status != STATUS_OK) return status;
     m->open = true;
-    json_t      *whole = json_load_file(path, 0, &error), *images = json_object_get(whole, "images");
+    json_t      *whole = json_read_file(path), *images = json_object_get(whole, "images");
     const size_t count = json_array_size(images);
     NewId       *id    = calloc(count + 1, sizeof *id);
     if (!json_is_array(images)) status = refuse(path);

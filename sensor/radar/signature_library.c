@@ -1,6 +1,8 @@
 /* sensor/radar/signature_library.c: see signature_library.h. */
 #include "sensor/radar/signature_library.h"
 
+#include "pitviper_file.h"
+
 #include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -193,15 +195,15 @@ static void refused(SignatureLibrary *l, const char *path)
 /* The whole file; NULL: not there, or not of a length that one can have. */
 static uint8_t *read_whole(size_t *count, const char *path)
 {
-    struct stat about;
-    FILE       *file = fopen(path, "rbe");
-    if (!file) return NULL;
-    uint8_t   *octets = NULL;
-    const off_t most = head_octets + hash_octets + (off_t)most_centres * (off_t)sizeof(SignatureCentre);
-    if (fstat(fileno(file), &about) == 0 && S_ISREG(about.st_mode) && about.st_size >= 0 && about.st_size <= most)
-        octets = malloc((size_t)about.st_size + 1);
-    if (octets) *count = fread(octets, 1, (size_t)about.st_size, file);
-    fclose(file);
+    static const uint64_t most = head_octets + hash_octets + (uint64_t)most_centres * sizeof(SignatureCentre);
+    char      why[file_why_size];
+    uint64_t  there = 0;
+    const int file = file_open(why, &there, path, FILE_FROM_DISK);
+    if (file < 0) return NULL;
+    uint8_t   *octets = there <= most ? malloc((size_t)there + 1) : NULL;
+    const long got = octets ? file_read(file, octets, (size_t)there) : 0;
+    *count = got > 0 ? (size_t)got : 0;
+    close(file);
     return octets;
 }
 

@@ -1,6 +1,7 @@
 /* sensor/regress/child.c: runs this program as a child process with output in files and a time limit. */
 #include "sensor/regress/child.h"
 
+#include "pitviper_file.h"
 #include "sensor/node/stop.h"
 
 #include <errno.h>
@@ -127,7 +128,8 @@ void child_text(char *out, size_t out_size, const ChildLine *line)
 
 void child_tail(char *out, size_t out_size, const char *path)
 {
-    FILE *file = fopen(path, "rb");
+    char  why[file_why_size];
+    FILE *file = file_open_stream(why, path);
     *out       = 0;
     if (!file) return;
     if (fseek(file, 0, SEEK_END) == 0) {

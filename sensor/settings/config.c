@@ -2,6 +2,7 @@
 #include "sensor/settings/config.h"
 
 #include "pitviper_channels.h"
+#include "pitviper_file.h"
 
 #include "dis/pdu.h"
 #include "sensor/settings/memory_choice.h"
@@ -10,10 +11,7 @@
 #include "sensor/settings/video_choice.h"
 #include "terrain/woods/woods.h"
 
-#include <errno.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #define AT(member) SETTING_AT(Config, member)
 
@@ -485,13 +483,11 @@ const char *config_sheet(const Config *config) { return table_has_rows(config) ?
 
 static bool is_readable(const char *key, const char *path)
 {
-    struct stat about;
-    const int   failed = !*path || access(path, R_OK) == 0 ? 0 : errno;
-    const bool  file = !*path || stat(path, &about) != 0 || S_ISREG(about.st_mode);
-    if (failed == 0 && file) return true;
+    char why[file_why_size];
+    if (!*path || file_is_regular(why, path)) return true;
     log_error("config: %s: cannot read %s: %s; in a file of settings paths are relative to that file, on the command "
               "line "
-              "to the current folder", key, path, file ? strerror(failed) : "it is not a regular file");
+              "to the current folder", key, path, why);
     return false;
 }
 
@@ -543,6 +539,7 @@ static bool store_alone(const Config *config)
 
 Status config_check(const Config *config)
 {
+    if (!settings_paths_good(config, &table, "publish.video,record.path")) return STATUS_BAD_VALUE;
     if (config->detector.bits != 8 && config->detector.bits != 16) {
         log_error("config: detector.bits: %d is not 8 or 16", config->detector.bits);
         return STATUS_BAD_VALUE;

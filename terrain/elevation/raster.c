@@ -2,10 +2,12 @@
  * with a remedy. */
 #include "terrain/elevation/raster.h"
 
+#include "pitviper_file.h"
 #include "terrain/elevation/gdal_library.h"
 
 #include <strings.h>
 #include <cpl_conv.h>
+#include <cpl_string.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -32,6 +34,9 @@ static pthread_once_t once = PTHREAD_ONCE_INIT;
 static void register_drivers(void)
 {
     static const GIntBig most_cache = 256 << 20; /* octets; by default a twentieth of the memory */
+    /* A file may name others (VRT): none makes this program ask a server. */
+    CPLSetConfigOption("GDAL_SKIP", "HTTP,WMS,WMTS,WCS,DAAS,EEDA,EEDAI,PLMosaic,NGW,OGCAPI,STACTA,STACIT,PostGISRaster");
+    CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none"); /* of /vsicurl/ and those of its kind */
     GDALAllRegister();
     if (GDALGetCacheMax64() > most_cache) GDALSetCacheMax64(most_cache);
 }
@@ -45,8 +50,8 @@ static const char *reason(const char *else_text)
 
 static void quiet(void)
 {
-    pthread_once(&once, register_drivers);
     CPLPushErrorHandler(CPLQuietErrorHandler);
+    pthread_once(&once, register_drivers);
     CPLErrorReset();
 }
 
@@ -212,6 +217,26 @@ static void take_suffixes(Opened *o, char *path)
     else *colon = ':';
 }
 
+/* GDAL opens by name and waits for a FIFO. Names that are no file's (a subdataset, a file in an archive) are its own. */
+static bool may_be_opened(const char *path, const char *key)
+{
+    struct stat about;
+    char        why[file_why_size];
+    if (stat(path, &about) != 0 || file_is_regular(why, path)) return true;
+    log_error("%s: cannot read %s: %s", key, path, why);
+    return false;
+}
+
+/* Of a file that names others, such as a VRT, those too. */
+static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char *key)
+{
+    char **parts = GDALGetFileList(file);
+    bool   good = true;
+    for (int k = 0; good && parts && parts[k]; k++) good = strcmp(parts[k], path) == 0 || may_be_opened(parts[k], key);
+    CSLDestroy(parts);
+    return good;
+}
+
 static Status add_sheet(RasterSet *set, const char *name, const char *key)
 {
     Opened o = {0};
@@ -222,13 +247,14 @@ static Status add_sheet(RasterSet *set, const char *name, const char *key)
     take_suffixes(&o, path);
     const RasterVertical vertical = o.vertical;
     const int            chosen_band = o.band;
+    if (!may_be_opened(path, key)) return STATUS_IO;
     GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
     if (!file) {
         log_error("%s: cannot read %s: %s; gdalinfo %s says what it is", key, path, reason("not a raster GDAL knows"),
                   path);
         return STATUS_IO;
     }
-    status = describe(&o, file, path, key);
+    status = parts_may_be_opened(file, path, key) ? describe(&o, file, path, key) : STATUS_IO;
     GDALClose(file);
     if (status != STATUS_OK) return status;
     o.vertical = vertical;
