@@ -28,8 +28,7 @@ typedef struct Files {
     char shown[1024]; /* without .gz */
     size_t folder;    /* length of the folder's name with its slash */
     bool no_memory;     /* for a file of it */
-    char refused[1100]; /* the last name of a file outside the folder, or of what is no file */
-    int refusals;
+    char refused[1100]; /* a file outside the folder, or what is no file */
 } Files;
 
 typedef struct OpenFile {
@@ -69,12 +68,10 @@ static enum aiReturn file_seek(struct aiFile *file, size_t offset, enum aiOrigin
     return aiReturn_SUCCESS;
 }
 
-/* assimp asks for a file several times, whether it is there and for its octets. */
+/* The first name; assimp asks for a file several times, and by more than one. */
 static void refuse(Files *files, const char *name)
 {
-    const char *slash = strrchr(name, '/'), *before = strrchr(files->refused, '/');
-    if (strcmp(before ? before + 1 : files->refused, slash ? slash + 1 : name) != 0) files->refusals++;
-    snprintf(files->refused, sizeof files->refused, "%s", name);
+    if (!*files->refused) snprintf(files->refused, sizeof files->refused, "%s", name);
 }
 
 static struct aiFile *files_open(struct aiFileIO *io, const char *name, const char *mode)
@@ -286,7 +283,7 @@ static void child_reads(int fd, const char *path)
             fill_node(&flat, flat.source->mRootNode, -1);
             for (int m = 0; m < s->material_count; m++) fill_material(&s->material[m], flat.source->mMaterials[m]);
             count_lost(s, flat.source);
-            s->lost[LOST_EXTERNAL_REFERENCES] = files.refusals;
+            s->lost[LOST_EXTERNAL_REFERENCES] = *files.refused != 0;
             snprintf(header.refused, sizeof header.refused, "%s", files.refused);
             header.status = STATUS_OK;
         }
