@@ -14,11 +14,12 @@ enum { look_ms = 100 }; /* how often a wait looks for a requested stop */
 static bool (*stop_asked)(void);
 
 void file_stop_when(bool (*asked)(void)) { stop_asked = asked; }
+bool file_stop_asked(void) { return stop_asked && stop_asked(); }
 
 static const char *kind_name(mode_t mode)
 {
     switch (mode & S_IFMT) {
-    case S_IFDIR: return "a folder";
+    case S_IFDIR: return "a directory";
     case S_IFIFO: return "a FIFO (named pipe)";
     case S_IFSOCK: return "a socket";
     case S_IFCHR: return "a character device";
@@ -93,7 +94,7 @@ static bool wait_for(int file)
 {
     struct pollfd at = {.fd = file, .events = POLLIN};
     for (;;) {
-        if (stop_asked && stop_asked()) {
+        if (file_stop_asked()) {
             errno = ECANCELED;
             return false;
         }

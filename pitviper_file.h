@@ -34,5 +34,6 @@ long file_read_at(int file, void *out, size_t octets, uint64_t at);
 Status file_read_whole(char **out, size_t *octets, const char *module, const char *path, size_t most, FileFrom from);
 /* How a wait for a pipe learns that a stop was requested; set before the first file is opened. NULL: never. */
 void file_stop_when(bool (*asked)(void));
+bool file_stop_asked(void);
 
 #endif

@@ -28,7 +28,7 @@ check "no key that names a file is left out" [ "$("$pitviper" check --default | 
 refuses 2 'character device' replay demo.pcap --out out --set heat.given=/dev/zero
 refuses 2 "$pipe" replay demo.pcap --out out -c f.yaml
 refuses 1 "$pipe" replay demo.pcap --out out --sweep f.yaml
-refuses 1 folder replay . --out out
+refuses 1 directory replay . --out out
 refuses 1 'character device' inspect /dev/zero
 refuses 1 "$pipe" check f.yaml
 refuses 1 "$pipe" frame f.pvf
