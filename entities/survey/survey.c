@@ -325,7 +325,8 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
 
     for (int d = 0; d < log->count && status == STATUS_OK; d++) {
         survey.datagram_s[d] = NAN;
-        status = receive_datagram(&b, d, log->datagram + d, exercise);
+        const DisDatagram datagram = dis_log_datagram(log, d);
+        status = receive_datagram(&b, d, &datagram, exercise);
     }
     if (status == STATUS_OK) status = survey_join_shots(&survey.shot, &survey.shot_count, b.warfare, b.warfare_count);
     if (status == STATUS_OK) status = survey_order_shots(&survey.shot_by_munition, survey.shot, survey.shot_count);

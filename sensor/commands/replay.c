@@ -168,14 +168,30 @@ static void take_packet_times(DisLog *log)
     log->retimed = false;
 }
 
+/* Of the log's octets as they are read: it is read once. */
+typedef struct Hash {
+    Sha256 *digest;
+    bool    good;
+} Hash;
+
+static void hash_octets(void *user, const void *octets, size_t count)
+{
+    Hash *hash = user;
+    hash->good = hash->good && sha256_add(hash->digest, octets, count);
+}
+
 static Status open_log(Run *run, DisLog *log)
 {
     const Options *o = &run->options;
     DisLog         heard;
-    Status         status = dis_log_open(log, o->log, o->config.exercise.port);
+    Hash           hash = {sha256_begin(), true};
+    Status         status = hash.digest ? dis_log_open_read(log, o->log, o->config.exercise.port, hash_octets, &hash)
+                                        : STATUS_NO_MEMORY;
+    if (hash.digest) {
+        const Status ended = sha256_end(run->log_sha256, hash.digest, hash.good);
+        if (status == STATUS_OK) status = ended;
+    }
     run->stopped = status != STATUS_OK && stop_asked(); /* while a pipe was waited for */
-    if (run->stopped) return status;
-    if (status == STATUS_OK) status = sha256_file(run->log_sha256, o->log);
     if (status != STATUS_OK) return status;
     run->link = &log->counters;
     if (o->config.causal) take_packet_times(log);
@@ -191,6 +207,7 @@ static Status open_log(Run *run, DisLog *log)
     run->view = heard = *log;
     const bool starts = !o->config.causal || opening_of(&run->view, &heard, &run->until_s, log, &o->config);
     status            = run_survey(run, &heard);
+    if (status == STATUS_OK && dis_log_failed(log)) status = STATUS_IO;
     if (status == STATUS_OK && (!starts || run->survey.track_count == 0)) {
         log_error("replay: %s holds no Entity State with a usable position (%llu datagrams heard); "
                   "`pitviper inspect %s` says what it holds, --set exercise.port=N takes another port",
@@ -225,7 +242,10 @@ static Status open_sending(Sending *s, Run *run, const DisLog *log)
                  "the recording");
         return STATUS_OK;
     }
-    for (int i = 0; i < log->count && !opening_starts(&run->first, &log->datagram[i], &o->config);) i++;
+    for (int i = 0; i < log->count; i++) {
+        const DisDatagram datagram = dis_log_datagram(log, i);
+        if (opening_starts(&run->first, &datagram, &o->config)) break;
+    }
     dis_network_to(s->to, &udp);
     const Status status = dis_udp_open_sender(&s->udp, &udp);
     if (status != STATUS_OK) return status;

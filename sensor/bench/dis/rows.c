@@ -217,7 +217,8 @@ static double lost_of_capture(const Capture *c)
     if (log.count != o->pdus) lost = INFINITY;
     for (int i = 0; i < log.count && i < o->pdus; i++) {
         const size_t octets = o->first[i + 1] - o->first[i];
-        lost += log.datagram[i].octets != octets || memcmp(log.datagram[i].bytes, o->octet + o->first[i], octets) != 0
+        const DisDatagram d = dis_log_datagram(&log, i);
+        lost += d.octets != octets || memcmp(d.bytes, o->octet + o->first[i], octets) != 0
                     ? (double)octets : 0;
     }
     dis_log_close(&log);

@@ -165,14 +165,16 @@ static Status read_latency(Live *l)
     l->published_s = calloc((size_t)log.count + 1, sizeof *l->published_s);
     if (!t_s || !l->sampled_s || !l->published_s) status = STATUS_NO_MEMORY;
     for (int i = 0; i < log.count && status == STATUS_OK; i++) {
-        const double frame_s = frame_of(&log.datagram[i], &config);
+        const DisDatagram d = dis_log_datagram(&log, i);
+        const double      frame_s = frame_of(&d, &config);
         if (isnan(frame_s)) continue;
         t_s[l->publications]           = frame_s;
         l->published_s[l->publications++] = after_s(frame_s, fmod(log.datagram[i].capture_s, 3600));
     }
     for (int i = 0, k = 0; i < log.count && status == STATUS_OK && l->publications > 1; i++) {
-        const double came_s = fmod(log.datagram[i].capture_s, 3600);
-        if (after_s(t_s[0], came_s) < 0 || !isnan(frame_of(&log.datagram[i], &config))) continue;
+        const DisDatagram d = dis_log_datagram(&log, i);
+        const double      came_s = fmod(d.capture_s, 3600);
+        if (after_s(t_s[0], came_s) < 0 || !isnan(frame_of(&d, &config))) continue;
         while (k < l->publications && after_s(t_s[k], came_s) > 0) k++;
         if (k < l->publications) l->sampled_s[l->samples++] = after_s(came_s, t_s[k]);
     }
