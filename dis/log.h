@@ -9,12 +9,6 @@
 #include "dis/log_datagrams.h"
 #include "dis/pdu.h"
 
-enum { dis_port_any = 0, dis_port_default = -1 };
-
-/* Datagrams of up to so many octets in all are in memory; of the rest 32 octets each are, and they are read from the file,
- * or, where that is compressed or a pipe, from a scratch file in $TMPDIR. */
-enum { dis_log_in_memory = 32 << 20 };
-
 /* port: of the UDP destination. dis_port_any: every port, payloads that start with a DIS header.
  * dis_port_default: 3000, and when no datagram went there, any port (sets any_port). A file that is not
  * a capture, or cannot be read: a logged reason and the status. A truncated file: STATUS_OK, `truncated` set, a

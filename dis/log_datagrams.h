@@ -4,6 +4,12 @@
 
 #include "pitviper.h"
 
+enum { dis_port_any = 0, dis_port_default = -1 };
+
+/* Datagrams of up to so many octets in all are in memory; of the rest 32 octets each are, and they are read from the file,
+ * or, where that is compressed or a pipe, from a scratch file in $TMPDIR. */
+enum { dis_log_in_memory = 32 << 20 };
+
 typedef struct DisDatagram {
     double         capture_s;  /* Unix time: dis_unix_s */
     double         packet_s;   /* the same as in the file, where dis_log_retime made another */

@@ -2,7 +2,7 @@
 #ifndef DIS_LOG_PACKET_H
 #define DIS_LOG_PACKET_H
 
-#include "dis/log.h"
+#include "dis/log_datagrams.h"
 #include "dis/log_pcap.h"
 
 typedef struct DisPacketReader DisPacketReader;
