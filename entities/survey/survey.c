@@ -238,7 +238,7 @@ static Status hear(Building *b, const DisPdu *pdu, double t_s)
         return add_warfare(b, &(WarfareEvent){.t_s = t_s, .firing = pdu->fire.firing, .target = pdu->fire.target,
                                               .munition = pdu->fire.munition, .event = pdu->fire.event});
     case dis_pdu_detonation: return receive_detonation(b, &pdu->detonation, t_s);
-    case dis_pdu_start_resume: receive_start(b, &pdu->start, t_s); return STATUS_OK;
+    case dis_pdu_start_resume: case dis_pdu_start_resume_r: receive_start(b, &pdu->start, t_s); return STATUS_OK;
     default: return STATUS_OK;
     }
 }

@@ -137,9 +137,9 @@ static Status note_pdu(Findings *f, const DisPdu *pdu, double t_s)
         return note_event(f, (EventRow){t_s, false, pdu->detonation.firing, pdu->detonation.target,
                                         pdu->detonation.munition, pdu->detonation.descriptor.type,
                                         pdu->detonation.result});
-    case dis_pdu_remove_entity: f->removed++; return STATUS_OK;
-    case dis_pdu_start_resume: f->started++; return STATUS_OK;
-    case dis_pdu_stop_freeze: f->stopped++; return STATUS_OK;
+    case dis_pdu_remove_entity: case dis_pdu_remove_entity_r: f->removed++; return STATUS_OK;
+    case dis_pdu_start_resume: case dis_pdu_start_resume_r: f->started++; return STATUS_OK;
+    case dis_pdu_stop_freeze: case dis_pdu_stop_freeze_r: f->stopped++; return STATUS_OK;
     default: return STATUS_OK;
     }
 }

@@ -71,8 +71,11 @@ Status run_survey(Run *run, const DisLog *heard)
     const DisCounters *counters = &run->survey.counters;
     for (int i = 0; i < DIS_DROP_COUNT; i++)
         if (counters->dropped[i])
-            log_warn("%s: dropped: %s=%llu", options_command(o), dis_drop_name((DisDrop)i),
-                     (unsigned long long)counters->dropped[i]);
+            log_warn("%s: dropped: %s=%llu: %s", options_command(o), dis_drop_name((DisDrop)i),
+                     (unsigned long long)counters->dropped[i], dis_drop_cause((DisDrop)i));
+    if (counters->lengths_made)
+        log_warn("%s: %llu PDUs have a length field of 0, which their sender should set: taken by their type and the "
+                 "datagram's length", options_command(o), (unsigned long long)counters->lengths_made);
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     status = catalog_open(&run->catalog, path, o->config.models.sag_m);
     if (status == STATUS_OK) status = tables_used(&run->tables, &o->config, path);

@@ -309,8 +309,13 @@ static json_t *counters_json(const RunRecord *r)
             set_count(pdus, type, r->dis->pdus[i]);
         }
     json_object_set_new(counters, "pdus", pdus);
-    for (int i = 0; i < DIS_DROP_COUNT; i++) set_count(dropped, dis_drop_name((DisDrop)i), r->dis->dropped[i]);
+    for (int i = 0; i < DIS_DROP_COUNT; i++) {
+        if (i == DIS_DROP_LENGTH_ZERO) set_if_any(dropped, dis_drop_name((DisDrop)i), r->dis->dropped[i]);
+        else set_count(dropped, dis_drop_name((DisDrop)i), r->dis->dropped[i]);
+    }
     json_object_set_new(counters, "dropped", dropped);
+    set_if_any(counters, "lengths_made", r->dis->lengths_made);
+    set_if_any(counters, "padded", r->dis->padded);
     set_count(counters, "stamps_doubted", r->dis->stamps_doubted);
     set_count(counters, "packets_without_datagram", r->link_dropped);
     set_count(counters, "own", r->own);
