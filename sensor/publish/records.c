@@ -108,15 +108,10 @@ static json_t *bands_json(const TargetRecord *t)
     return bands;
 }
 
-static const char *occluder_name(TargetOccluder occluder)
-{
-    return occluder == OCCLUDER_GROUND ? "ground" : occluder == OCCLUDER_TREES ? "trees" : "entity";
-}
-
 static json_t *target_json(const TargetRecord *t)
 {
     json_t *target = json_object();
-    char    type[dis_type_text_size];
+    char    type[dis_type_text_size], occluder_id[dis_id_text_size];
 
     set_id(target, "entity", t->id);
     set_text(target, "marking", t->marking, strnlen(t->marking, 11));
@@ -142,10 +137,8 @@ static json_t *target_json(const TargetRecord *t)
         json_object_set_new(target, "box_px", box);
     }
     json_object_set_new(target, "amodal_box_px", numbers(t->amodal_box, 4));
-    if (!dis_entity_id_is_none(t->occluder_id))
-        set_id(target, "occluded_by", t->occluder_id);
-    else if (t->occluder != OCCLUDER_NONE)
-        json_object_set_new(target, "occluded_by", json_string(occluder_name(t->occluder)));
+    const char *occluder = target_occluder_text(occluder_id, t);
+    if (occluder) json_object_set_new(target, "occluded_by", json_string(occluder));
     set_number(target, "dt_k", t->dt_k);
     if (t->patches > 0) {
         json_t *patches = json_array();

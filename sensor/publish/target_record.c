@@ -47,6 +47,18 @@ TargetRecord *target_records(const Target *target, int count, const Snapshot *sn
     return record;
 }
 
+const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord *t)
+{
+    if (!dis_entity_id_is_none(t->occluder_id)) {
+        dis_entity_id_text(text, t->occluder_id);
+        return text;
+    }
+    return t->occluder == OCCLUDER_NONE     ? NULL
+           : t->occluder == OCCLUDER_GROUND ? "ground"
+           : t->occluder == OCCLUDER_TREES  ? "trees"
+                                            : "entity";
+}
+
 void box_coco(int out[4], const int box[4])
 {
     out[0] = box[0];

@@ -71,6 +71,9 @@ typedef struct TargetRecord {
 TargetRecord *target_records(const Target *target, int count, const Snapshot *snapshot, const Catalog *catalog,
                              Arena *arena);
 
+/* What hides most of it: the id of an entity, `ground`, `trees`, `entity`; NULL: nothing. */
+const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord *target);
+
 /* ---- a box in other forms ---- */
 
 static inline bool box_is_empty(const int box[4]) { return box[2] <= box[0] || box[3] <= box[1]; }

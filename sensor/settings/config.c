@@ -177,9 +177,11 @@ static const Setting keys[] = {
     {"publish.coco", SETTING_BOOL, AT(publish.coco), 0, 1, NULL, "",
      "replay only: write coco.json, boxes and masks of visible targets"},
     {"publish.coco_min_pixels", SETTING_INT, AT(publish.coco_min_pixels), 1, 1000000, NULL, "px",
-     "targets with fewer mask pixels are marked in coco.json to be ignored (iscrowd)"},
+     "targets with fewer mask pixels are ignore regions of coco.json (iscrowd)"},
     {"publish.coco_min_visible", SETTING_DOUBLE, AT(publish.coco_min_visible), 0, 1, NULL, "",
-     "targets with a smaller visible fraction are marked in coco.json to be ignored (iscrowd)"},
+     "targets with a smaller visible fraction are ignore regions of coco.json (iscrowd)"},
+    {"publish.coco_min_snr", SETTING_DOUBLE, AT(publish.coco_min_snr), 0, 1000, NULL, "",
+     "targets with a smaller snr in a band, whatever its sign, are ignore regions of that band's images in coco.json (iscrowd)"},
     {"publish.truth", SETTING_BOOL, AT(publish.truth), 0, 1, NULL, "",
      "write truth.jsonl and hash every frame; false, in `run` and `replay --speed X` only: neither is computed, and truth "
      "planes only if another product has them"},
@@ -396,7 +398,8 @@ Config config_default(void)
     c.publish.files                 = true;
     c.publish.truth                 = true;
     c.publish.png                   = true;
-    c.publish.coco_min_pixels       = 1;
+    c.publish.coco_min_pixels       = 5;   /* of 4 no class can be told */
+    c.publish.coco_min_snr          = 0.1; /* in the dark: 2e-6 W/(m2 sr), some six of the display's 255 steps */
     strcpy(c.publish.video_codec, "h264");
     strcpy(c.publish.klv, "async");
     strcpy(c.publish.vmti, "atr");
