@@ -480,7 +480,7 @@ Status session_close(Session *s, SessionResult *result)
 {
     report_vehicles(s);
     Status status = consumers_close(&s->consumers); /* the last frames are published before */
-    detections_close(s->detections);
+    detections_close(s->detections, &s->result.answers);
     geoid_close(&s->geoid);
     if (status == STATUS_OK) status = s->listed;
     if (s->table && *s->shared->config->heat.marks && status == STATUS_OK)

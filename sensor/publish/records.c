@@ -288,6 +288,23 @@ static json_t *live_json(const LiveCounters *c)
     return live;
 }
 
+static json_t *answers_json(const AnswerCounters *c)
+{
+    json_t  *answers = json_object(), *refused = json_object();
+    uint64_t received = 0;
+    for (int i = 0; i < DETECTIONS_REASONS; i++) received += c->datagrams[i];
+    set_count(answers, "datagrams", received + c->lost_kernel);
+    set_count(answers, "taken", c->datagrams[DETECTIONS_GOOD] + c->datagrams[DETECTIONS_LATE]);
+    set_count(answers, "late", c->datagrams[DETECTIONS_LATE]);
+    for (int i = 0; i < DETECTIONS_REASONS; i++)
+        if (i != DETECTIONS_GOOD && i != DETECTIONS_LATE) set_if_any(refused, detections_reason_name[i], c->datagrams[i]);
+    json_object_set_new(answers, "refused", refused);
+    set_count(answers, "lost_kernel", c->lost_kernel);
+    set_count(answers, "lines", c->lines);
+    set_if_any(answers, "lines_failed", c->lines_failed);
+    return answers;
+}
+
 static json_t *counters_json(const RunRecord *r)
 {
     json_t *counters = json_object(), *pdus = json_object(), *dropped = json_object(), *skipped = json_object();
@@ -308,6 +325,7 @@ static json_t *counters_json(const RunRecord *r)
     set_count(counters, "packets_without_datagram", r->link_dropped);
     set_count(counters, "own", r->own);
     if (r->live) json_object_set_new(counters, "live", live_json(r->live));
+    if (r->answers) json_object_set_new(counters, "answers", answers_json(r->answers));
     json_object_set_new(counters, "frames_at_gimbal_limit", json_integer(r->at_limit));
     set_if_any(counters, "frames_without_radar", (uint64_t)r->radar_left_out);
     set_count(entities, "created", r->entities_created);
@@ -439,6 +457,8 @@ Status record_write_run(const char *path, const RunRecord *r)
     json_object_set_new(run, "threads", json_integer(r->threads));
     json_object_set_new(run, "isa", json_string(r->isa));
     json_object_set_new(run, "libraries", libraries_json());
+    if (r->memory) json_object_set_new(run, "memory", json_string(r->memory));
+    if (r->detections_port) json_object_set_new(run, "detections_port", json_integer(r->detections_port));
     json_object_set_new(run, "hosts", texts(r->host, r->host_count));
     json_object_set_new(run, "choices", texts(r->choice, r->choice_count));
     json_object_set_new(run, "frames", json_integer(r->frames));

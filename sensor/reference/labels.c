@@ -1,4 +1,4 @@
-/* sensor/reference/labels.c: products for training a recogniser: pairs.jsonl and coco.json. */
+/* sensor/reference/labels.c: products for training and judging a recogniser: pairs.jsonl, coco.json, answers.jsonl. */
 #include "sensor/reference/reference.h"
 
 #include "sensor/reference/words.h"
@@ -123,4 +123,37 @@ const Reference reference_coco = {
         "    left, top, width, height = a['bbox']\n"
         "    print(image[a['image_id']]['file_name'], name[a['category_id']], (left, top, width, height), a['area'])\n"
         "# with pycocotools: COCO('coco.json').annToMask(a) is the mask, [row][column]\n",
+};
+
+static const ReferenceField answer_fields[] = {
+    {"frame", "integer", "", "from 0", "", "number of the frame that was answered"},
+    {"band", "string", "", "", "", "BAND that was answered"},
+    {"time_s", "number", "s", "exercise time", "", "instant of that frame"},
+    {"answer", "integer", "", "from 1", "", "number of the detection among those of the answer; 0: it found nothing"},
+    {"of", "integer", "", "", "", "detections of the answer: so many lines belong together"},
+    {"class", "string", "", "", "when nothing was found", "the recogniser's own word, at most 31 characters"},
+    {"box_px", "list of 4 numbers", "px", "image: left, top, right, bottom; from 0, the last two beyond it",
+     "when nothing was found", "bounding box"},
+    {"score", "number", "", "0 .. 1", "when nothing was found", "confidence"},
+    {"track", "integer", "", "", "when the recogniser gave none", "the same number for the same object in later frames"},
+    {"latency_ms", "number", "ms", "", "", "from the end of the frame's rendering until the answer was received"},
+    {"late", "boolean", "", "", "", "a newer frame of the band was answered before: not in metadata"},
+};
+
+const Reference reference_answers = {
+    .topic = "answers",
+    .file  = "answers.jsonl",
+    .title = "the answers of a recogniser: a line of JSON per detection",
+    .about = "With publish.detections_port (etc/reference/memory.md). One answer counts for a frame and band, the first; "
+             "repeated ones,\n"
+             "and all that are refused, are counted in run.json: counters.answers.",
+    .field = REFERENCE_FIELDS(answer_fields),
+    .word  = REFERENCE_FIELDS(words),
+    .python =
+        "import json\n"
+        "for line in open('answers.jsonl'):\n"
+        "    answer = json.loads(line)\n"
+        "    if answer['of'] == 0:               # nothing was found\n"
+        "        continue\n"
+        "    print(answer['frame'], answer['band'], answer['class'], answer['box_px'], answer['score'], answer['latency_ms'])\n",
 };

@@ -210,7 +210,7 @@ static const Setting keys[] = {
     {"publish.memory_slots", SETTING_INT, AT(publish.memory_slots), 2, 64, NULL, "",
      "frames that the ring holds; a reader slower than that loses frames"},
     {"publish.detections_port", SETTING_INT, AT(publish.detections_port), 0, 65535, NULL, "",
-     "UDP port on loopback that receives a recogniser's detections; 0: none"},
+     "UDP port on loopback that receives a recogniser's detections, for answers.jsonl and metadata; 0: none"},
     {"record.path", SETTING_PATH, AT(record.path), 0, 0, NULL, "",
      "pcapng file to which `run` records all received datagrams; empty: none"},
     {"weather.atmosphere", SETTING_NAME_OR_PATH, AT(weather.atmosphere), 0, 0, NULL, "",
