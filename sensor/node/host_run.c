@@ -9,6 +9,7 @@
 #include "sensor/publish/video/consume_video.h"
 #include "sensor/quality/quality.h"
 #include "sensor/settings/band_choice.h"
+#include "sensor/settings/plane_choice.h"
 #include "sensor/node/shape_choice.h"
 #include "sensor/node/woods_choice.h"
 #include "terrain/elevation/gdal_library.h"
@@ -43,6 +44,13 @@ Status run_prepare(Run *run)
     if (!run->options.config.publish.truth)
         choice_add(&run->choices, "truth: no truth.jsonl and no hashes of frames (publish.truth)");
     if (!bands_choose(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
+    unsigned planes = planes_none;
+    plane_choice_parse(&planes, run->options.config.publish.planes);
+    if (planes != planes_all && planes >> PLANE_EMISSIVITY & 1 && !(run->bands & (1u << BAND_MWIR | 1u << BAND_LWIR))) {
+        log_error("%s: publish.planes: emissivity is of thermal bands, and none is rendered; add mwir or lwir to sensor.bands",
+                  options_command(&run->options));
+        return STATUS_BAD_VALUE;
+    }
     Status status = config_own_tables(&run->options.config);
     if (status != STATUS_OK) return status;
     status = quality_choose(&run->options.config, &run->choices, run->bands);

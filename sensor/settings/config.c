@@ -171,7 +171,7 @@ static const Setting keys[] = {
      "write image files; truth.jsonl and run.json are written without them, too"},
     {"publish.png", SETTING_BOOL, AT(publish.png), 0, 1, NULL, "", "write display images beside the EXR files"},
     {"publish.planes", SETTING_TEXT, AT(publish.planes), 0, 0, NULL, "",
-     "truth planes to write: all, none, or any of range,entity,part,material,temperature,normal"},
+     "truth planes to write: all, none, or any of range,entity,part,material,temperature,normal,emissivity,instance,cover"},
     {"publish.pairs", SETTING_TEXT, AT(publish.pairs), 0, 0, "off|target|all", "",
      "replay only: render each frame also without its target, or without any entity, and both without noise"},
     {"publish.coco", SETTING_BOOL, AT(publish.coco), 0, 1, NULL, "",
@@ -593,7 +593,7 @@ Status config_check(const Config *config)
     if (!plane_choice_parse(&planes, config->publish.planes)) {
         log_error("config: publish.planes: '%s' is not all, none, or a list of range, entity, part, material, "
                   "temperature, "
-                  "normal, instance, cover, for example range,entity", config->publish.planes);
+                  "normal, emissivity, instance, cover, for example range,entity", config->publish.planes);
         return STATUS_BAD_VALUE;
     }
     const unsigned of_woods = 1u << PLANE_INSTANCE | 1u << PLANE_COVER;

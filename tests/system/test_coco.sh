@@ -33,12 +33,14 @@ check "pairs, two hosts, one thread: the same images and annotations" \
     cmp -s <(grep -v '^"info"' "$tmp/exr/coco.json") <(grep -v '^"info"' "$tmp/two/1-3001-41/coco.json")
 
 cat >"$tmp/check.py" <<'PY'
-import contextlib, io, json, os, subprocess, sys
+import contextlib, csv, io, json, os, subprocess, sys
 import numpy as np
 from PIL import Image
 from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
 planes = {}
+table = {r["name"]: r for name in ("materials", "plant_optics")
+         for r in csv.DictReader(l for l in open(f"etc/{name}.csv") if not l.startswith("#"))}
 def check(out, min_pixels, min_visible, min_snr, *wanted, coco=None):
     coco = coco or json.load(open(f"{out}/coco.json"))
     truth = {t["frame"]: t for t in map(json.loads, open(f"{out}/truth.jsonl"))}
@@ -59,6 +61,14 @@ def check(out, min_pixels, min_visible, min_snr, *wanted, coco=None):
             # value k of every truth plane is the k-th name, and 0 is none
             subprocess.run(["oiiotool", path, "--ch", "material", "-d", "uint32", "-o", f"{out}/x.tif"], check=True)
             material, entity = np.array(Image.open(f"{out}/x.tif")), planes[out, frame][0]
+            # the emissivity of each pixel is that of its material in the tables; the sky has none
+            bands = [b for b in ("mwir", "lwir") if os.path.exists(f"{out}/frames/{b}")]
+            assert [c for c in ("mwir", "lwir") if f"emissivity_{c}" in info] == bands, info
+            for b in bands:
+                subprocess.run(["oiiotool", path, "--ch", f"emissivity_{b}", "-d", "float", "-o", f"{out}/x.tif"], check=True)
+                row = [table[name] for name in materials]
+                want = np.array([np.nan] + [1 - float(r[f"rho_{b}"]) - float(r.get(f"tau_{b}") or 0) for r in row])
+                assert np.allclose(np.array(Image.open(f"{out}/x.tif")), want[material], rtol=0, atol=2e-7, equal_nan=True), b
             vehicle = [k + 1 for k, name in enumerate(ids) if not name.endswith(":31")]
             of_vehicles = {materials[v - 1] for v in np.unique(material[np.isin(entity, vehicle)])}
             assert "none" not in materials and of_vehicles <= {"paint_olive", "paint_olive_flat", "canvas", "rubber_black", "glass_window",
@@ -191,4 +201,6 @@ for bad in coco_min_pixels=0 coco_min_visible=1.5 coco_min_snr=-1; do
     replay "$tmp/demo.pcap" "$tmp/c" "${few[@]}" --coco --set publish.$bad
     check "$bad: refused, with its range" complained "publish.${bad%=*}: '${bad#*=}' is not a .*number in [01] .. "
 done
+replay "$tmp/demo.pcap" "$tmp/c" --bands optical --from 1366 --to 1366 --planes emissivity
+check "emissivity without a thermal band: refused" complained "publish.planes: emissivity is of thermal bands.*sensor.bands"
 finish
