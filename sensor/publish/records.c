@@ -100,6 +100,8 @@ static json_t *bands_json(const TargetRecord *t)
         set_number(band, "veil_transmittance", v->veil_transmittance);
         set_number(band, "intensity_w_sr", v->intensity_w_sr);
         set_number(band, "intensity_error_w_sr", v->intensity_error_w_sr);
+        set_number(band, "error_rms_k", v->error_rms_k);
+        set_number(band, "error_median_k", v->error_median_k);
         if (json_object_size(band) > 0)
             json_object_set_new(bands, band_name((Band)b), band);
         else
@@ -148,13 +150,13 @@ static json_t *target_json(const TargetRecord *t)
     }
     set_number(target, "age_s", t->age_s);
     set_number(target, "position_error_m", t->position_error_m);
+    set_number(target, "error_px", t->error_px);
     json_object_set_new(target, "bands", bands_json(t));
     return target;
 }
 
 /* By source: as a share, and the same in a unit. */
-static void set_error(json_t *error, const char *of, const double share[error_sources],
-                      const double same[error_sources], const char *unit)
+static json_t *error_by_source(const double share[error_sources], const double same[error_sources], const char *unit)
 {
     static const char *const name[error_sources] = {"sampling", "level_of_detail", "table",
                                                     "heat",     "dead_reckoning",  "total"};
@@ -165,18 +167,28 @@ static void set_error(json_t *error, const char *of, const double share[error_so
         set_number(band, name[s], share[s]);
         set_number(band, key, same[s]);
     }
+    return band;
+}
+
+static void set_if_known(json_t *error, const char *of, json_t *band)
+{
     if (json_object_size(band) > 0) json_object_set_new(error, of, band);
     else json_decref(band);
 }
 
-/* rms over the image as a share of the band's mean; _k: the same in kelvin about that mean. Of the radar over its map;
- * _db: of an entity's cross section. */
+/* rms over the image as a share of the band's mean; _k: the same in kelvin about that mean. The mean of the pseudo-radar
+ * is that of a few mirrors, and no measure. Of the radar over its map; _db: of an entity's cross section. */
 static json_t *error_json(const FrameRecord *r)
 {
-    json_t *error = json_object();
-    for (int b = 0; b < BAND_COUNT && r->error; b++)
-        set_error(error, band_name((Band)b), r->error->share[b], r->error->kelvin[b], "k");
-    if (r->radar_error) set_error(error, "range_doppler", r->radar_error->share, r->radar_error->db, "db");
+    const FrameError *e = r->error;
+    json_t           *error = json_object();
+    for (int b = 0; b < BAND_RADAR && e; b++) {
+        json_t *band = error_by_source(e->share[b], e->kelvin[b], "k");
+        set_number(band, "median_k", e->median_k[b]);
+        set_number(band, "beyond_1k", e->beyond_1k[b]);
+        set_if_known(error, band_name((Band)b), band);
+    }
+    if (r->radar_error) set_if_known(error, "range_doppler", error_by_source(r->radar_error->share, r->radar_error->db, "db"));
     return error;
 }
 

@@ -21,7 +21,7 @@ static TargetRecord record_of(const Target *t, const Snapshot *snapshot, const C
                  .range_m = t->range_m, .closing_mps = t->closing_mps,
                  .aspect_rad = t->aspect_rad, .depression_rad = t->depression_rad, .los_az_rad = t->los_az_rad,
                  .los_el_rad = t->los_el_rad, .occluder = occluder_of(t), .age_s = entity->age_s,
-                 .position_error_m = entity->position_error_m, .dt_k = NAN};
+                 .position_error_m = entity->position_error_m, .error_px = t->error_px, .dt_k = NAN};
     if (entity->first_patch >= 0) {
         r.dt_k    = (double)entity->dt_k;
         r.patches = entity->patches;

@@ -64,6 +64,7 @@ typedef struct TargetRecord {
     int           patches;                 /* 0: their temperatures are not known */
     const float  *patch_k;                 /* the snapshot's [patches] */
     double        age_s, position_error_m; /* of the report that it was extrapolated from; estimate */
+    double        error_px;                /* rms displacement on the image */
     TargetBand    band[BAND_COUNT];
 } TargetRecord;
 

@@ -285,9 +285,9 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
         if (i == eye->host_index || !(px->projected || px->amodal > 0)) continue;
         Target t = {.index = i, .pixels = px->visible, .visible_fraction = NAN, .foliage_fraction = NAN,
                     .occluder_index = -1};
-        t.range_m = t.closing_mps = t.aspect_rad = t.depression_rad = t.los_az_rad = t.los_el_rad = NAN;
+        t.error_px = t.range_m = t.closing_mps = t.aspect_rad = t.depression_rad = t.los_az_rad = t.los_el_rad = NAN;
         for (int b = 0; b < BAND_COUNT; b++)
-            t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+            t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
         for (int b = BAND_OPTICAL; b <= BAND_LWIR && px->visible > 0; b++)
             if (request->bands >> b & 1) t.band[b].veil_transmittance = 1 - px->veiled[b];
         line_of_sight(&t, &snapshot->entity[i], catalog_model(world->catalog, snapshot->entity[i].model), eye);
