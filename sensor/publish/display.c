@@ -37,9 +37,9 @@ static double optical_sigma(const Picture *picture, const Config *config)
     return config->detector.noise * config->detector.noise_optical * mean_radiance(picture, BAND_OPTICAL);
 }
 
-/* What a camera without a sensor's data sheet resolves in the dark, W/(m2 sr): a fiftieth of the least span of its
- * display, and of grey surfaces below some 0.08 lux; ordinary colour cameras end at about 0.1 lux. */
-static const double optical_least_span = 1e-3, optical_dark_sigma = 2e-5;
+/* What a camera without a sensor's data sheet resolves in the dark, W/(m2 sr): a twentieth of the least span of its
+ * display, and of grey surfaces below some 0.2 lux; ordinary colour cameras end at 0.1 to 0.5 lux. */
+static const double optical_least_span = 1e-3, optical_dark_sigma = 5e-5;
 
 void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config)
 {

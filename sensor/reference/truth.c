@@ -148,7 +148,7 @@ static const ReferenceField fields[] = {
     {"targets[].bands.BAND.contrast", "number", "", "", "in mwir and lwir; without a background",
      "the same difference divided by the mean of the ring"},
     {"targets[].bands.BAND.snr", "number", "", "", "without a background (not in optical); with a contrast, but neither clutter nor noise",
-     "contrast divided by the rms sum of the ring's standard deviation and the detector's noise; in optical at least 2e-5 "
+     "contrast divided by the rms sum of the ring's standard deviation and the detector's noise; in optical at least 5e-5 "
      "W/(m2 sr) of it without a sensor: a dark image shows nothing. Optical, where nothing surrounds it: its mean over the noise"},
     {"targets[].bands.BAND.veil_transmittance", "number", "", "0 .. 1", "in radar",
      "path transmittance of smoke and dust in front of it; 1: none"},

@@ -399,7 +399,7 @@ Config config_default(void)
     c.publish.truth                 = true;
     c.publish.png                   = true;
     c.publish.coco_min_pixels       = 5;   /* of 4 no class can be told */
-    c.publish.coco_min_snr          = 0.1; /* in the dark: 2e-6 W/(m2 sr), some six of the display's 255 steps */
+    c.publish.coco_min_snr          = 0.1; /* in the dark: 3e-6 W/(m2 sr), ten of the display's 255 steps */
     strcpy(c.publish.video_codec, "h264");
     strcpy(c.publish.klv, "async");
     strcpy(c.publish.vmti, "atr");
