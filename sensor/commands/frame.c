@@ -146,12 +146,12 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
     memcpy(record.r_ecef_from_cam, file->eye.r_ecef_from_cam, sizeof record.r_ecef_from_cam);
     record.target_count =
         truth_targets(target, &again->picture, &s->world, &s->snapshot, &file->request, &file->eye, noise);
-    record.target = target_records(target, record.target_count, &s->snapshot, s->catalog, arena);
-    if (!record.target) return STATUS_NO_MEMORY;
     if (frame_error(&error, &again->picture, &s->world, &s->snapshot, &file->request, target, record.target_count,
                     s->config.models.sag_m, file->all_on_ground,
                     world_air_k(&s->world, file->unix_s + file->time_s)))
         record.error = &error;
+    record.target = target_records(target, record.target_count, &s->snapshot, s->catalog, arena);
+    if (!record.target) return STATUS_NO_MEMORY;
     if (file->request.budget && radar) {
         radar_error(&of_radar, radar, &s->snapshot);
         record.radar_error = &of_radar;

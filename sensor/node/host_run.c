@@ -5,9 +5,11 @@
 #include "sensor/world/frame_world.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/publish/image_file.h"
+#include "sensor/publish/memory/consume_memory.h"
 #include "sensor/publish/video/consume_video.h"
 #include "sensor/quality/quality.h"
 #include "sensor/settings/band_choice.h"
+#include "sensor/settings/plane_choice.h"
 #include "sensor/node/shape_choice.h"
 #include "sensor/node/woods_choice.h"
 #include "terrain/elevation/gdal_library.h"
@@ -42,6 +44,13 @@ Status run_prepare(Run *run)
     if (!run->options.config.publish.truth)
         choice_add(&run->choices, "truth: no truth.jsonl and no hashes of frames (publish.truth)");
     if (!bands_choose(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
+    unsigned planes = planes_none;
+    plane_choice_parse(&planes, run->options.config.publish.planes);
+    if (planes != planes_all && planes >> PLANE_EMISSIVITY & 1 && !(run->bands & (1u << BAND_MWIR | 1u << BAND_LWIR))) {
+        log_error("%s: publish.planes: emissivity is of thermal bands, and none is rendered; add mwir or lwir to sensor.bands",
+                  options_command(&run->options));
+        return STATUS_BAD_VALUE;
+    }
     Status status = config_own_tables(&run->options.config);
     if (status != STATUS_OK) return status;
     status = quality_choose(&run->options.config, &run->choices, run->bands);
@@ -119,7 +128,8 @@ static Status write_run(const Run *run, const char *out, const char *host, const
                         const SessionResult *result, const DisCounters *heard, const WoodsChoice *woods,
                         const char *state)
 {
-    char        path[path_size + 16], settings[config_text_size];
+    char        path[path_size + 16], settings[config_text_size], ring[memory_name_size];
+    const Config *config = &run->options.config;
     const char *choice[choices_capacity], *hosts[session_hosts_kept];
     const char *table[tables_used_max], *table_sha256[tables_used_max];
     double      stage_ms[session_stages][3];
@@ -143,6 +153,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
         log_detail("%s: %s: %.3g ms a frame (median; 95 %%: %.3g; most: %.3g)", options_command(&run->options),
                    session_stage_name[i], stage_ms[i][0], stage_ms[i][1], stage_ms[i][2]);
     snprintf(path, sizeof path, "%s/run.json", out);
+    memory_name(ring, config, run->options.host_count > 1 ? host : NULL);
     const DisLogCounters *link = run->link;
     const WoodsRecord     plants = {.woods = &woods->woods, .paths = woods->config.path_count,
                                     .entities = woods->entities, .in_trunks = woods->in_trunks};
@@ -168,7 +179,9 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .effects = result->effects, .render = result->counters, .stage_count = session_stages,
               .stage = session_stage_name,
               .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL,
-              .woods = woods->on ? &plants : NULL};
+              .woods = woods->on ? &plants : NULL,
+              .memory = *config->publish.memory ? ring : NULL, .detections_port = config->publish.detections_port,
+              .answers = config->publish.detections_port ? &result->answers : NULL};
     const Status status = record_write_run(path, &record);
     free(hash);
     return status;

@@ -130,13 +130,13 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
     frame_expose(&noise, s->chain, &seen->picture, shared->config);
     r->target_count = truth_targets(target, &seen->picture, shared->world, &seen->snapshot, &f->request, &eye->state,
                                     &noise);
-    r->target       = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
-    if (!r->target) return STATUS_NO_MEMORY;
     if (s->wants & WANT_ERROR &&
         frame_error(&f->error, &seen->picture, shared->world, &seen->snapshot, &f->request, target, r->target_count,
                     shared->config->models.sag_m, shared->contact == GROUND_CONTACT_ALL,
                     world_air_k(shared->world, f->unix_s)))
         r->error = &f->error;
+    r->target       = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
+    if (!r->target) return STATUS_NO_MEMORY;
     if (s->wants & WANT_ERROR && f->request.budget && f->radar) {
         radar_error(&f->radar_error, f->radar, &seen->snapshot);
         r->radar_error = &f->radar_error;
@@ -481,7 +481,7 @@ Status session_close(Session *s, SessionResult *result)
 {
     report_vehicles(s);
     Status status = consumers_close(&s->consumers); /* the last frames are published before */
-    detections_close(s->detections);
+    detections_close(s->detections, &s->result.answers);
     geoid_close(&s->geoid);
     if (status == STATUS_OK) status = s->listed;
     /* of a session that could not be opened nothing is written over what it could not read */

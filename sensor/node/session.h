@@ -8,6 +8,7 @@
 #include "sensor/node/player.h"
 #include "sensor/publish/consume_dis.h"
 #include "sensor/settings/sensors.h"
+#include "sensor/publish/answer_counters.h"
 #include "sensor/publish/plane_hash.h"
 #include "sensor/publish/records.h"
 
@@ -54,6 +55,7 @@ typedef struct SessionResult {
     int     host_count;               /* the first session_hosts_kept hosts, in order */
     char    host[session_hosts_kept][dis_id_text_size];
     int     radar_left_out;           /* frames without radar, for want of signatures */
+    AnswerCounters answers;           /* of a recogniser; when closed */
     int     files_failed, files_left_out; /* live: frames without files, for disk errors, for time; when closed */
     int   (*number);                  /* [listed] */
     char  (*hash)[sha256_text_size];  /* [listed] */

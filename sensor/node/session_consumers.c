@@ -136,14 +136,17 @@ static Status add_call(Consumers *list, const SessionShared *shared)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
-/* A recogniser's detections, for those who publish them. */
+/* A recogniser's detections: answers.jsonl, and metadata. */
 static Status add_detections(Consumers *list, Session *s)
 {
     const Config *config   = s->shared->config;
     Consumer     *consumer = NULL;
     if (!config->publish.detections_port) return STATUS_OK;
-    Status status = detections_open(&s->detections, config->publish.detections_port, s->shared->bands,
-                                    config->sensor.width_px, config->sensor.height_px);
+    Status status = detections_open(&s->detections, &(DetectionsOf){.port = config->publish.detections_port,
+                                                                    .bands = s->shared->bands,
+                                                                    .width = config->sensor.width_px,
+                                                                    .height = config->sensor.height_px,
+                                                                    .folder = s->out});
     if (status == STATUS_OK) status = consume_detections(&consumer, s->detections);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }

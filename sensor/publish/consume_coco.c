@@ -27,7 +27,8 @@ Status consume_coco(Consumer **out, const char *folder, const Config *config, co
     if (!c) return STATUS_NO_MEMORY;
     c->consumer         = (Consumer){WANT_TARGETS | WANT_PLANES, put, NULL, close_coco, "coco"};
     const Status status = coco_open(&c->coco, folder, config->publish.png ? "png" : "exr",
-                                    (CocoLimits){config->publish.coco_min_pixels, config->publish.coco_min_visible},
+                                    (CocoLimits){config->publish.coco_min_pixels, config->publish.coco_min_visible,
+                                                 config->publish.coco_min_snr},
                                     config_sha256, config->seed);
     if (status == STATUS_OK) *out = &c->consumer;
     else free(c);

@@ -162,7 +162,7 @@ void frame_files_clear(const char *out)
 {
     /* a run leaves truth.jsonl from its first moment, run.json at its end */
     static const char *const marks[] = {"run.json", "truth.jsonl"}, *const beside[] = {
-        "pairs", "pairs.jsonl", "coco.json", "optical.klv", "mwir.klv", "lwir.klv", "radar.klv"};
+        "pairs", "pairs.jsonl", "coco.json", "answers.jsonl", "optical.klv", "mwir.klv", "lwir.klv", "radar.klv"};
     char path[path_size];
     bool earlier = false;
     if (too_long(out)) return;

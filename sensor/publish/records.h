@@ -9,6 +9,7 @@
 
 #include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
+#include "sensor/publish/answer_counters.h"
 #include "sensor/radar/radar_frame.h"
 #include "sensor/truth/footprint.h"
 #include "sensor/publish/target_record.h"
@@ -93,6 +94,9 @@ typedef struct RunRecord {
     const char *const *stage;
     double (*stage_ms)[3];            /* median, p95, max */
     const LatencySummary *latency;    /* NULL: no ledger was kept */
+    const char *memory;               /* name of the ring of frames; NULL: none */
+    int         detections_port;      /* 0: none */
+    const AnswerCounters *answers;    /* received there; NULL: none */
     const WoodsRecord *woods;         /* NULL: no plants */
 } RunRecord;
 

@@ -64,12 +64,16 @@ typedef struct TargetRecord {
     int           patches;                 /* 0: their temperatures are not known */
     const float  *patch_k;                 /* the snapshot's [patches] */
     double        age_s, position_error_m; /* of the report that it was extrapolated from; estimate */
+    double        error_px;                /* rms displacement on the image */
     TargetBand    band[BAND_COUNT];
 } TargetRecord;
 
 /* In the order of target. NULL: no memory. */
 TargetRecord *target_records(const Target *target, int count, const Snapshot *snapshot, const Catalog *catalog,
                              Arena *arena);
+
+/* What hides most of it: the id of an entity, `ground`, `trees`, `entity`; NULL: nothing. */
+const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord *target);
 
 /* ---- a box in other forms ---- */
 

@@ -169,15 +169,17 @@ static const Setting keys[] = {
      "write image files; truth.jsonl and run.json are written without them, too"},
     {"publish.png", SETTING_BOOL, AT(publish.png), 0, 1, NULL, "", "write display images beside the EXR files"},
     {"publish.planes", SETTING_TEXT, AT(publish.planes), 0, 0, NULL, "",
-     "truth planes to write: all, none, or any of range,entity,part,material,temperature,normal"},
+     "truth planes to write: all, none, or any of range,entity,part,material,temperature,normal,emissivity,instance,cover"},
     {"publish.pairs", SETTING_TEXT, AT(publish.pairs), 0, 0, "off|target|all", "",
      "replay only: render each frame also without its target, or without any entity, and both without noise"},
     {"publish.coco", SETTING_BOOL, AT(publish.coco), 0, 1, NULL, "",
      "replay only: write coco.json, boxes and masks of visible targets"},
     {"publish.coco_min_pixels", SETTING_INT, AT(publish.coco_min_pixels), 1, 1000000, NULL, "px",
-     "targets with fewer mask pixels are marked in coco.json to be ignored (iscrowd)"},
+     "targets with fewer mask pixels are ignore regions of coco.json (iscrowd)"},
     {"publish.coco_min_visible", SETTING_DOUBLE, AT(publish.coco_min_visible), 0, 1, NULL, "",
-     "targets with a smaller visible fraction are marked in coco.json to be ignored (iscrowd)"},
+     "targets with a smaller visible fraction are ignore regions of coco.json (iscrowd)"},
+    {"publish.coco_min_snr", SETTING_DOUBLE, AT(publish.coco_min_snr), 0, 1000, NULL, "",
+     "targets with a smaller snr in a band, whatever its sign, are ignore regions of that band's images in coco.json (iscrowd)"},
     {"publish.truth", SETTING_BOOL, AT(publish.truth), 0, 1, NULL, "",
      "write truth.jsonl and hash every frame; false, in `run` and `replay --speed X` only: neither is computed, and truth "
      "planes only if another product has them"},
@@ -206,7 +208,7 @@ static const Setting keys[] = {
     {"publish.memory_slots", SETTING_INT, AT(publish.memory_slots), 2, 64, NULL, "",
      "frames that the ring holds; a reader slower than that loses frames"},
     {"publish.detections_port", SETTING_INT, AT(publish.detections_port), 0, 65535, NULL, "",
-     "UDP port on loopback that receives a recogniser's detections; 0: none"},
+     "UDP port on loopback that receives a recogniser's detections, for answers.jsonl and metadata; 0: none"},
     {"record.path", SETTING_PATH, AT(record.path), 0, 0, NULL, "",
      "pcapng file to which `run` records all received datagrams; empty: none"},
     {"weather.atmosphere", SETTING_NAME_OR_PATH, AT(weather.atmosphere), 0, 0, NULL, "",
@@ -394,7 +396,8 @@ Config config_default(void)
     c.publish.files                 = true;
     c.publish.truth                 = true;
     c.publish.png                   = true;
-    c.publish.coco_min_pixels       = 1;
+    c.publish.coco_min_pixels       = 5;   /* of 4 no class can be told */
+    c.publish.coco_min_snr          = 0.1; /* in the dark: 3e-6 W/(m2 sr), ten of the display's 255 steps */
     strcpy(c.publish.video_codec, "h264");
     strcpy(c.publish.klv, "async");
     strcpy(c.publish.vmti, "atr");
@@ -587,7 +590,7 @@ Status config_check(const Config *config)
     if (!plane_choice_parse(&planes, config->publish.planes)) {
         log_error("config: publish.planes: '%s' is not all, none, or a list of range, entity, part, material, "
                   "temperature, "
-                  "normal, instance, cover, for example range,entity", config->publish.planes);
+                  "normal, emissivity, instance, cover, for example range,entity", config->publish.planes);
         return STATUS_BAD_VALUE;
     }
     const unsigned of_woods = 1u << PLANE_INSTANCE | 1u << PLANE_COVER;
