@@ -4,7 +4,7 @@
 #include "render/heat/vehicle_heat.h"
 
 static const double least_k = 1e-4;
-enum { most_px = 4096, way_most_px = 256 };
+enum { most_px = 1024, way_most_px = 256 };
 
 void error_spread_add(ErrorSpread *s, double square_k2, double px)
 {

@@ -24,7 +24,7 @@ double error_spread_rms_k(const ErrorSpread *spread);
 double error_spread_beyond(const ErrorSpread *spread);
 
 /* A target that may be way_px off, in an unknown direction: by its pixels and the pixels as far from them as that, of at
- * most some 4096 pixels evenly spread. */
+ * most some 1024 pixels evenly spread. */
 typedef struct DisplacedTarget {
     const Picture      *picture;
     const TargetPixels *px;
