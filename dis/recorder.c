@@ -3,6 +3,7 @@
  * Sources: PCAP Next Generation (draft-ietf-opsawg-pcapng), the pcap file format of libpcap (pcap-savefile(5)),
  * link type RAW (101), RFC 791 (IPv4), RFC 8200 (IPv6), RFC 768 (UDP), RFC 1071 (checksum). */
 #include "dis/recorder.h"
+#include "pitviper_output.h"
 #include "dis/reader.h"
 
 #include <errno.h>
@@ -232,9 +233,10 @@ Status dis_recorder_open(DisRecorder **out, const char *path, const char *commen
     }
     r->pcapng = !ends_with(path, ".pcap");
     dis_recorder_to(r, NULL, dis_port);
-    r->file = fopen(path, "wbe");
+    r->file = output_file(path, OUTPUT_STREAM);
     if (!r->file) {
-        log_error("recorder: cannot make %s: %s; the folder must exist and be writable", path, strerror(errno));
+        log_error("recorder: cannot make %s: %s; the folder must exist and be writable", path,
+                  output_reason(errno));
         dis_recorder_close(r);
         return STATUS_IO;
     }

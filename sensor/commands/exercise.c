@@ -1,6 +1,7 @@
 /* sensor/commands/exercise.c: writes the datagrams of a scenario to a file, to the network by the clock, or one by
  * one to a folder. */
 #include "sensor/commands/exercise.h"
+#include "pitviper_output.h"
 
 #include "dis/recorder.h"
 #include "dis/udp.h"
@@ -234,10 +235,10 @@ static bool datagram_file(Run *run, const uint8_t *bytes, size_t octets)
     char path[path_size];
     if (!run->datagrams) return true;
     const int length = snprintf(path, sizeof path, "%s/%04d.pdu", run->datagrams, ++run->files);
-    FILE     *file = length > 0 && length < (int)sizeof path ? fopen(path, "wb") : NULL;
+    FILE     *file = length > 0 && length < (int)sizeof path ? output_file(path, 0) : NULL;
     bool      ok = file && (octets == 0 || fwrite(bytes, octets, 1, file) == 1);
     if (file && fclose(file) != 0) ok = false;
-    if (!ok) log_error("exercise: cannot write %s: %s", path, strerror(errno));
+    if (!ok) log_error("exercise: cannot write %s: %s", path, output_reason(errno));
     return ok;
 }
 
@@ -325,8 +326,8 @@ static Status open_outputs(Run *run, const Options *o, double epoch_unix_s)
 {
     char   comment[300];
     Status status = STATUS_OK;
-    if (o->datagrams && mkdir(o->datagrams, 0777) != 0 && errno != EEXIST) {
-        log_error("exercise: cannot make %s: %s", o->datagrams, strerror(errno));
+    if (o->datagrams && output_folder(o->datagrams) != 0) {
+        log_error("exercise: cannot make %s: %s", o->datagrams, output_reason(errno));
         return STATUS_IO;
     }
     run->datagrams = o->datagrams;

@@ -1,6 +1,7 @@
 /* sensor/commands/frame.c: `pitviper frame FILE`: describes a frame file, renders it again, and reports whether the
  * planes are equal to the bit. */
 #include "sensor/commands/frame.h"
+#include "pitviper_output.h"
 
 #include "sensor/settings/next_option.h"
 #include "sensor/node/overwrite.h"
@@ -157,10 +158,10 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
         record.radar_error = &of_radar;
     }
     if (snprintf(path, sizeof path, "%s/truth.jsonl", out) >= (int)sizeof path) return STATUS_BAD_VALUE;
-    FILE  *to     = fopen(path, "w");
+    FILE  *to     = output_file(path, 0);
     Status status = to ? record_write_frame(to, &record) : STATUS_IO;
     if (to && fclose(to) != 0 && status == STATUS_OK) status = STATUS_IO;
-    if (status == STATUS_IO) log_error("frame: cannot write %s: %s", path, strerror(errno));
+    if (status == STATUS_IO) log_error("frame: cannot write %s: %s", path, output_reason(errno));
     return status;
 }
 

@@ -1,10 +1,10 @@
 /* sensor/commands/output_files.c: see output_files.h. */
 #include "sensor/commands/output_files.h"
+#include "pitviper_output.h"
 
 #include "sensor/node/overwrite.h"
 
 #include <errno.h>
-#include <sys/stat.h>
 
 Status output_files(OutputPath path[], const char *const name[], int count, const char *command, const char *given,
                     const char *model, const char *endings, bool overwrite)
@@ -22,8 +22,8 @@ Status output_files(OutputPath path[], const char *const name[], int count, cons
         const Status status = overwrite_file(command, path[k], overwrite);
         if (status != STATUS_OK) return status;
     }
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        log_error("%s: cannot create %s: %s; choose another folder with --out", command, folder, strerror(errno));
+    if (output_folder(folder) != 0) {
+        log_error("%s: cannot create %s: %s; choose another folder with --out", command, folder, output_reason(errno));
         return STATUS_IO;
     }
     return STATUS_OK;

@@ -1,5 +1,6 @@
 /* sensor/publish/pairs.c: the consumer that writes each frame with and without its target, with and without noise. */
 #include "sensor/publish/pairs.h"
+#include "pitviper_output.h"
 
 #include "sensor/publish/pair_record.h"
 
@@ -142,9 +143,9 @@ static Status open_members(Pairs *p, const PairsOf *of)
     if (status != STATUS_OK) return status;
     snprintf(path, sizeof path, "%.*s/pairs.jsonl", path_size - 32, of->out); /* the longer paths of the folders are
                                                                                * valid */
-    p->index = fopen(path, "w");
+    p->index = output_file(path, 0);
     if (p->index) return STATUS_OK;
-    log_error("pairs: cannot write %s: %s; choose another place with --out", path, strerror(errno));
+    log_error("pairs: cannot write %s: %s; choose another place with --out", path, output_reason(errno));
     return STATUS_IO;
 }
 
