@@ -198,7 +198,7 @@ static int open_at(const Place *at, unsigned how)
         }
         if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return fail(file, EBUSY);
         const bool found = fstatat(at->folder, at->name, &there, AT_SYMLINK_NOFOLLOW) == 0 && same_file(&about, &there);
-        if (found) return ftruncate(file, 0) == 0 ? file : fail(file, errno);
+        if (found) return how & OUTPUT_KEEP || ftruncate(file, 0) == 0 ? file : fail(file, errno);
         close(file); /* renamed or removed before it was locked: what has the name now */
     }
     errno = EBUSY;
@@ -230,17 +230,58 @@ static int what_is_at(const char *path, unsigned how)
     Place       at;
     struct stat about;
     if (how & OUTPUT_STREAM && descriptor_of(path) >= 0) return 2;
-    if (!place_of(&at, path, false, false)) return errno == ENOENT ? 0 : -1;
+    if (!place_of(&at, path, false, false)) return -1;
     int what = fstatat(at.folder, at.name, &about, AT_SYMLINK_NOFOLLOW) == 0 ? 1 : errno == ENOENT ? 0 : -1;
-    if (what == 1 && faccessat(at.folder, at.name, W_OK, AT_EACCESS) != 0 && !S_ISLNK(about.st_mode)) what = -1;
-    else if (what == 1 && S_ISLNK(about.st_mode)) what = fail(-1, ELOOP);
+    if (what == 1 && S_ISLNK(about.st_mode)) what = fail(-1, ELOOP);
     else if (what == 1 && S_ISDIR(about.st_mode)) what = fail(-1, EISDIR);
     else if (what == 1 && !S_ISREG(about.st_mode)) what = how & OUTPUT_STREAM ? 2 : fail(-1, EMEDIUMTYPE);
     leave(&at);
     return what;
 }
 
-int output_check(const char *path, unsigned how) { return what_is_at(path, how) < 0 ? -1 : 0; }
+/* Whether a folder is there and files can be made in it. */
+static int check_folder(const char *path)
+{
+    Place       at;
+    struct stat about;
+    if (!place_of(&at, path, false, true)) return -1;
+    int result = fstatat(at.folder, at.name, &about, 0);
+    if (result == 0 && !S_ISDIR(about.st_mode)) result = fail(-1, ENOTDIR);
+    if (result == 0) result = faccessat(at.folder, at.name, W_OK | X_OK, AT_EACCESS);
+    leave(&at);
+    return result;
+}
+
+/* The folder that a path is in; of `a` the current one. */
+static bool folder_above(char above[PATH_MAX], const char *path)
+{
+    size_t length = length_of(path);
+    while (length > 0 && path[length - 1] != '/') length--;
+    while (length > 1 && path[length - 1] == '/') length--;
+    if (length >= PATH_MAX) return fail(-1, ENAMETOOLONG) == 0;
+    memcpy(above, length ? path : ".", length ? length : 1);
+    above[length ? length : 1] = 0;
+    return true;
+}
+
+int output_check(const char *path, unsigned how)
+{
+    char above[PATH_MAX];
+    if (how & OUTPUT_FOLDER) {
+        int result = check_folder(path);
+        for (const char *part = path; result != 0 && errno == ENOENT; part = above) {
+            char next[PATH_MAX];
+            if (!folder_above(next, part)) return -1;
+            strcpy(above, next);
+            result = check_folder(above);
+        }
+        return result;
+    }
+    const int what = what_is_at(path, how);
+    if (what != 0 && what != 1) return what < 0 ? -1 : 0;
+    if (!folder_above(above, path)) return -1;
+    return check_folder(above) == 0 || (what == 1 && faccessat(AT_FDCWD, path, W_OK, AT_EACCESS) == 0) ? 0 : -1;
+}
 
 static bool part_of(char part[PATH_MAX], const char *path)
 {

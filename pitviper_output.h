@@ -20,6 +20,8 @@ extern "C" {
 enum {
     OUTPUT_STREAM = 1, /* also a pipe, a device, /dev/stdout or another open descriptor: for a name that a user gives */
     OUTPUT_READ   = 2, /* for reading too */
+    OUTPUT_KEEP   = 4, /* what is in it stays for now */
+    OUTPUT_FOLDER = 8, /* of output_check: a folder, which output_folder would make */
 };
 
 /* A descriptor; -1: failed. */
@@ -32,8 +34,8 @@ FILE *output_begin(const char *path, unsigned how);
 bool  output_end(FILE *file, const char *path);
 void  output_abandon(FILE *file, const char *path);
 
-/* Whether output_begin or output_open would be refused for what is there: a link, a folder, no permission. 0: it would not;
- * nothing is created. */
+/* Whether output_begin, output_open or output_folder would fail for what is there now: a link, no folder, no permission. 0: they
+ * would not; nothing is created. */
 int output_check(const char *path, unsigned how);
 
 /* As mkdir -p, rename, remove (of a file or an empty folder) and opendir. */

@@ -8,6 +8,8 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 enum {
     link_raw_ip = 101,
@@ -26,7 +28,9 @@ static const int64_t ns_per_s = 1000000000;
 struct DisRecorder {
     FILE    *file;
     char    *path;
+    char    *comment;
     bool     pcapng, failed;
+    bool     older, begun;          /* there was another recording; it is this one's file now */
     uint16_t identification;     /* of the next IPv4 packet */
     uint8_t  to4[16], to6[16];
     uint16_t to_port;
@@ -183,7 +187,7 @@ Status dis_recorder_add(DisRecorder *r, int64_t capture_ns, const uint8_t from[1
     if (octets > (size_t)(is_ipv4(from) ? dis_recorder_ipv4_octets : dis_recorder_ipv6_octets) || capture_ns < 0 ||
         (!r->pcapng && capture_ns / ns_per_s > UINT32_MAX))
         return STATUS_BAD_VALUE;
-    if (r->failed) return STATUS_IO;
+    if (dis_recorder_begin(r) != STATUS_OK) return STATUS_IO;
 
     const size_t header_octets = make_headers(headers, r, from, port, bytes, octets);
     if (r->pcapng) {
@@ -203,7 +207,7 @@ Status dis_recorder_note(DisRecorder *r, int64_t capture_ns, const char *text)
     enum { interface_statistics = 5, opt_comment = 1, end_of_options = 4 };
     if (!r->pcapng) return STATUS_UNSUPPORTED;
     if (capture_ns < 0) return STATUS_BAD_VALUE;
-    if (r->failed) return STATUS_IO;
+    if (dis_recorder_begin(r) != STATUS_OK) return STATUS_IO;
     const uint64_t ns = (uint64_t)capture_ns;
     const size_t   said = strnlen(text, longest_text);
     const uint32_t length = (uint32_t)(24 + option_octets(said) + end_of_options);
@@ -226,14 +230,15 @@ Status dis_recorder_open(DisRecorder **out, const char *path, const char *commen
 {
     DisRecorder *r = calloc(1, sizeof *r);
     if (!r) return STATUS_NO_MEMORY;
-    r->path = strdup(path);
-    if (!r->path) {
-        free(r);
+    r->path    = strdup(path);
+    r->comment = comment ? strdup(comment) : NULL;
+    if (!r->path || (comment && !r->comment)) {
+        dis_recorder_close(r);
         return STATUS_NO_MEMORY;
     }
     r->pcapng = !ends_with(path, ".pcap");
     dis_recorder_to(r, NULL, dis_port);
-    r->file = output_file(path, OUTPUT_STREAM);
+    r->file = output_file(path, OUTPUT_STREAM | OUTPUT_KEEP);
     if (!r->file) {
         log_error("recorder: cannot make %s: %s; the folder must exist and be writable", path,
                   output_reason(errno));
@@ -241,19 +246,31 @@ Status dis_recorder_open(DisRecorder **out, const char *path, const char *commen
         return STATUS_IO;
     }
     setvbuf(r->file, NULL, _IOFBF, file_buffer_octets);
-    if (r->pcapng) {
-        put_section(r, comment);
-        put_interface(r);
-    } else {
-        put_pcap_header(r);
-    }
-    if (dis_recorder_flush(r) != STATUS_OK) {
+    struct stat about;
+    r->older = lstat(path, &about) == 0 && S_ISREG(about.st_mode) && about.st_size > 0;
+    if (!r->older && dis_recorder_begin(r) != STATUS_OK) {
         dis_recorder_close(r);
         return STATUS_IO;
     }
     *out = r;
     return STATUS_OK;
 }
+
+Status dis_recorder_begin(DisRecorder *r)
+{
+    if (r->begun) return r->failed ? STATUS_IO : STATUS_OK;
+    r->begun = true;
+    if (r->older && ftruncate(fileno(r->file), 0) != 0) return fail(r);
+    if (r->pcapng) {
+        put_section(r, r->comment);
+        put_interface(r);
+    } else {
+        put_pcap_header(r);
+    }
+    return dis_recorder_flush(r);
+}
+
+bool dis_recorder_begun(const DisRecorder *r) { return r->begun; }
 
 void dis_recorder_to(DisRecorder *r, const uint8_t to[16], uint16_t port)
 {
@@ -277,6 +294,7 @@ Status dis_recorder_close(DisRecorder *r)
     if (!r) return STATUS_OK;
     if (r->file && fclose(r->file) != 0 && !r->failed) fail(r);
     const Status status = r->failed || !r->file ? STATUS_IO : STATUS_OK;
+    free(r->comment);
     free(r->path);
     free(r);
     return status;

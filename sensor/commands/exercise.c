@@ -334,6 +334,7 @@ static Status open_outputs(Run *run, const Options *o, double epoch_unix_s)
     if (o->send) status = dis_udp_open_sender(&run->udp, &o->udp);
     snprintf(comment, sizeof comment, "pitviper exercise %.200s", o->scenario);
     if (status == STATUS_OK && o->out) status = dis_recorder_open(&run->recorder, o->out, comment);
+    if (status == STATUS_OK && o->out) status = dis_recorder_begin(run->recorder);
     /* whole seconds and the fraction apart: a double of Unix time resolves only 0.2 us */
     run->epoch_ns = (int64_t)floor(epoch_unix_s) * 1000000000 + llround(fmod(epoch_unix_s, 1) * 1e9);
     return status;

@@ -173,7 +173,8 @@ static Status write_radar(const char *out, const FrameFile *file, const FrameSce
     snprintf(frame.host, sizeof frame.host, "%s", file->host);
     Status status = consume_radar(&consumer, &(PictureFiles){.out = out, .config = &s->config});
     if (status != STATUS_OK) return status;
-    status = consumer->put(consumer, &frame);
+    status = consumer->begin(consumer);
+    if (status == STATUS_OK) status = consumer->put(consumer, &frame);
     const Status closed = consumer->close(consumer);
     return status == STATUS_OK ? closed : status;
 }
@@ -286,10 +287,10 @@ int frame_command(int argc, char **argv)
     scene = arena ? arena_alloc(arena, 1, sizeof *scene) : NULL;
     file  = arena ? arena_alloc(arena, 1, sizeof *file) : NULL;
     Status status = scene && file ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK && o.out) status = overwrite_folder("frame", o.out, o.overwrite);
     if (status == STATUS_OK) status = text_read_file(&bytes, &count, "frame", o.path, most_octets);
     if (status == STATUS_OK) status = frame_file_parse(file, (const uint8_t *)bytes, count, o.path, arena);
     if (status == STATUS_OK) describe(file);
+    if (status == STATUS_OK && o.out) status = overwrite_folder("frame", o.out, o.overwrite);
     if (status == STATUS_OK && o.out) status = image_file_prepare();
     if (status == STATUS_OK) status = pool_create(&pool, o.threads);
     if (status == STATUS_OK) status = frame_scene_open(scene, file, o.forced, "avx2", pool);

@@ -17,14 +17,14 @@ Status output_files(OutputPath path[], const char *const name[], int count, cons
         log_error("%s: the folder's name is too long; choose a shorter one with --out", command);
         return STATUS_BAD_VALUE;
     }
-    for (int k = 0; k < count; k++) {
-        snprintf(path[k], output_path_size, "%s/%.30s", folder, name[k]);
-        const Status status = overwrite_file(command, path[k], overwrite);
-        if (status != STATUS_OK) return status;
-    }
     if (output_folder(folder) != 0) {
         log_error("%s: cannot create %s: %s; choose another folder with --out", command, folder, output_reason(errno));
         return STATUS_IO;
     }
-    return STATUS_OK;
+    Status status = output_hold(command, folder);
+    for (int k = 0; k < count && status == STATUS_OK; k++) {
+        snprintf(path[k], output_path_size, "%s/%.30s", folder, name[k]);
+        status = overwrite_file(command, path[k], overwrite);
+    }
+    return status;
 }

@@ -191,9 +191,11 @@ int record_command(int argc, char **argv)
     const double         spent_s = wall_clock_s() - r.begun_s;
     const DisUdpCounters counters = dis_udp_counters(r.udp);
     dis_udp_close(r.udp);
+    const bool begun = dis_recorder_begun(r.recorder);
     if (dis_recorder_close(r.recorder) != STATUS_OK) status = STATUS_IO;
     log_info("record: %s: %llu datagrams, %llu octets in %.1f s; lost %llu", o.out, (unsigned long long)r.datagrams,
              (unsigned long long)r.octets, spent_s, (unsigned long long)lost(&counters));
+    if (!begun) log_warn("record: nothing came: %s is the earlier recording, as it was", o.out);
     if (r.datagrams == 0)
         log_warn("record: nothing came on %s; --port, --address and --interface say where to listen, `ss -ulpn` and "
                  "`ip address` show what there is", where);

@@ -52,16 +52,15 @@ static Status close_latest(Consumer *consumer)
     return STATUS_OK;
 }
 
+static Status begin(Consumer *consumer) { return frame_files_folder(((Latest *)consumer)->folder); }
+
 Status consume_latest(Consumer **out, const char *folder, bool patient)
 {
     Latest *l = calloc(1, sizeof *l);
     if (!l) return STATUS_NO_MEMORY;
-    *l = (Latest){.consumer = {WANT_DISPLAY, put, NULL, close_latest, "latest"}, .patient = patient,
+    *l = (Latest){.consumer = {WANT_DISPLAY, put, NULL, close_latest, "latest", begin}, .patient = patient,
                   .retry = {.what = "latest pictures"}};
-    Status status = snprintf(l->folder, sizeof l->folder, "%s/latest", folder) < (int)sizeof l->folder ? STATUS_OK
-                                                                                                    : STATUS_BAD_VALUE;
-    if (status == STATUS_OK) status = frame_files_folder(l->folder);
-    if (status == STATUS_OK) *out = &l->consumer;
-    else close_latest(&l->consumer);
-    return status;
+    snprintf(l->folder, sizeof l->folder, "%.*s/latest", frame_path_size - frame_path_room, folder);
+    *out = &l->consumer;
+    return STATUS_OK;
 }

@@ -126,8 +126,10 @@ static Status put(Consumer *consumer, Frame *frame)
 
 /* ---- opened ----------------------------------------------------------------------------------- */
 
-static Status open_members(Pairs *p, const PairsOf *of)
+static Status begin(Consumer *consumer)
 {
+    Pairs         *p  = (Pairs *)consumer;
+    const PairsOf *of = &p->of;
     const unsigned kept   = of->bands | (frame_files_truth(of->config) ? frame_truth : 0);
     Status         status = STATUS_OK;
     char           path[path_size];
@@ -158,7 +160,7 @@ Status consume_pairs(Consumer **out, const PairsOf *of)
         return STATUS_NO_MEMORY;
     }
     p->consumer = (Consumer){WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY, put, NULL,
-                             close_pairs, "pairs"};
+                             close_pairs, "pairs", begin};
     p->of       = *of;
     p->all      = strcmp(of->config->publish.pairs, "all") == 0;
     p->noiseless = *of->config;
@@ -166,8 +168,6 @@ Status consume_pairs(Consumer **out, const PairsOf *of)
     p->member[CLEAN].chains            = of->clean;
     p->member[BACKGROUND].chains       = of->background;
     p->member[BACKGROUND_CLEAN].chains = of->background_clean;
-    const Status status = open_members(p, of);
-    if (status == STATUS_OK) *out = &p->consumer;
-    else close_pairs(&p->consumer);
-    return status;
+    *out = &p->consumer;
+    return STATUS_OK;
 }

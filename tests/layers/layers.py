@@ -30,7 +30,7 @@ MAY = {
     'sensor': ('dis/*', 'terrain/*', 'entities/*', 'render/*'),
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),
 }
-BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_library.h', 'pitviper_simd.h')
+BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_library.h', 'pitviper_output.h', 'pitviper_simd.h')
 
 # Libraries that one file, or one folder, knows: header, places.
 LIBRARIES = (
