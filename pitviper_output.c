@@ -331,6 +331,15 @@ void output_abandon(FILE *file, const char *path)
     fclose(file);
 }
 
+const char *output_ending(const char *path)
+{
+    struct stat about;
+    const char *slash = strrchr(path, '/'), *last = slash ? slash + 1 : path, *point = strrchr(last, '.');
+    const bool  stream = descriptor_of(path) >= 0 ||
+                        (lstat(path, &about) == 0 && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode) && !S_ISLNK(about.st_mode));
+    return point && point > last && !stream ? point : "";
+}
+
 /* ---- folders and names -------------------------------------------------------------------------------- */
 
 int output_folder(const char *path)

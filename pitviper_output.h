@@ -38,6 +38,9 @@ void  output_abandon(FILE *file, const char *path);
  * would not; nothing is created. */
 int output_check(const char *path, unsigned how);
 
+/* The ending of a file's name with its point, `.png`; empty: it has none, or is that of a stream. */
+const char *output_ending(const char *path);
+
 /* As mkdir -p, rename, remove (of a file or an empty folder) and opendir. */
 int  output_folder(const char *path);
 int  output_rename(const char *from, const char *to);

@@ -8,6 +8,7 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -220,10 +221,12 @@ Status dis_recorder_note(DisRecorder *r, int64_t capture_ns, const char *text)
 
 /* ---- open and close --------------------------------------------------------------------------------------------- */
 
-static bool ends_with(const char *text, const char *end)
+bool dis_recorder_name(const char *what, const char *path)
 {
-    const size_t octets = strlen(text), wanted = strlen(end);
-    return octets >= wanted && strcmp(text + octets - wanted, end) == 0;
+    const char *ending = output_ending(path);
+    if (!*ending || strcasecmp(ending, ".pcapng") == 0 || strcasecmp(ending, ".pcap") == 0) return true;
+    log_error("%s: '%s': recordings are pcapng or pcap: choose a name that ends with .pcapng or .pcap", what, path);
+    return false;
 }
 
 Status dis_recorder_open(DisRecorder **out, const char *path, const char *comment)
@@ -236,7 +239,7 @@ Status dis_recorder_open(DisRecorder **out, const char *path, const char *commen
         dis_recorder_close(r);
         return STATUS_NO_MEMORY;
     }
-    r->pcapng = !ends_with(path, ".pcap");
+    r->pcapng = strcasecmp(output_ending(path), ".pcap") != 0;
     dis_recorder_to(r, NULL, dis_port);
     r->file = output_file(path, OUTPUT_STREAM | OUTPUT_KEEP);
     if (!r->file) {

@@ -9,6 +9,9 @@ typedef struct DisRecorder DisRecorder;
 
 enum { dis_recorder_ipv4_octets = 65507, dis_recorder_ipv6_octets = 65527 }; /* the most a datagram holds */
 
+/* Whether a recording may have this name: it ends with .pcapng or .pcap, or has no ending, as /dev/stdout. False: logged, with
+ * what, the option or key that names it. */
+bool   dis_recorder_name(const char *what, const char *path);
 /* comment: of the section, e.g. what made it; may be NULL; pcap has no place for it. STATUS_IO, logged with the path;
  * the beginning of the file is written by then, so a place that takes nothing is known at once. The folder must exist.
  * An older recording of that name stays as it is until the first datagram or note, or begin, takes its place. */

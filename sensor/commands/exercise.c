@@ -177,6 +177,7 @@ static int parse(Options *o, int argc, char **argv)
         log_error("exercise: --%s is of datagrams that are sent: give --send ADDRESS too, or leave it out", of_sending);
         return 1 + 2;
     }
+    if (o->out && !dis_recorder_name("exercise: -o", o->out)) return 1 + 2;
     o->scenario = argv[optind];
     return !o->send || parse_address(&o->udp, o->send) ? 0 : 1 + 2;
 }

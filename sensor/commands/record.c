@@ -87,6 +87,7 @@ static int parse(Options *o, int argc, char **argv)
         fputs(help, stderr);
         return 1 + 2;
     }
+    if (!dis_recorder_name("record: -o", o->out)) return 1 + 2;
     return 0;
 }
 

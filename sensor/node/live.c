@@ -1,5 +1,6 @@
 /* sensor/node/live.c: `pitviper run`: receives, makes the choices, then renders frame after frame by the clock. */
 #include "sensor/node/live.h"
+#include "pitviper_output.h"
 
 #include "dis/steady_clock.h"
 #include "sensor/publish/frame_files.h"
@@ -18,6 +19,7 @@
 #include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <strings.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -349,13 +351,13 @@ static Status open_files(Live *l)
     const Options *o      = &l->run.options;
     const Config  *config = &o->config;
     char           comment[dis_udp_where_size + 40];
-    Status         status = overwrite_folder("run", o->out, o->overwrite);
+    Status         status = STATUS_OK;
+    if (*config->record.path) status = overwrite_file("run", config->record.path, o->overwrite);
+    if (status == STATUS_OK) status = overwrite_folder("run", o->out, o->overwrite);
     if (status == STATUS_OK) status = overwrite_video("run", config, l->run.bands, NULL, o->overwrite);
-    if (status == STATUS_OK && *config->record.path) status = overwrite_file("run", config->record.path, o->overwrite);
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
-    const size_t length = strlen(config->record.path);
-    if (strcmp(config->radar.preset, "none") != 0 && length > 5 && strcmp(config->record.path + length - 5, ".pcap") == 0)
+    if (strcmp(config->radar.preset, "none") != 0 && strcasecmp(output_ending(config->record.path), ".pcap") == 0)
         log_warn("run: %s has no room for which frames are without radar (pcap): a replay has it in all; name it .pcapng",
                  config->record.path);
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, dis_network(config).port);

@@ -21,10 +21,10 @@ Status overwrite_folder(const char *command, const char *out, bool allowed)
     return status == STATUS_OK ? frame_files_check(out) : status;
 }
 
-/* Whether it can be written at all: logged, with the option that names another. */
-static Status check(const char *command, const char *path, unsigned how, const char *option)
+/* Whether it can be written at all: logged, with the option that names another. absent: its folder may be made later. */
+static Status check(const char *command, const char *path, unsigned how, const char *option, bool absent)
 {
-    if (output_check(path, how) == 0) return STATUS_OK;
+    if (output_check(path, how) == 0 || (absent && errno == ENOENT)) return STATUS_OK;
     log_error("%s: cannot write %s: %s; choose another name%s%s", command, path, output_reason(errno), *option ? " with " : "",
               option);
     return STATUS_IO;
@@ -38,7 +38,7 @@ Status overwrite_file(const char *command, const char *path, bool allowed)
                   path, (long long)about.st_size);
         return STATUS_BAD_VALUE;
     }
-    return check(command, path, OUTPUT_STREAM, "");
+    return check(command, path, OUTPUT_STREAM, "", true);
 }
 
 Status overwrite_video(const char *command, const Config *config, unsigned bands, const char *host_folder,
@@ -52,5 +52,5 @@ Status overwrite_video(const char *command, const Config *config, unsigned bands
                   found);
         return STATUS_BAD_VALUE;
     }
-    return kind == VIDEO_NONE ? STATUS_OK : check(command, path, kind == VIDEO_FOLDER ? OUTPUT_FOLDER : 0, "--video");
+    return kind == VIDEO_NONE ? STATUS_OK : check(command, path, kind == VIDEO_FOLDER ? OUTPUT_FOLDER : 0, "--video", false);
 }
