@@ -289,8 +289,11 @@ static Status open_folders(const Run *run, const DisEntityId host[])
 {
     const Options *o = &run->options;
     char           name[run_folder_size];
-    Status         status = overwrite_folder("replay", o->out, o->overwrite);
-    if (status == STATUS_OK && o->host_count <= 1)
+    const bool     there  = access(o->out, F_OK) == 0; /* else a video may be meant for it */
+    Status         status = STATUS_OK;
+    if (there && o->host_count <= 1) status = overwrite_video("replay", &o->config, run->bands, NULL, o->overwrite);
+    if (status == STATUS_OK) status = overwrite_folder("replay", o->out, o->overwrite);
+    if (status == STATUS_OK && !there && o->host_count <= 1)
         status = overwrite_video("replay", &o->config, run->bands, NULL, o->overwrite);
     for (int i = 0; status == STATUS_OK && o->host_count > 1 && i < o->host_count; i++) {
         run_folder(name, o, host[i]);
@@ -314,6 +317,16 @@ static Status prepare(Run *run, DisLog *log, DisEntityId host[options_hosts_max]
     return status;
 }
 
+static Status look_at_variant(Run *run)
+{
+    DisLog      log = {0};
+    DisEntityId host[options_hosts_max];
+    run->check          = check_span;
+    const Status status = prepare(run, &log, host);
+    dis_log_close(&log);
+    return status;
+}
+
 int replay_command(int argc, char **argv)
 {
     Pace        clock = {0};
@@ -326,7 +339,7 @@ int replay_command(int argc, char **argv)
     if (stop) return stop - 1;
     stop_by_signals();
     if (isfinite(run.options.speed)) run.wall_s = wall_of;
-    if (run.options.sweep) return sweep_replay(&run.options);
+    if (run.options.sweep) return sweep_replay(&run.options, look_at_variant);
 
     snprintf(log_name, sizeof log_name, "%s", run.options.log);
     run.log_name = basename(log_name);

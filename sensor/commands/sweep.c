@@ -198,6 +198,24 @@ static Status prepare(SweepRun *s)
     return status;
 }
 
+/* What would fail in every variant, log, host or span, is told once and before anything is written: where no axis is about it,
+ * the first variant stands for all. */
+static Status look_at_first(const SweepRun *s, SweepLook *look)
+{
+    for (int i = 0; i < s->sweep.axis_count; i++)
+        if (strncmp(s->sweep.axis[i].key, "exercise.", 9) == 0 || strcmp(s->sweep.axis[i].key, "sensor.rate_hz") == 0)
+            return STATUS_OK;
+    Run *run = calloc(1, sizeof *run);
+    if (!run) return STATUS_NO_MEMORY;
+    run->options  = *s->options;
+    Status status = sweep_config(&run->options.config, &s->sweep, &s->options->config, s->variant[0].number);
+    if (status == STATUS_OK) status = look(run);
+    if (status == STATUS_BAD_VALUE || status == STATUS_IO) log_error("sweep: so in every variant; nothing has been run");
+    run_close(run);
+    free(run);
+    return status;
+}
+
 static bool is_run(const MadeRun *run, const SweepRun *s, const Variant *v)
 {
     return strcmp(run->version, PITVIPER_VERSION) == 0 && strcmp(run->config_sha256, v->config_sha256) == 0 &&
@@ -250,6 +268,7 @@ static Status open_products(SweepRun *s)
     Status         status = sha256_file(s->log_sha256, o->log);
     if (status == STATUS_OK) status = check_folders(s);
     if (status == STATUS_OK) status = frame_files_folder(o->out);
+    if (status == STATUS_OK) status = output_hold("sweep", o->out);
     if (status != STATUS_OK) return status;
     const char *slash = strrchr(o->log, '/');
     snprintf(title, sizeof title, "Sweep of %s: %d variants", slash ? slash + 1 : o->log, s->count);
@@ -496,11 +515,12 @@ static Status run_all(SweepRun *s)
     return status;
 }
 
-int sweep_replay(const Options *options)
+int sweep_replay(const Options *options, SweepLook *look)
 {
     SweepRun     s      = {.options = options};
     const Status tried  = prepare(&s);
-    const Status status = tried == STATUS_OK ? run_all(&s) : tried;
+    Status       status = tried == STATUS_OK ? look_at_first(&s, look) : tried;
+    if (status == STATUS_OK) status = run_all(&s);
     if (status == STATUS_NO_MEMORY) log_error("sweep: out of memory");
     free(s.variant);
     sweep_close(&s.sweep);
