@@ -28,13 +28,14 @@ check "of a live node too" [ $code = 1 ]
 check "nothing is touched" [ "$before" = "$(cd "$tmp/a" && find . -type f | sort | xargs sha256sum)" ]
 # ---- a mistake with --overwrite: told before the world is set up, and nothing goes
 now() { (cd "$tmp/a" && find . -type f | sort | xargs sha256sum); }
-for mistake in "--from 5000" "--from -2 --to -3" "--only 9999" "--host 9:9:9" "--host 9:9:9 --host observer" "--bands optcal" \
-               "--set sensor.preset=hubble" "--causal --from 5000" "--video $tmp/no/such/x.mp4" "--video x.xyz" "--speed 1 --set publish.dis=sensor --address 1.2.3.400"; do
+for mistake in "--bands optcal" "--set sensor.preset=hubble" "--video x.xyz" "--from 5000" "--only 9999" "--host 9:9:9" "--causal --from 5000" \
+               "--video $tmp/no/such/x.mp4" "--speed 1 --set publish.dis=sensor --address 1.2.3.400"; do
     # shellcheck disable=SC2086
     shown "$tmp/a" --overwrite $mistake
     check "$mistake: refused" [ $code != 0 ]
     check "$mistake: nothing goes" [ "$before" = "$(now)" ]
     check "$mistake: before the ground is made" not said '^(ground|host):'
+    case $mistake in --bands*|--set*|*xyz|--from*) ;; *) continue ;; esac
     # shellcheck disable=SC2086
     shown "$tmp/a" $mistake
     check "$mistake: told, and not that something exists" not complained exists
@@ -64,7 +65,7 @@ fi
 
 # ---- links where files are written
 mkdir -p "$tmp/else" && echo precious >"$tmp/else/000001.png" && echo precious >"$tmp/precious"
-for name in frames frames/lwir latest pairs raw profiles radar truth.jsonl run.json coco.json lwir.klv; do
+for name in frames frames/lwir pairs truth.jsonl lwir.klv; do
     rm -rf "$tmp/l" && mkdir -p "$tmp/l/$(dirname "$name")"
     case $name in *.*) ln -s "$tmp/precious" "$tmp/l/$name" ;; *) ln -s "$tmp/else" "$tmp/l/$name" ;; esac
     shown "$tmp/l" --only 1 --overwrite
@@ -81,9 +82,6 @@ for words in "record --for 1 -o $tmp/l.pcap" "exercise demo -o $tmp/l.pcap" "run
     check "${words%% *}: a link is not followed" [ $? != 0 -a "$(cat "$tmp/precious")" = precious ]
     check "${words%% *}: said" complained 'symbolic link'
 done
-mkdir "$tmp/real" && ln -s real "$tmp/named"
-shown "$tmp/named" --only 1
-check "the folder itself may be a link" [ $code = 0 -a -s "$tmp/real/truth.jsonl" ]
 
 # ---- endings
 for words in "record --for 1 -o $tmp/x.xyz" "exercise demo -o $tmp/x.xyz" "run --for 1 --record $tmp/x.xyz" "heat tank -o $tmp/x.png" \
@@ -96,7 +94,7 @@ done
 check "unknown endings: nothing is made" [ -z "$(ls "$tmp"/x.* 2>/dev/null)" ]
 
 # ---- --overwrite: another band's products go too, of a channel that this run has not
-shown "$tmp/swir" --only 1 --bands swir --latest --pairs all --set publish.klv_files=true
+shown "$tmp/swir" --only 1 --bands swir --latest --set publish.klv_files=true
 check "swir" [ $code = 0 -a -s "$tmp/swir/frames/swir/000001.png" -a -s "$tmp/swir/swir.klv" ]
 mkdir "$tmp/swir/frames/notes" && touch "$tmp/swir/frames/notes/000001.png.txt"
 shown "$tmp/swir" --only 1 --overwrite
