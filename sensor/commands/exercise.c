@@ -350,8 +350,7 @@ int exercise_command(int argc, char **argv)
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
 
-    Status status = o.out ? overwrite_file("exercise", o.out, o.overwrite) : STATUS_OK;
-    if (status == STATUS_OK) status = read_scenario(&scenario, &o);
+    Status status = read_scenario(&scenario, &o);
     if (status == STATUS_NO_MEMORY) log_error("exercise: out of memory");
     if (status != STATUS_OK) return 1;
     for (int i = 0; i < o.set_count; i++)
@@ -361,6 +360,7 @@ int exercise_command(int argc, char **argv)
         }
     status = scenario_check(&scenario);
     if (status == STATUS_OK) status = cast_create(&cast, &scenario);
+    if (status == STATUS_OK && o.out) status = overwrite_file("exercise", o.out, o.overwrite);
     if (status == STATUS_OK) {
         stop_by_signals();
         const double epoch_unix_s = epoch_of(&scenario, o.send != NULL);
