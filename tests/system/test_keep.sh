@@ -28,7 +28,7 @@ check "of a live node too" [ $code = 1 ]
 check "nothing is touched" [ "$before" = "$(cd "$tmp/a" && find . -type f | sort | xargs sha256sum)" ]
 # ---- a mistake with --overwrite: told before the world is set up, and nothing goes
 now() { (cd "$tmp/a" && find . -type f | sort | xargs sha256sum); }
-for mistake in "--bands optcal" "--set sensor.preset=hubble" "--video x.xyz" "--from 5000" "--only 9999" "--host 9:9:9" "--causal --from 5000" \
+for mistake in "--bands optcal" "--set sensor.preset=hubble" "--video x.xyz" "--from 5000" "--only 9999" "--host 9:9:9" \
                "--video $tmp/no/such/x.mp4" "--speed 1 --set publish.dis=sensor --address 1.2.3.400"; do
     # shellcheck disable=SC2086
     shown "$tmp/a" --overwrite $mistake
@@ -41,6 +41,9 @@ for mistake in "--bands optcal" "--set sensor.preset=hubble" "--video x.xyz" "--
     check "$mistake: told, and not that something exists" not complained exists
 done
 check "nothing of that name is made" [ ! -e x.xyz ]
+# a host that may still appear, and does not: known only in the end
+shown "$tmp/a" --overwrite --causal --host 9:9:9 --only 3
+check "a host that never appears: refused, and nothing goes" [ "$code $before" = "1 $(now)" ]
 shown "$tmp/demo.pcap/out"
 check "no place for it: said" complained 'cannot write in .*demo.pcap/out: Not a directory.*--out'
 check "no place for it: before the ground is made" not said '^ground:'
