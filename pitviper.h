@@ -142,8 +142,8 @@ void text_show(char *out, size_t out_size, const char *text, bool lines);
 void text_print(FILE *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_vprint(FILE *to, const char *format, va_list arguments) __attribute__((format(printf, 2, 0)));
 
-/* A file of what put prints: written to PATH.part and renamed, so that nobody reads half of it. Failures are logged as the
- * module's: STATUS_BAD_VALUE (a name too long), STATUS_IO. */
+/* A file of what put prints, by output_begin (pitviper_output.h): nobody reads half of it. STATUS_IO: logged as the
+ * module's. */
 Status text_write_file(const char *module, const char *path, void (*put)(FILE *to, const void *user), const void *user);
 /* A whole file of at most `most` octets and a 0 behind them; the caller frees it. Failures are logged as the
  * module's. */

@@ -1,5 +1,6 @@
 /* pitviper_text.c: tables of text, numbers from text, sanitizing of untrusted bytes. */
 #include "pitviper_file.h"
+#include "pitviper_output.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -309,20 +310,9 @@ bool text_to_unix_s(double *unix_s, const char *text)
 
 Status text_write_file(const char *module, const char *path, void (*put)(FILE *to, const void *user), const void *user)
 {
-    char part[4096];
-    if (snprintf(part, sizeof part, "%s.part", path) >= (int)sizeof part) {
-        log_error("%s: the name %s is too long", module, path);
-        return STATUS_BAD_VALUE;
-    }
-    FILE *to = fopen(part, "w");
-    if (!to) {
-        log_error("%s: cannot write %s: %s", module, part, strerror(errno));
-        return STATUS_IO;
-    }
-    put(to, user);
-    const bool whole = !ferror(to);
-    if (fclose(to) == 0 && whole && rename(part, path) == 0) return STATUS_OK;
-    log_error("%s: cannot write %s: %s", module, path, strerror(errno));
-    remove(part);
+    FILE *to = output_begin(path, OUTPUT_STREAM);
+    if (to) put(to, user);
+    if (to && output_end(to, path)) return STATUS_OK;
+    log_error("%s: cannot write %s: %s", module, path, output_reason(errno));
     return STATUS_IO;
 }

@@ -1,5 +1,6 @@
 /* sensor/commands/terrain.c: `pitviper terrain import`, and the table of the command's actions. */
 #include "sensor/commands/terrain.h"
+#include "pitviper_output.h"
 
 #include "sensor/commands/terrain_again.h"
 #include "sensor/commands/terrain_info.h"
@@ -8,6 +9,7 @@
 #include "sensor/settings/next_option.h"
 #include "terrain/import/terrain_import.h"
 
+#include <errno.h>
 #include <stdlib.h>
 
 static const char help[] =
@@ -181,6 +183,10 @@ static int import_command(int argc, char **argv)
         return code;
     }
     Status status = overwrite_file("terrain import", w->out, w->overwrite);
+    if (status == STATUS_OK && output_check(w->out, 0) != 0) {
+        log_error("terrain import: cannot write %s: %s; choose another name with -o", w->out, output_reason(errno));
+        status = STATUS_IO;
+    }
     if (status == STATUS_OK) status = pool_create(&pool, (int)w->threads);
     double begun_s = wall_clock_s();
     stop_by_signals();

@@ -1,6 +1,7 @@
 /* sensor/commands/terrain_info.c: `pitviper terrain info`: levels, sections, classes, sources and pictures of a terrain
  * store. */
 #include "sensor/commands/terrain_info.h"
+#include "pitviper_output.h"
 
 #include "sensor/commands/terrain_pictures.h"
 #include "sensor/node/overwrite.h"
@@ -157,8 +158,8 @@ static Status draw(const Wanted *w, const TerrainStore *store)
     if (snprintf(hillshade, sizeof hillshade, "%s/hillshade.png", w->out) >= (int)sizeof hillshade ||
         snprintf(classes, sizeof classes, "%s/classes.png", w->out) >= (int)sizeof classes)
         return STATUS_BAD_VALUE;
-    if (mkdir(w->out, 0777) != 0 && errno != EEXIST) {
-        log_error("terrain info: cannot create %s: %s", w->out, strerror(errno));
+    if (output_folder(w->out) != 0) {
+        log_error("terrain info: cannot create %s: %s", w->out, output_reason(errno));
         return STATUS_IO;
     }
     const bool some = store->surface[0].nx > 0;

@@ -223,6 +223,46 @@ static void report_air_temp(Choices *choices, const Config *config, const Atmosp
                    "where this ground lies (weather.air_temp_k)", here_k - 273.15, high_k - 273.15, ground_m);
 }
 
+static Status choose_who(HostPlan *plan, Choices *choices, Run *run, const DisEntityId *host)
+{
+    const Config *config = &run->options.config;
+    return host ? plan_host(plan, choices, &run->survey, config, *host) : choose_host(plan, choices, &run->survey, config);
+}
+
+/* Causal: nothing is rendered of the time before the choices; the end is open. */
+static void open_span(HostPlan *plan, const Run *run, const Player *player)
+{
+    if (!run->options.config.causal) return;
+    plan->start_s = player_time_s(player, run->until_s);
+    plan->end_s   = INFINITY;
+}
+
+static FrameGrid grid_of(const HostPlan *plan)
+{
+    return (FrameGrid){ceil(plan->start_s * plan->rate_hz - 1e-9), plan->rate_hz};
+}
+
+Status run_check(Run *run, const DisEntityId *host)
+{
+    HostPlan plan    = {0};
+    Player  *player  = NULL;
+    Choices *choices = malloc(sizeof *choices); /* made again by run_host, in its order */
+    if (!choices) return STATUS_NO_MEMORY;
+    *choices      = run->choices;
+    Status status = choose_who(&plan, choices, run, host);
+    if (status == STATUS_OK) status = player_create(&player, run->exercise, run->options.config.causal);
+    if (status == STATUS_OK && run->options.config.causal) status = player_add_log(player, &run->view);
+    if (status == STATUS_OK) {
+        open_span(&plan, run, player);
+        choose_rate(&plan, choices, &run->options.config);
+        const FrameGrid grid = grid_of(&plan);
+        status               = run->check ? run->check(run, player, &plan, &grid) : STATUS_OK;
+    }
+    player_destroy(player);
+    free(choices);
+    return status;
+}
+
 /* The world, with its messages. */
 static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, GroundContact *contact, WoodsChoice *woods,
                      Choices *choices, Run *run, const DisEntityId *host)
@@ -230,8 +270,7 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     const Options *o     = &run->options;
     World         *world = &run->world;
     LocalFrame     frame;
-    Status         status = host ? plan_host(plan, choices, &run->survey, &o->config, *host)
-                                 : choose_host(plan, choices, &run->survey, &o->config);
+    Status         status = choose_who(plan, choices, run, host);
     if (status == STATUS_OK) status = choose_frame(&frame, &run->survey, plan);
     if (status == STATUS_OK && *o->config.terrain.store) {
         const LocalFrame aim = frame;
@@ -307,11 +346,7 @@ Status run_host(Run *run, const DisEntityId *host)
     if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.causal);
     if (status == STATUS_OK) status = player_add_log(player, &run->view);
     if (status != STATUS_OK) goto done;
-    if (o->config.causal) { /* nothing is rendered of the time before the choices; the end is open */
-        plan.start_s = player_time_s(player, run->until_s);
-        plan.end_s   = INFINITY;
-    }
-
+    open_span(&plan, run, player);
     run_folder(out, o, plan.host);
     const DisOf dis = {.config = &o->config, .bands = run->bands, .version = run->first.version,
                        .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
@@ -325,7 +360,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .note = run->note, .notes = run->view.notes,
                                   .clock = run->clock, .save_count = o->save_count, .save = o->save,
                                   .several = o->host_count > 1, .isa = o->isa, .woods = woods.on ? &woods.config : NULL};
-    const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
+    const FrameGrid     grid = grid_of(&plan);
     status = session_open(&session, &shared, &plan, player, out);
     if (status != STATUS_OK) goto done;
     status = run->frames(run, session, player, &plan, &grid);
@@ -338,7 +373,7 @@ Status run_host(Run *run, const DisEntityId *host)
         run->live->files_failed   = (uint64_t)result.files_failed;
         run->live->files_left_out = (uint64_t)result.files_left_out;
     }
-    if (result.frames > 0 || run->live || run->stopped) {
+    if (result.frames > 0 || (result.begun && (run->live || run->stopped))) {
         const char  *state   = status != STATUS_OK ? "failed" : run->stopped ? "stopped" : "complete";
         const Status written = conclude(run, out, host_text, &choices, &result,
                                         o->config.causal ? player_counters(player) : &run->survey.counters, &woods, state);

@@ -220,7 +220,8 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     f->times.render_s   = posed_s;
     f->times.rendered_s = f->provenance.rendered_s;
     *shown = true;
-    return save_frame(s, f, &eye);
+    status = session_begin_files(s);
+    return status == STATUS_OK ? save_frame(s, f, &eye) : status;
 }
 
 /* ---- the loop ------------------------------------------------------------------------------- */
@@ -330,6 +331,7 @@ static Status open_session(Session *s)
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
                     const char *folder)
 {
+    char     earlier[frame_path_size];
     Session *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
     s->shared = shared;
@@ -339,6 +341,7 @@ Status session_open(Session **out, const SessionShared *shared, const HostPlan *
     Status status = STATUS_OK;
     if (snprintf(s->out, sizeof s->out, "%s", folder) >= (int)sizeof s->out) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = open_session(s);
+    if (status == STATUS_OK && !frame_files_earlier(earlier, s->out)) status = session_begin_files(s);
     s->opened = status == STATUS_OK;
     if (s->opened) *out = s;
     else session_close(s, NULL);

@@ -47,6 +47,7 @@ extern const char *const session_stage_name[session_stages];
 
 /* Lists hold the first session_frames_kept frames; a live node may render more. */
 typedef struct SessionResult {
+    bool    begun;                    /* it has files: what an earlier run left is gone */
     int     frames;
     int     listed;
     int     buried;                   /* frames with the sensor below the ground */
@@ -69,7 +70,8 @@ typedef struct SessionResult {
 
 typedef struct Session Session;
 
-/* Prepares the folder `out` (frames, profiles, truth.jsonl). The player and shared must outlive the session. */
+/* Its files are made at once where `out` has no products of an earlier run; those stay until the first frame takes their
+ * place. The player and shared must outlive the session. */
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
                     const char *folder);
 /* Processes everything up to t_s, then renders the frame. t_s must not decrease. shown: false when the host is

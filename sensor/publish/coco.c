@@ -10,6 +10,8 @@
 
 struct Coco {
     CocoFile    file;
+    bool        begun;      /* the file is open */
+    char        folder[coco_path_size];
     const char *ending;
     CocoLimits  limits;
     char        config_sha256[80];
@@ -29,9 +31,15 @@ Status coco_open(Coco **out, const char *folder, const char *ending, CocoLimits 
     c->limits = limits;
     c->seed   = seed;
     snprintf(c->config_sha256, sizeof c->config_sha256, "%s", config_sha256);
-    const Status status = coco_file_open(&c->file, folder);
-    if (status == STATUS_OK) *out = c;
-    else free(c);
+    snprintf(c->folder, sizeof c->folder, "%s", folder);
+    *out = c;
+    return STATUS_OK;
+}
+
+Status coco_begin(Coco *c)
+{
+    const Status status = coco_file_open(&c->file, c->folder);
+    c->begun            = status == STATUS_OK;
     return status;
 }
 
@@ -167,7 +175,8 @@ Status coco_close(Coco *c)
     json_t *info = json_pack("{s:s,s:s,s:s,s:I,s:i,s:f,s:f}", "description", "pitviper replay", "version", PITVIPER_VERSION,
                              "config_sha256", c->config_sha256, "seed", (json_int_t)c->seed, "min_pixels",
                              c->limits.min_pixels, "min_visible", c->limits.min_visible, "min_snr", c->limits.min_snr);
-    const Status status = coco_file_close(&c->file, info, true);
+    const Status status = c->begun ? coco_file_close(&c->file, info, true) : STATUS_OK;
+    if (!c->begun) json_decref(info);
     free(c->extent);
     free(c->text);
     free(c);

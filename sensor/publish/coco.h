@@ -34,6 +34,8 @@ typedef struct CocoLimits {
 /* ending: of the images named, "png" or "exr". */
 Status coco_open(Coco **out, const char *folder, const char *ending, CocoLimits limits, const char *config_sha256,
                  long long seed);
+/* Opens FOLDER/coco.json, before the first frame. */
+Status coco_begin(Coco *coco);
 /* entity: truth plane of the frame, [height][width], snapshot index + 1. STATUS_IO, logged. */
 Status coco_frame(Coco *coco, const FrameRecord *record, const uint32_t *entity);
 /* Joins the parts and renames the file; after a failure, or when this one fails (STATUS_IO, logged), there is none.

@@ -1,5 +1,6 @@
 /* sensor/publish/coco_merge.c: joins the coco.json of a sweep's variants, with new ids. */
 #include "sensor/publish/coco_merge.h"
+#include "pitviper_output.h"
 
 #include "sensor/publish/coco_file.h"
 #include "sensor/publish/json_read.h"
@@ -110,7 +111,7 @@ Status coco_merge_close(CocoMerge *m, bool whole)
     snprintf(path, sizeof path, "%s/truth.jsonl", m->folder); /* next to it: coco.json is that run's own */
     if ((!m->open || !whole || status != STATUS_OK) && access(path, F_OK) != 0) {
         snprintf(path, sizeof path, "%s/coco.json", m->folder);
-        unlink(path);
+        output_remove(path);
     }
     free(m);
     return status;

@@ -1,5 +1,6 @@
 /* sensor/publish/frame_files.c: the files of one frame, one task per file. */
 #include "sensor/publish/frame_files.h"
+#include "pitviper_output.h"
 
 #include "sensor/settings/plane_choice.h"
 #include "sensor/publish/emissivity.h"
@@ -220,9 +221,9 @@ static Status write_profile(const FrameFiles *frame, int band)
 {
     char path[frame_path_size];
     if (!frame_path(path, frame, "profiles", band_name((Band)band), "csv")) return STATUS_BAD_VALUE;
-    FILE *file = fopen(path, "w");
+    FILE *file = output_file(path, 0);
     if (!file) {
-        log_error("replay: cannot write %s: %s", path, strerror(errno));
+        log_error("replay: cannot write %s: %s", path, output_reason(errno));
         return STATUS_IO;
     }
     fprintf(file, "# range profile, unit relative, model pseudo-radar; a bin is %.9g m, its middle is given\n"

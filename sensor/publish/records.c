@@ -1,5 +1,6 @@
 /* sensor/publish/records.c: truth.jsonl and run.json, line by line. */
 #include "sensor/publish/records.h"
+#include "pitviper_output.h"
 
 #include "sensor/publish/json_write.h"
 #include "sensor/publish/radar_record.h"
@@ -460,7 +461,6 @@ static json_t *woods_json(const WoodsRecord *r)
 Status record_write_run(const char *path, const RunRecord *r)
 {
     json_t *run = json_object(), *timings = json_object();
-    char    part[4096];
 
     json_object_set_new(run, "pitviper", json_string(PITVIPER_VERSION));
     json_object_set_new(run, "status", json_string(r->status));
@@ -495,12 +495,11 @@ Status record_write_run(const char *path, const RunRecord *r)
     json_object_set_new(run, "timings_ms", timings);
     if (r->latency) json_object_set_new(run, "latency_ms", latency_json(r->latency));
 
-    snprintf(part, sizeof part, "%s.part", path);
-    const bool ok = json_dump_file(run, part, JSON_INDENT(1)) == 0 && rename(part, path) == 0;
+    FILE      *file = output_begin(path, 0);
+    const bool put = file && json_dumpf(run, file, JSON_INDENT(1)) == 0;
     json_decref(run);
-    if (!ok) {
-        log_error("records: cannot write %s: %s", path, strerror(errno));
-        unlink(part);
-    }
-    return ok ? STATUS_OK : STATUS_IO;
+    if (put && output_end(file, path)) return STATUS_OK;
+    if (file && !put) output_abandon(file, path);
+    log_error("records: cannot write %s: %s", path, output_reason(errno));
+    return STATUS_IO;
 }

@@ -1,5 +1,6 @@
 /* sensor/radar/signature_library.c: see signature_library.h. */
 #include "sensor/radar/signature_library.h"
+#include "pitviper_output.h"
 
 #include "pitviper_file.h"
 
@@ -243,12 +244,12 @@ static bool write_whole(const char *path, const uint8_t *octets, size_t count)
 {
     char part[4200];
     snprintf(part, sizeof part, "%s.%ld.part", path, (long)getpid());
-    FILE *file = fopen(part, "wbe");
+    FILE *file = output_file(part, 0);
     if (!file) return false;
     const bool whole = fwrite(octets, 1, count, file) == count;
-    if (fclose(file) == 0 && whole && rename(part, path) == 0) return true;
+    if (fclose(file) == 0 && whole && output_rename(part, path) == 0) return true;
     const int why = errno;
-    unlink(part);
+    output_remove(part);
     errno = why;
     return false;
 }
@@ -272,7 +273,7 @@ static void keep(void *user, const Signature *signature, const SignatureKey *key
     pthread_mutex_unlock(&l->lock);
     if (!written && first)
         log_warn("radar: cannot write %s: %s; signatures are made, and not kept in radar.library", path,
-                 made ? strerror(why) : "out of memory");
+                 made ? output_reason(why) : "out of memory");
 }
 
 bool signature_library_has(SignatureLibrary *l, const SignatureKey *key)

@@ -1,5 +1,6 @@
 /* sensor/settings/config.c: the table of all settings, their defaults, and the checks that involve several of them. */
 #include "sensor/settings/config.h"
+#include "dis/recorder.h"
 
 #include "pitviper_channels.h"
 #include "pitviper_file.h"
@@ -639,6 +640,7 @@ Status config_check(const Config *config)
         log_error("config: exercise.from_s: %s is after exercise.to_s: %s", config->exercise.from, config->exercise.to);
         return STATUS_BAD_VALUE;
     }
+    if (*config->record.path && !dis_recorder_name("config: record.path", config->record.path)) return STATUS_BAD_VALUE;
     const Status status = video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,
                               config->sensor.bands);
     const bool sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config);

@@ -6,6 +6,7 @@
  * frame was published. Both processes end by themselves, and are killed if they do not. On quick rounds, which run
  * beside other load, times and losses are printed and not checked. */
 #include "sensor/bench/sensor/network.h"
+#include "pitviper_output.h"
 
 #include "sensor/bench/sensor/network_node.h"
 
@@ -78,7 +79,7 @@ static Status run_both(Live *l)
                                 NULL};
     const char *const exercise[] = {"pitviper", "exercise", quick ? "demo" : "crowd", "--send", to, NULL};
     if (pipe2(ears, O_CLOEXEC) != 0) return STATUS_IO;
-    const int     out = open(l->said, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    const int     out = output_open(l->said, 0);
     const double  begun_s = wall_clock_s();
     struct rusage usage = {0}, unused;
     pid_t         listener = out < 0 ? -1 : node_start(node, ears[1], ears[1]), sender = -1;

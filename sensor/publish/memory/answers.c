@@ -1,6 +1,7 @@
 /* sensor/publish/memory/answers.c: writes answers.jsonl line by line. */
 #include "sensor/publish/memory/answers.h"
 
+#include "pitviper_output.h"
 #include "render/scene/view.h"
 #include "sensor/publish/json_write.h"
 
@@ -20,12 +21,13 @@ Status answers_open(Answers **out, const char *folder)
     if (!a) return STATUS_NO_MEMORY;
     const bool fits = snprintf(path, sizeof path, "%s/answers.jsonl", folder) < (int)sizeof path;
     if (!fits) errno = ENAMETOOLONG;
-    a->file = fits ? fopen(path, "w") : NULL;
+    a->file = fits ? output_file(path, 0) : NULL;
     if (a->file) {
         *out = a;
         return STATUS_OK;
     }
-    log_error("detections: cannot write %s/answers.jsonl: %s; choose another place with --out", folder, strerror(errno));
+    log_error("detections: cannot write %s/answers.jsonl: %s; choose another place with --out", folder,
+              output_reason(errno));
     free(a);
     return STATUS_IO;
 }

@@ -79,9 +79,10 @@ static bool receive(Detections *d)
     pthread_mutex_lock(&d->lock);
     if (reason == DETECTIONS_GOOD) reason = keep(&frame, d, &one);
     d->counters.datagrams[reason]++;
+    Answers *answers = d->answers;
     pthread_mutex_unlock(&d->lock);
-    if (!d->answers || (reason != DETECTIONS_GOOD && reason != DETECTIONS_LATE)) return true;
-    answers_write(d->answers, &one, &(AnsweredFrame){.time_s = frame.time_s, .late = reason == DETECTIONS_LATE,
+    if (!answers || (reason != DETECTIONS_GOOD && reason != DETECTIONS_LATE)) return true;
+    answers_write(answers, &one, &(AnsweredFrame){.time_s = frame.time_s, .late = reason == DETECTIONS_LATE,
                                                      .latency_ms = frame.rendered_s > 0 ? 1e3 * (now_s - frame.rendered_s) : NAN},
                   &written);
     pthread_mutex_lock(&d->lock);
@@ -141,7 +142,6 @@ Status detections_open(Detections **out, const DetectionsOf *of)
                       .bands = of->bands};
     pthread_mutex_init(&d->lock, NULL);
     Status status = open_socket(d);
-    if (status == STATUS_OK && of->folder) status = answers_open(&d->answers, of->folder);
     if (status == STATUS_OK) {
         sigset_t all, before; /* signals are for the main thread */
         sigfillset(&all);
@@ -153,6 +153,17 @@ Status detections_open(Detections **out, const DetectionsOf *of)
     if (status == STATUS_OK) *out = d;
     else detections_close(d, NULL);
     return status;
+}
+
+Status detections_record(Detections *d, const char *folder)
+{
+    Answers     *answers = NULL;
+    const Status status  = answers_open(&answers, folder);
+    if (status != STATUS_OK) return status;
+    pthread_mutex_lock(&d->lock);
+    d->answers = answers;
+    pthread_mutex_unlock(&d->lock);
+    return STATUS_OK;
 }
 
 static void report(const AnswerCounters *c)
@@ -220,6 +231,7 @@ void detections_counters(Detections *d, AnswerCounters *out)
 typedef struct DetectionsConsumer {
     Consumer    consumer;
     Detections *detections;
+    const char *folder;
 } DetectionsConsumer;
 
 static Status put(Consumer *consumer, Frame *frame)
@@ -229,17 +241,23 @@ static Status put(Consumer *consumer, Frame *frame)
     return STATUS_OK;
 }
 
+static Status begin(Consumer *consumer)
+{
+    const DetectionsConsumer *c = (DetectionsConsumer *)consumer;
+    return detections_record(c->detections, c->folder);
+}
+
 static Status close_consumer(Consumer *consumer)
 {
     free(consumer);
     return STATUS_OK;
 }
 
-Status consume_detections(Consumer **out, Detections *detections)
+Status consume_detections(Consumer **out, Detections *detections, const char *folder)
 {
     DetectionsConsumer *c = malloc(sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
-    *c   = (DetectionsConsumer){{.put = put, .close = close_consumer}, detections};
+    *c   = (DetectionsConsumer){{.begin = begin, .put = put, .close = close_consumer}, detections, folder};
     *out = &c->consumer;
     return STATUS_OK;
 }

@@ -29,11 +29,12 @@ typedef struct DetectionsOf {
     int         port;
     unsigned    bands;         /* bit set of those of the run */
     int         width, height; /* of the images */
-    const char *folder;        /* of answers.jsonl; NULL: no such file */
 } DetectionsOf;
 
-/* STATUS_IO, logged: the port is in use, or the file cannot be written. */
+/* STATUS_IO, logged: the port is in use. */
 Status detections_open(Detections **out, const DetectionsOf *of);
+/* From now on answers are written to answers.jsonl of a folder. Once. STATUS_IO, logged: the file cannot be written. */
+Status detections_record(Detections *detections, const char *folder);
 /* NULL is valid. Logs the counts. counters: receives them; may be NULL, and is set to 0 without detections. */
 void   detections_close(Detections *detections, AnswerCounters *counters);
 /* A frame that detections may refer to from now on. rendered_s: wall_clock_s; 0: not known. */
@@ -43,8 +44,8 @@ bool   detections_latest(Detections *detections, Band band, DetectionSet *out);
 /* So far. */
 void   detections_counters(Detections *detections, AnswerCounters *out);
 
-/* Tells them of every frame; the detections stay the caller's and outlive it. */
-Status consume_detections(Consumer **out, Detections *detections);
+/* Tells them of every frame, and has them recorded; detections and folder stay the caller's and outlive it. */
+Status consume_detections(Consumer **out, Detections *detections, const char *folder);
 
 /* One datagram of version 1 or 2, but for the frame it refers to. out: valid if DETECTIONS_GOOD, and of version 2. */
 DetectionsReason detections_parse(PitviperDetections *out, const uint8_t *bytes, size_t size, unsigned bands, int width,
