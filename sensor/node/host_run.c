@@ -165,7 +165,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .effects = result->effects, .render = result->counters, .stage_count = session_stages,
               .stage = session_stage_name,
               .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL,
-              .woods = woods->on ? &plants : NULL};
+              .woods = woods->on ? &plants : NULL, .materials = &run->world.materials};
     const Status status = record_write_run(path, &record);
     free(hash);
     return status;

@@ -16,6 +16,7 @@
 #include "sensor/truth/radar_error.h"
 #include "terrain/earth/sun.h"
 #include "terrain/woods/woods.h"
+#include "render/materials/materials.h"
 
 #include <stdio.h>
 
@@ -94,6 +95,7 @@ typedef struct RunRecord {
     double (*stage_ms)[3];            /* median, p95, max */
     const LatencySummary *latency;    /* NULL: no ledger was kept */
     const WoodsRecord *woods;         /* NULL: no plants */
+    const Materials   *materials;     /* of the material planes; NULL: not given */
 } RunRecord;
 
 /* The complete file, atomically. */
