@@ -16,6 +16,9 @@ typedef struct DetectorConfig {
     double percentile_low, percentile_high; /* 0 .. 1 */
     double margin;          /* automatic: added on both sides, in spans */
     double min_span;        /* automatic: never less, in the plane's unit; from 0 up where it would reach below */
+    double highlight;       /* automatic: white is at most the value at 90 % plus this many times the distance from that
+                             * at 10 %, so that fires on a few per cent of the pixels take no grey levels from the rest;
+                             * 0: percentile_high alone */
     double level_low, level_high;           /* manual, in the plane's unit */
     bool   display_gamma;   /* sRGB transfer curve after gain and level: visible light on a screen */
 } DetectorConfig;
@@ -35,8 +38,10 @@ typedef struct DetectorLevel {
  * rounding, lands in the middle of the scale. Planes without a finite value: 0 .. 1. */
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count);
 
-/* An automatic level with a time constant: the state of the last frame approaches `now` by 1 - exp(-step_s / time_s).
- * time_s 0: immediately. */
+/* An automatic level with a time constant: the state of the last frame approaches `now`. Its distance, the larger of
+ * low's and high's in spans of `now`, is cut to 2 at once, falls to 0.03 with a tenth of time_s, and from there with time_s:
+ * a change of scene settles to 0.03 of the span within 0.42 time_s, independently of the frame rate, and what flickers
+ * by less is averaged. time_s 0: immediately. */
 void detector_level_follow(DetectorLevel *state, DetectorLevel now, double step_s, double time_s);
 
 #endif
