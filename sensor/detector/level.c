@@ -152,21 +152,23 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
     return level;
 }
 
-void detector_level_follow(DetectorLevel *state, DetectorLevel now, double step_s, double time_s)
+void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now, double step_s, double time_s)
 {
-    static const double most = 2, near = 0.03, faster = 0.1; /* spans; spans; of time_s */
+    static const double lost = 1, most = 2, near = 0.03, faster = 0.1; /* spans; of time_s */
     const double span = now.high - now.low;
     double left = fmax(fabs(state->low - now.low), fabs(state->high - now.high)) / span, keep = 1;
     if (!(time_s > 0) || !isfinite(left)) {
         *state = now;
+        *quick = false;
         return;
     }
     step_s = fmax(0, step_s);
+    *quick = left > near && (*quick || left > lost);
     if (left > most && step_s > 0) {
         keep = most / left;
         left = most;
     }
-    if (left > near) { /* as long as it takes, or the whole step */
+    if (*quick) { /* as long as it takes, or the whole step */
         const double quick_s = fmin(step_s, faster * time_s * log(left / near));
         keep *= exp(-quick_s / (faster * time_s));
         step_s -= quick_s;

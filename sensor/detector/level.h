@@ -38,10 +38,11 @@ typedef struct DetectorLevel {
  * rounding, lands in the middle of the scale. Planes without a finite value: 0 .. 1. */
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count);
 
-/* An automatic level with a time constant: the state of the last frame approaches `now`. Its distance, the larger of
- * low's and high's in spans of `now`, is cut to 2 at once, falls to 0.03 with a tenth of time_s, and from there with time_s:
- * a change of scene settles to 0.03 of the span within 0.42 time_s, independently of the frame rate, and what flickers
- * by less is averaged. time_s 0: immediately. */
-void detector_level_follow(DetectorLevel *state, DetectorLevel now, double step_s, double time_s);
+/* An automatic level with a time constant: the state of the last frame approaches `now` by 1 - exp(-step_s / time_s). Where
+ * it is further away than the span of `now` (low or high, whichever is further), so that the picture would be black or
+ * white, it is put within 2 spans at once and follows with a tenth of time_s until it is within 0.03 of a span: within
+ * 0.42 time_s. Smaller steps settle to 5 % in 3 time_s. Both are the same at any frame rate. time_s 0: immediately.
+ * quick: state too, false at first: it is catching up. */
+void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now, double step_s, double time_s);
 
 #endif
