@@ -154,7 +154,8 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
 
 void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now, double step_s, double time_s)
 {
-    static const double lost = 1, most = 2, near = 0.03, faster = 0.1; /* spans; of time_s */
+    /* spans; of time_s. 1.8 spans are what comes when sky leaves a picture (tests/system/test_level.sh): averaged */
+    static const double lost = 2, near = 0.03, faster = 0.1;
     const double span = now.high - now.low;
     double left = fmax(fabs(state->low - now.low), fabs(state->high - now.high)) / span, keep = 1;
     if (!(time_s > 0) || !isfinite(left)) {
@@ -164,9 +165,9 @@ void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now,
     }
     step_s = fmax(0, step_s);
     *quick = left > near && (*quick || left > lost);
-    if (left > most && step_s > 0) {
-        keep = most / left;
-        left = most;
+    if (left > lost && step_s > 0) {
+        keep = lost / left;
+        left = lost;
     }
     if (*quick) { /* as long as it takes, or the whole step */
         const double quick_s = fmin(step_s, faster * time_s * log(left / near));

@@ -39,9 +39,9 @@ typedef struct DetectorLevel {
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count);
 
 /* An automatic level with a time constant: the state of the last frame approaches `now` by 1 - exp(-step_s / time_s). Where
- * it is further away than the span of `now` (low or high, whichever is further), so that the picture would be black or
- * white, it is put within 2 spans at once and follows with a tenth of time_s until it is within 0.03 of a span: within
- * 0.42 time_s. Smaller steps settle to 5 % in 3 time_s. Both are the same at any frame rate. time_s 0: immediately.
+ * it is further away than two spans of `now` (low or high, whichever is further), so that the picture would be nearly black
+ * or white, it is put within two spans at once and follows with a tenth of time_s until it is within 0.03 of a span:
+ * within 0.42 time_s. Smaller steps settle to 5 % in 3 time_s. Both are the same at any frame rate. time_s 0: immediately.
  * quick: state too, false at first: it is catching up. */
 void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now, double step_s, double time_s);
 
