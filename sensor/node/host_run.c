@@ -181,7 +181,8 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL,
               .woods = woods->on ? &plants : NULL,
               .memory = *config->publish.memory ? ring : NULL, .detections_port = config->publish.detections_port,
-              .answers = config->publish.detections_port ? &result->answers : NULL};
+              .answers = config->publish.detections_port ? &result->answers : NULL,
+              .materials = &run->world.materials};
     const Status status = record_write_run(path, &record);
     free(hash);
     return status;

@@ -29,9 +29,14 @@ typedef struct Hearing {
     double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
 } Hearing;
 
+/* A munition unheard for this long is no host to go to. */
+static const double munition_silent_s = 4;
+
 /* Received ids of one kind: a ring of the latest. */
 typedef struct Munitions {
     DisEntityId id[munitions_kept];
+    double      heard_s[munitions_kept]; /* of the latest report in flight */
+    bool        spent[munitions_kept];   /* it detonated */
     uint64_t    count;
 } Munitions;
 
@@ -57,6 +62,7 @@ struct Player {
     int            ahead;           /* events that are read before some are fed */
     Status         status;
     double         fed_s;           /* counts_s of the newest event fed */
+    double         now_s;           /* until which it was fed */
     DisCounters    counters;
     DisPdu         pdu;                          /* the PDU being fed */
     Aimed          aimed[shots_kept];            /* rings: the latest */
@@ -75,6 +81,7 @@ Status player_create(Player **out, int exercise, bool causal)
     player->ahead    = read_ahead;
     player->read_s   = -INFINITY;
     player->fed_s    = -INFINITY;
+    player->now_s    = -INFINITY;
     const Status status = exercise_clock_create(&player->heard.clock);
     if (status == STATUS_OK) *out = player;
     else player_destroy(player);
@@ -232,11 +239,12 @@ static void note_fire(Player *player, const DisFire *fire)
     player->aimed[player->shots++ % shots_kept] = (Aimed){fire->munition, fire->target};
 }
 
-static bool munition_known(const Munitions *m, DisEntityId id)
+/* Its place in the ring; -1: none. */
+static int munition_index(const Munitions *m, DisEntityId id)
 {
-    for (uint64_t i = 0; i < m->count && i < munitions_kept; i++)
-        if (dis_entity_id_compare(m->id[i], id) == 0) return true;
-    return false;
+    for (int i = 0; (uint64_t)i < m->count && i < munitions_kept; i++)
+        if (dis_entity_id_compare(m->id[i], id) == 0) return i;
+    return -1;
 }
 
 static bool moves(const float velocity_mps[3])
@@ -247,13 +255,26 @@ static bool moves(const float velocity_mps[3])
 }
 
 /* Guided ones from their first report on; others from the first in which they move. */
-static void note_munition(Player *player, const DisEntityState *state)
+static void note_munition(Player *player, const DisEntityState *state, double t_s)
 {
     const bool guided = state->type.category == dis_munition_guided;
     if (state->type.kind != dis_kind_munition || state->type.category == dis_munition_fixed) return;
     if (!guided && !moves(state->velocity_mps)) return;
     Munitions *m = guided ? &player->guided : &player->unguided;
-    if (!munition_known(m, state->id)) m->id[m->count++ % munitions_kept] = state->id;
+    const int known = munition_index(m, state->id), i = known >= 0 ? known : (int)(m->count++ % munitions_kept);
+    /* heard again after a silence, the id is another munition's */
+    if (known < 0 || t_s - m->heard_s[i] > munition_silent_s) m->spent[i] = false;
+    m->id[i]      = state->id;
+    m->heard_s[i] = t_s;
+}
+
+static void note_detonation(Player *player, const DisDetonation *burst)
+{
+    Munitions *const kind[] = {&player->guided, &player->unguided};
+    for (int k = 0; k < 2 && !dis_entity_id_is_none(burst->munition); k++) {
+        const int i = munition_index(kind[k], burst->munition);
+        if (i >= 0) kind[k]->spent[i] = true;
+    }
 }
 
 /* Decoded here, once: until then a PDU is stored as octets. */
@@ -271,7 +292,8 @@ static void feed_event(Player *player, EntityTable *table, const Event *event)
     }
     entity_table_pdu(table, pdu, event->t_s, &player->counters);
     if (pdu->type == dis_pdu_fire) note_fire(player, &pdu->fire);
-    if (pdu->type == dis_pdu_entity_state) note_munition(player, &pdu->entity_state);
+    if (pdu->type == dis_pdu_entity_state) note_munition(player, &pdu->entity_state, event->counts_s);
+    if (pdu->type == dis_pdu_detonation) note_detonation(player, &pdu->detonation);
 }
 
 static void feed_until(Player *player, EntityTable *table, double t_s)
@@ -280,6 +302,7 @@ static void feed_until(Player *player, EntityTable *table, double t_s)
     if (!player->sorted && !player->causal && left > 1)
         qsort(player->event + player->next, left, sizeof *player->event, compare_events);
     player->sorted = true; /* arrivals are ordered already */
+    player->now_s  = fmax(player->now_s, t_s);
     for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++) {
         feed_event(player, table, &player->event[player->next]);
         player->fed_s = player->event[player->next].counts_s;
@@ -338,12 +361,20 @@ static bool is_there(const EntityTable *table, DisEntityId id)
     return entity_table_alive(table, entity_table_find(table, id));
 }
 
-static bool first_there(DisEntityId *id, const Munitions *m, const EntityTable *table)
+bool player_spent(const Player *player, DisEntityId munition)
+{
+    const int guided = munition_index(&player->guided, munition), other = munition_index(&player->unguided, munition);
+    return (guided >= 0 && player->guided.spent[guided]) || (other >= 0 && player->unguided.spent[other]);
+}
+
+/* The one received first of those in the table that fly still. */
+static bool first_there(DisEntityId *id, const Munitions *m, const EntityTable *table, double now_s)
 {
     const uint64_t kept = m->count < munitions_kept ? m->count : munitions_kept;
     for (uint64_t i = m->count - kept; i < m->count; i++) {
-        if (!is_there(table, m->id[i % munitions_kept])) continue;
-        *id = m->id[i % munitions_kept];
+        const uint64_t k = i % munitions_kept;
+        if (m->spent[k] || now_s - m->heard_s[k] > munition_silent_s || !is_there(table, m->id[k])) continue;
+        *id = m->id[k];
         return true;
     }
     return false;
@@ -356,9 +387,12 @@ bool player_munition(DisEntityId *munition, bool *guided, const Player *player, 
                        entity_table_type(&type, table, entity_table_find(table, *munition));
     /* by its type, not by whether it is among the latest: a salvo must not move the sensor to another host */
     *guided = there && type.kind == dis_kind_munition && type.category == dis_munition_guided;
-    if (*guided) return true;
-    if (first_there(munition, &player->guided, table)) return *guided = true;
-    return there || first_there(munition, &player->unguided, table);
+    const bool spent = there && player_spent(player, *munition);
+    if (*guided && !spent) return true;
+    if (first_there(munition, &player->guided, table, player->now_s)) return *guided = true;
+    if (there && (!spent || player->guided.count > 0)) return true;
+    if (player->guided.count > 0) return false; /* its own burst, not a shell's flight, ends what a guided one shows */
+    return first_there(munition, &player->unguided, table, player->now_s) || there;
 }
 
 static uint64_t beyond(uint64_t count, uint64_t kept) { return count > kept ? count - kept : 0; }

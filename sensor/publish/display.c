@@ -84,6 +84,7 @@ static DetectorConfig detector_of(const DisplaysOf *of, int band)
         preset_band(&low_m, &high_m, (Band)band, OPTICAL_PAN, -1);
         const double at_300_k = planck_band(low_m, high_m, 300, &slope);
         d.noise_sigma = c->detector.noise * slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
+        d.highlight   = 1.5; /* with fires on 5 % of the pixels normal noise keeps 0.56 of its contrast */
         d.min_span    = 2 * slope; /* never stretch less than 2 K over the display */
         d.level_low   = planck_band(low_m, high_m, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
         d.level_high  = planck_band(low_m, high_m, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);
@@ -155,7 +156,7 @@ static void detect(FrameDisplay *out, float *const memory[3], const DisplaysOf *
 static DetectorLevel follow_level(FrameLevel *state, DetectorLevel now, double time_s, double agc_s)
 {
     if (!state->known) state->level = now;
-    detector_level_follow(&state->level, now, time_s - state->time_s, agc_s);
+    detector_level_follow(&state->level, &state->quick, now, time_s - state->time_s, agc_s);
     state->known  = true;
     state->time_s = time_s;
     return state->level;

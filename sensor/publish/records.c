@@ -484,6 +484,12 @@ Status record_write_run(const char *path, const RunRecord *r)
     for (int i = 0; i < r->listed; i++) json_array_append_new(number, json_integer(r->frame_number[i]));
     json_object_set_new(run, "frame_number", number);
     if (r->woods) json_object_set_new(run, "woods", woods_json(r->woods));
+    if (r->materials && r->materials->count > 1) {
+        json_t *names = json_array();
+        for (int i = 1; i < r->materials->count; i++)
+            json_array_append_new(names, json_string(r->materials->material[i].name));
+        json_object_set_new(run, "materials", names);
+    }
     json_object_set_new(run, "counters", counters_json(r));
     for (int i = 0; i < r->stage_count; i++) {
         json_t *stage = json_object();

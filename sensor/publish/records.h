@@ -17,6 +17,7 @@
 #include "sensor/truth/radar_error.h"
 #include "terrain/earth/sun.h"
 #include "terrain/woods/woods.h"
+#include "render/materials/materials.h"
 
 #include <stdio.h>
 
@@ -98,6 +99,7 @@ typedef struct RunRecord {
     int         detections_port;      /* 0: none */
     const AnswerCounters *answers;    /* received there; NULL: none */
     const WoodsRecord *woods;         /* NULL: no plants */
+    const Materials   *materials;     /* of the material planes; NULL: not given */
 } RunRecord;
 
 /* The complete file, atomically. */

@@ -46,6 +46,8 @@ static const ReferenceField fields[] = {
     {"frame_sha256", "list of strings", "", "as frame_number", "with publish.truth false", "SHA-256 of all planes before they are encoded"},
     {"frame_number", "list of integers", "", "from 0", "",
      "numbers of the frames in frame_sha256; of a very long run only the first"},
+    {"materials", "list of strings", "", "", "", "names of the materials: the k-th, from 1, is value k of the material "
+     "planes"},
     {"woods", "object", "", "", "with terrain.woods off", "plants that stand on the ground"},
     {"woods.plants", "integer", "", "", "", "trees, bushes and hedges"},
     {"woods.kinds", "object", "", "", "", "of these, by kind"},

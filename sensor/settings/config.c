@@ -92,7 +92,8 @@ static const Setting keys[] = {
     {"detector.optical_high_w_m2_sr", SETTING_DOUBLE, AT(detector.optical_high_w_m2_sr), 1e-3, 1e4, NULL, "W/(m2 sr)",
      "radiance shown as white; manual level"},
     {"detector.agc_s", SETTING_DOUBLE, AT(detector.agc_s), 0, 1000, NULL, "s",
-     "time constant of the automatic level, from the first frame rendered; 0: gain and level set per frame"},
+     "time constant of the automatic level, from the first frame rendered; a tenth of it applies where the image "
+     "would be nearly black or white; 0: gain and level set per frame"},
     {"detector.noise", SETTING_DOUBLE, AT(detector.noise), 0, 100, NULL, "", "factor on all noise; 0: none"},
     {"detector.f_number", SETTING_DOUBLE, AT(detector.f_number), 0.5, 100, NULL, "", "overrides the preset"},
     {"detector.obscuration", SETTING_DOUBLE, AT(detector.obscuration), 0, 0.95, NULL, "",
