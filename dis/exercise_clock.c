@@ -406,7 +406,8 @@ static ExerciseInstant judge(ExerciseClock *clock, Sender *sender, Moment now, i
         by_arrival = sender->standing == SENDER_NEW && !overtaken && !is_utc(sender, now) && is_undecided(sender, now);
         vote(clock, sender, now, t_s, ruler_s);
     }
-    ExerciseInstant at = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = now.stamp, .segment = sender->segment};
+    ExerciseInstant at = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = now.stamp, .segment = sender->segment,
+                          .sender = (uint16_t)(sender - clock->slot)};
     if (leaves && sender->next_segment) at.segment = sender->next_segment;
     if (sender->standing == SENDER_INCONSISTENT) {
         note_inconsistent(clock, sender, now);
@@ -435,7 +436,7 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
     }
     const double ruler_s = clock->start_s + (capture_s - clock->start_capture_s);
     const Moment now = {timestamp, capture_s};
-    const ExerciseInstant arrival = {.t_s = ruler_s, .ruler_s = ruler_s};
+    const ExerciseInstant arrival = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = timestamp};
 
     /* All bits zero: a sender that does not stamp. */
     if (timestamp == 0) {
@@ -456,7 +457,8 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
     if (entity >= 0) stands_still(clock, (uint64_t)key << 16 | (uint16_t)entity, now);
     tie_sender(clock, sender, now, ruler_s, true);
     return (ExerciseInstant){.t_s = shifted_time(clock, sender->scale, &sender->line, sender->tie.t_s), .ruler_s = ruler_s,
-                             .stamp = timestamp, .segment = sender->segment, .by_stamp = true};
+                             .stamp = timestamp, .segment = sender->segment, .by_stamp = true,
+                             .sender = (uint16_t)(sender - clock->slot)};
 }
 
 double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
@@ -488,22 +490,31 @@ static int by_number(const void *a, const void *b)
 
 void exercise_clock_whole(ExerciseClock *clock)
 {
+    clock->doubts.by_arrival = 0;
+    for (int i = 0; i < clock->doubts.count; i++) clock->doubts.sender[i].by_arrival = 0;
     for (int i = 0; i < slot_count; i++) {
         const Sender *sender = &clock->slot[i];
         const bool    known = sender->trend.points > 2 || fabs(sender->line.mean_y_s) <= gain_s;
+        if (sender->used && sender->doubt >= 0) clock->doubts.sender[sender->doubt].pdus = sender->pdus;
         if (sender->used && (sender->standing == SENDER_PROVEN || (sender->standing == SENDER_NEW && known)))
             keep_segment(clock, sender);
     }
     if (clock->valid_count > 1) qsort(clock->valid, (size_t)clock->valid_count, sizeof *clock->valid, by_number);
 }
 
-double exercise_clock_whole_time(const ExerciseClock *clock, const ExerciseInstant *at)
+void exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at)
 {
-    const Segment key = {.number = at->segment};
-    if (at->segment == 0 || clock->valid_count == 0) return at->t_s;
-    const Segment *s = bsearch(&key, clock->valid, (size_t)clock->valid_count, sizeof key, by_number);
-    if (!s) return at->ruler_s;
-    return shifted_time(clock, s->scale, &s->line, tied_time(&s->tie, at->stamp, at->ruler_s));
+    const Segment  key = {.number = at->segment};
+    const Segment *s = NULL;
+    if (!(fabs(at->ruler_s) < INFINITY) || at->stamp == 0) return;
+    if (at->segment && clock->valid_count)
+        s = bsearch(&key, clock->valid, (size_t)clock->valid_count, sizeof key, by_number);
+    at->by_stamp = s != NULL;
+    at->t_s      = s ? shifted_time(clock, s->scale, &s->line, tied_time(&s->tie, at->stamp, at->ruler_s)) : at->ruler_s;
+    if (s) return;
+    clock->doubts.by_arrival++;
+    const int doubted = at->segment ? clock->slot[at->sender].doubt : -1;
+    if (doubted >= 0) clock->doubts.sender[doubted].by_arrival++;
 }
 
 /* ---- reporting ------------------------------------------------------------------------------------- */

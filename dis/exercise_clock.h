@@ -44,6 +44,7 @@ static inline double exercise_clock_time(ExerciseClock *clock, uint16_t site, ui
 typedef struct ExerciseInstant {
     double   t_s, ruler_s; /* exercise time; that of the arrival */
     uint32_t stamp, segment;
+    uint16_t sender;       /* its slot */
     bool     by_stamp;     /* t_s */
 } ExerciseInstant;
 
@@ -53,9 +54,10 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
 ExerciseInstant exercise_clock_pdu_instant(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu,
                                            double capture_s);
 
-/* After the last PDU of a recording, once: what is then known of each sender counts for all its PDUs. */
-void   exercise_clock_whole(ExerciseClock *clock);
-double exercise_clock_whole_time(const ExerciseClock *clock, const ExerciseInstant *at);
+/* After the last PDU of a recording, once: what is then known of each sender counts for all its PDUs. Then the second, once
+ * for each of them: sets its time, and counts those timed by arrival anew. */
+void exercise_clock_whole(ExerciseClock *clock);
+void exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at);
 
 /* The same by the PDU itself; NaN, and the clock unmoved, for one that names no sender. */
 double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu, double capture_s);

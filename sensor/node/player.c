@@ -10,7 +10,8 @@
 enum { shots_kept = 1024, munitions_kept = 256 };
 
 typedef struct Event {
-    double         counts_s, t_s; /* time from which it counts; its own exercise time */
+    double          counts_s; /* time from which it counts */
+    ExerciseInstant instant;  /* its own exercise time */
     uint32_t       order;
     uint16_t       length;
     uint8_t        type;
@@ -32,7 +33,7 @@ typedef struct Aimed {
 } Aimed;
 
 struct Player {
-    bool           causal, sorted;
+    bool           causal, sorted, whole;
     int            exercise, count, next, capacity;
     uint32_t       order;
     Event         *event;
@@ -128,12 +129,12 @@ Status player_add(Player *player, const DisDatagram *datagram, bool keep)
             player->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
             continue;
         }
-        event.t_s = exercise_clock_pdu_time(player->clock, &header, pdu, datagram->capture_s);
-        if (isnan(event.t_s)) continue;
+        event.instant = exercise_clock_pdu_instant(player->clock, &header, pdu, datagram->capture_s);
+        if (isnan(event.instant.t_s)) continue;
         note_anomalies(player, keep);
-        if (isnan(player->tie_s)) player->tie_s = event.t_s - datagram->capture_s;
+        if (isnan(player->tie_s)) player->tie_s = event.instant.t_s - datagram->capture_s;
         player->latest_s = fmax(player->latest_s, datagram->capture_s + player->tie_s);
-        event.counts_s   = player->causal ? player->latest_s : event.t_s;
+        event.counts_s   = player->causal ? player->latest_s : event.instant.t_s;
         event.order      = player->order++;
         event.length     = header.length;
         event.type       = header.type;
@@ -199,16 +200,30 @@ static void feed_event(Player *player, EntityTable *table, const Event *event)
     DisPdu        *pdu    = &player->pdu;
     const Status   status = dis_decode(pdu, octets, event->length);
     if (status != STATUS_OK) {
-        if (isfinite(event->t_s)) dis_count_refused(&player->counters, event->type, status);
+        if (isfinite(event->instant.t_s)) dis_count_refused(&player->counters, event->type, status);
         return;
     }
-    entity_table_pdu(table, pdu, event->t_s, &player->counters);
+    if (player->causal) entity_table_arrival(table, event->counts_s, event->instant.by_stamp);
+    entity_table_pdu(table, pdu, event->instant.t_s, &player->counters);
     if (pdu->type == dis_pdu_fire) note_fire(player, &pdu->fire);
     if (pdu->type == dis_pdu_entity_state) note_munition(player, &pdu->entity_state);
 }
 
+/* All of a recording is here: its senders' clocks are known. */
+static void settle_times(Player *player)
+{
+    player->whole = true;
+    exercise_clock_whole(player->clock);
+    for (int i = 0; i < player->count; i++) {
+        exercise_clock_whole_time(player->clock, &player->event[i].instant);
+        player->event[i].counts_s = player->event[i].instant.t_s;
+    }
+    player->counters.stamps_doubted = exercise_clock_anomalies(player->clock)->by_arrival;
+}
+
 void player_feed(Player *player, EntityTable *table, double t_s)
 {
+    if (!player->causal && !player->whole) settle_times(player);
     if (!player->sorted && !player->causal && player->count > 1)
         qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
     player->sorted = true; /* arrivals are ordered already */
