@@ -43,7 +43,8 @@ typedef struct DelayTrend {
 void delay_trend_add(DelayTrend *trend, double x_s, double y_s);
 /* Slope and its standard error; false: fewer than three points, or all of one stamp. */
 bool delay_trend_slope(double *slope, double *error, const DelayTrend *trend);
-/* By how much larger than its standard error the slope of that many points must be: chance makes one in a thousand. */
+double delay_trend_scatter(const DelayTrend *trend); /* standard deviation about the line, s */
+/* By how much larger than its standard error the slope of that many points must be: chance makes one in ten thousand. */
 double delay_trend_critical(uint64_t points);
 
 #endif

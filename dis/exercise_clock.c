@@ -31,6 +31,9 @@ static const double capture_limit_s = 1e11; /* the year 5138: beyond it a double
 
 /* What stamps at another rate must have gained before they are rejected; and the drift of clocks, s a second. */
 static const double gain_s = 0.15, drift = 1e-4;
+/* Of PDUs in the order of their arrival the latest stamps are of those that were quick: that is a trend too, over as long a
+ * time as the jitter. So a trend is one where it exceeds the scatter about it by this. */
+static const double trend_over_scatter = 12;
 /* A stamp that far behind its sender's latest is of a reordered datagram, not of a counter. */
 static const double overtaken_s = 0.1;
 static const double vote_s = 2.0, longest_vote_s = 32.0; /* spans over which the rate of stamps is checked */
@@ -122,8 +125,8 @@ void exercise_clock_destroy(ExerciseClock *clock)
 
 const ExerciseClockAnomalies *exercise_clock_anomalies(const ExerciseClock *clock) { return &clock->doubts; }
 
-/* NULL when the table is full and this one is not in it. */
-static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key)
+/* NULL when the table is full and this one is not in it, or it is not and none may be added. */
+static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key, bool add)
 {
     /* multiplicative hashing: 2^32 / golden ratio */
     uint32_t i = (key * 2654435769u) >> 19;
@@ -133,7 +136,7 @@ static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key)
         Sender *sender = &clock->slot[i];
         if (sender->used && sender->key == key) return sender;
         if (sender->used) continue;
-        if (clock->senders == sender_limit) return NULL;
+        if (!add || clock->senders == sender_limit) return NULL;
         clock->senders++;
         *sender = (Sender){.key = key, .used = true, .doubt = -1};
         *is_new = true;
@@ -275,7 +278,7 @@ static bool is_utc(const Sender *sender, Moment now)
 static bool is_undecided(const Sender *sender, Moment now)
 {
     const double gained = gained_s(sender->first, now);
-    return sender->trend.points == 2 && fabs(gained) > gain_s + drift * fabs(now.capture_s - sender->first.capture_s);
+    return sender->pdus == 2 && fabs(gained) > gain_s + drift * fabs(now.capture_s - sender->first.capture_s);
 }
 
 static int list_doubt(ExerciseClock *clock, const Sender *sender, ExerciseClockReason reason)
@@ -312,7 +315,8 @@ static bool runs_wrong(const Sender *sender)
     double            slope, error, edge_span_s, middle_s;
     if (!delay_trend_slope(&slope, &error, trend) || fabs(slope) <= 3 * drift ||
         fabs(slope) * (trend->last_x_s - trend->first_x_s) <= gain_s ||
-        fabs(slope) <= delay_trend_critical(trend->points) * error)
+        fabs(slope) <= delay_trend_critical(trend->points) * error ||
+        fabs(slope) * (trend->last_x_s - trend->first_x_s) <= trend_over_scatter * delay_trend_scatter(trend))
         return false;
     if (sender->standing != SENDER_PROVEN) return true;
     const double edge = delay_line_edge(&edge_span_s, &middle_s, &sender->line);
@@ -438,14 +442,13 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
     const Moment now = {timestamp, capture_s};
     const ExerciseInstant arrival = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = timestamp};
 
-    /* All bits zero: a sender that does not stamp. */
-    if (timestamp == 0) {
+    /* All bits zero: a sender that does not stamp, or one that does, on the hour. */
+    Sender *sender = find_sender(&is_new, clock, key, timestamp != 0);
+    if (timestamp == 0 && !sender) {
         clock->doubts.unstamped++;
         return arrival;
     }
     clock->doubts.stamped++;
-
-    Sender *sender = find_sender(&is_new, clock, key);
     if (!sender) { /* more senders than are checked: counted as rejected */
         clock->doubts.by_arrival++;
         return arrival;
@@ -506,12 +509,12 @@ void exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at)
 {
     const Segment  key = {.number = at->segment};
     const Segment *s = NULL;
-    if (!(fabs(at->ruler_s) < INFINITY) || at->stamp == 0) return;
+    if (!(fabs(at->ruler_s) < INFINITY) || (at->stamp == 0 && at->segment == 0)) return;
     if (at->segment && clock->valid_count)
         s = bsearch(&key, clock->valid, (size_t)clock->valid_count, sizeof key, by_number);
-    at->by_stamp = s != NULL;
-    at->t_s      = s ? shifted_time(clock, s->scale, &s->line, tied_time(&s->tie, at->stamp, at->ruler_s)) : at->ruler_s;
-    if (s) return;
+    const bool same = at->by_stamp && at->t_s == at->ruler_s; /* as the first PDU of a sender */
+    at->t_s = s ? shifted_time(clock, s->scale, &s->line, tied_time(&s->tie, at->stamp, at->ruler_s)) : at->ruler_s;
+    if (s || same) return;
     clock->doubts.by_arrival++;
     const int doubted = at->segment ? clock->slot[at->sender].doubt : -1;
     if (doubted >= 0) clock->doubts.sender[doubted].by_arrival++;
