@@ -21,6 +21,7 @@ enum {
     votes_needed = 2,     /* consecutive, for a new or rejected sender */
     most_failures = 5,    /* the validation time is doubled at most this often: 2 minutes */
     switches_needed = 6,  /* from one clock to another and back, to be two senders */
+    points_again = 30,    /* before a trend is judged that begins amid stamps that were right */
     points_known = 8,     /* a new sender with that many stamps in order may have one that is not */
     segment_limit = 1 << 20,
 };
@@ -68,6 +69,7 @@ typedef struct Sender {
     uint8_t  switches; /* consecutive, from one of two clocks to the other */
     bool     shared;   /* reported as two senders */
     bool     on_other;
+    bool     renewed;  /* the trend is not of all PDUs since the tie */
     int      doubt;    /* index into the clock's anomalies; -1: never rejected, or list full */
     uint32_t segment, next_segment; /* next: of PDUs that may begin it; 0: none */
     uint32_t latest_stamp;
@@ -197,6 +199,7 @@ static void tie_sender(ExerciseClock *clock, Sender *sender, Moment now, double 
     }
     sender->segment = sender->next_segment ? sender->next_segment : ++clock->segments;
     sender->next_segment = 0;
+    sender->renewed = false;
     sender->trend   = (DelayTrend){0};
     delay_trend_add(&sender->trend, sender->tie.t_s, ruler_s - sender->tie.t_s);
     sender->mark_s  = now.capture_s;
@@ -313,6 +316,7 @@ static bool runs_wrong(const Sender *sender)
 {
     const DelayTrend *trend = &sender->trend;
     double            slope, error, edge_span_s, middle_s;
+    if (sender->renewed && trend->points < points_again) return false;
     if (!delay_trend_slope(&slope, &error, trend) || fabs(slope) <= 3 * drift ||
         fabs(slope) * (trend->last_x_s - trend->first_x_s) <= gain_s ||
         fabs(slope) <= delay_trend_critical(trend->points) * error ||
@@ -337,6 +341,7 @@ static void vote(ExerciseClock *clock, Sender *sender, Moment now, double t_s, d
     if (now.capture_s < sender->mark_s) { /* the capture clock stepped back */
         sender->mark_s      = now.capture_s;
         sender->next_vote_s = now.capture_s + vote_s;
+        sender->renewed     = true;
         sender->trend       = (DelayTrend){0};
         delay_trend_add(&sender->trend, t_s, ruler_s - t_s);
     }
@@ -350,8 +355,9 @@ static void vote(ExerciseClock *clock, Sender *sender, Moment now, double t_s, d
     if (right && sender->agree < votes_needed) sender->agree++;
     if (sender->agree == votes_needed) sender->standing = SENDER_PROVEN;
     if (span_s >= longest_vote_s && (right || span_s >= 4 * longest_vote_s)) {
-        sender->mark_s = now.capture_s;
-        sender->trend  = (DelayTrend){0};
+        sender->mark_s  = now.capture_s;
+        sender->renewed = true;
+        sender->trend   = (DelayTrend){0};
         delay_trend_add(&sender->trend, t_s, ruler_s - t_s);
     }
     sender->next_vote_s = now.capture_s + (span_s >= longest_vote_s ? longest_vote_s : fmax(span_s, vote_s));
