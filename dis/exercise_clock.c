@@ -64,7 +64,7 @@ typedef struct Sender {
     bool     used, founds; /* its delays are those of its scale */
     uint8_t  standing, scale;
     uint8_t  failures; /* number of rejections, most_failures at most */
-    uint8_t  odd;      /* consecutive reports that deviate from the reference or are constant */
+    uint8_t  odd;      /* consecutive reports that deviate from the reference */
     uint8_t  agree;    /* consecutive passed checks, votes_needed at most */
     uint8_t  switches; /* consecutive, from one of two clocks to the other */
     bool     shared;   /* reported as two senders */
@@ -85,6 +85,7 @@ typedef struct Sender {
 typedef struct Memory {
     uint64_t key_plus_1; /* 0: none */
     Moment   last;
+    int      repeats;    /* consecutive reports with the stamp of the one before */
 } Memory;
 
 /* A time over which a sender's stamps were valid. */
@@ -230,19 +231,20 @@ static double gained_s(Moment since, Moment now)
     return gained - whole_hours(gained);
 }
 
-/* Whether an entity's stamps are constant between two of its reports; remembers this one. */
-static bool stands_still(ExerciseClock *clock, uint64_t entity_key, Moment now)
+/* How many reports of an entity in a row have the stamp of the one before: one may be a datagram twice, of a bundle as many
+ * entities; two are a clock that stands still. Remembers this one. */
+static int stands_still(ExerciseClock *clock, uint64_t entity_key, Moment now)
 {
     Memory      *memory = &clock->memory[(entity_key * 0x9E3779B97F4A7C15u) >> 50];
     _Static_assert(memory_slots == 1 << (64 - 50), "the hash has as many bits as there are slots");
     const double passed_s = now.capture_s - memory->last.capture_s;
     const bool   known = memory->key_plus_1 == entity_key + 1;
-    if (known && passed_s >= 0 && passed_s < still_least_s) return false;
+    if (known && passed_s >= 0 && passed_s < still_least_s) return 0;
     const double step_s = fabs(dis_timestamp_step_s(memory->last.stamp, now.stamp));
     const bool   stands = known && passed_s >= 0 && passed_s < still_most_s && step_s <= still_rate * passed_s &&
                         (step_s <= still_step_s || passed_s > leave_s);
-    *memory = (Memory){entity_key + 1, now};
-    return stands;
+    *memory = (Memory){entity_key + 1, now, stands ? memory->repeats + (memory->repeats < odd_limit) : 0};
+    return memory->repeats;
 }
 
 static bool is_overtaken(const Sender *sender, uint32_t stamp)
@@ -396,17 +398,18 @@ static ExerciseInstant judge(ExerciseClock *clock, Sender *sender, Moment now, i
     note_shared(clock, sender, now);
     if (!overtaken) sender->latest_stamp = now.stamp;
 
-    const bool   stands = entity >= 0 && stands_still(clock, (uint64_t)sender->key << 16 | (uint16_t)entity, now);
+    const int    repeats = entity < 0 ? 0 : stands_still(clock, (uint64_t)sender->key << 16 | (uint16_t)entity, now);
+    const bool   stands = repeats > 0;
     const double t_s = tied_time(&sender->tie, now.stamp, ruler_s);
     const bool   leaves = !(fabs(ruler_s - t_s - delay_line_at(&sender->line, t_s)) <= leave_s);
     const ExerciseClockReason reason = leaves ? EXERCISE_CLOCK_JUMP : EXERCISE_CLOCK_STILL;
     bool by_arrival = leaves;
 
-    sender->odd = stands || leaves ? sender->odd + 1 : 0;
+    sender->odd = leaves ? sender->odd + 1 : 0;
     if (leaves && !sender->next_segment) sender->next_segment = ++clock->segments;
     if (leaves && sender->standing != SENDER_PROVEN && sender->trend.points < points_known) {
         doubt(clock, sender, now, ruler_s, reason);
-    } else if (sender->odd >= odd_limit) {
+    } else if (sender->odd >= odd_limit || repeats >= odd_limit) {
         doubt(clock, sender, now, ruler_s, reason);
     } else if (stands) {
         by_arrival = leaves || (sender->standing != SENDER_PROVEN && !advances(sender, now));
