@@ -102,6 +102,9 @@ void delay_line_add(DelayLine *line, double x_s, double y_s)
 
 void delay_trend_add(DelayTrend *t, double x_s, double y_s)
 {
+    if (t->points > 0 && x_s == t->latest_x_s && y_s == t->latest_y_s) return;
+    t->latest_x_s = x_s;
+    t->latest_y_s = y_s;
     if (t->points++ == 0) t->first_x_s = t->last_x_s = x_s;
     const double dx = x_s - t->mean_x_s, dy = y_s - t->mean_y_s, share = 1 / (double)t->points;
     t->mean_x_s += dx * share;
