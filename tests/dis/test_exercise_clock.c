@@ -296,6 +296,22 @@ static void drift_is_followed(void **state)
     exercise_clock_destroy(clock);
 }
 
+/* Bundles of four entities, the first one late, each again 0.4 s later: neither a rate nor a clock that stands still. */
+static void bundles_that_come_twice_are_no_fault(void **state)
+{
+    (void)state;
+    ExerciseClock *clock = new_clock();
+    for (int i = 0; i < 60; i++)
+        for (int copy = 0; copy < 2; copy++)
+            for (int e = 0; e < 4; e++) {
+                const double t_s = 100 + i, late_s = (i ? 0 : 0.3) + 0.4 * copy;
+                CHECK_NEAR(exercise_clock_report_time(clock, 1, 1, e, stamp_of(t_s, false), 1e9 + t_s + late_s), t_s,
+                           i == 0 && copy ? 0.4 + tick_s : i == 1 && !copy && e == 0 ? 0.3 + tick_s : tick_s);
+            }
+    CHECK(exercise_clock_anomalies(clock)->count == 0);
+    exercise_clock_destroy(clock);
+}
+
 static void unstamped_senders_use_capture_time(void **state)
 {
     (void)state;
@@ -380,6 +396,7 @@ int main(void)
         cmocka_unit_test(a_stamp_of_zero_is_on_the_hour),
         cmocka_unit_test(two_senders_of_one_id_are_named),
         cmocka_unit_test(drift_is_followed),
+        cmocka_unit_test(bundles_that_come_twice_are_no_fault),
         cmocka_unit_test(unstamped_senders_use_capture_time),
         cmocka_unit_test(foolish_capture_times_do_no_harm),
         cmocka_unit_test(senders_are_bounded),
