@@ -215,7 +215,7 @@ static void keep_segment(ExerciseClock *clock, const Sender *sender)
     if (clock->valid_count == clock->valid_capacity) {
         const int larger = clock->valid_capacity ? 2 * clock->valid_capacity : 64;
         Segment  *grown  = realloc(clock->valid, (size_t)larger * sizeof *grown);
-        if (!grown) return; /* its PDUs keep the time they were given */
+        if (!grown) return; /* out of memory: its PDUs count from their arrival */
         clock->valid          = grown;
         clock->valid_capacity = larger;
     }
