@@ -40,8 +40,8 @@ typedef struct Aimed {
 } Aimed;
 
 struct Player {
-    bool           causal, sorted;
-    int            exercise, count, next, capacity; /* events next .. count - 1 are to be fed */
+    bool           causal;
+    int            exercise, count, next, capacity; /* events next .. count - 1 are to be fed; by stamp next is 0 */
     uint32_t       order;
     Event         *event;
     uint8_t       *octets; /* of the octets stored until they are fed */
@@ -93,6 +93,12 @@ void player_destroy(Player *player)
 
 /* ---- input -------------------------------------------------------------------------------------- */
 
+static bool counts_before(const Event *a, const Event *b)
+{
+    return a->counts_s != b->counts_s ? a->counts_s < b->counts_s : a->order < b->order;
+}
+
+/* Causal: in the order of arrival, which is that of counts_s. By stamp: a heap, the first to be fed at 0. */
 static Status add_event(Player *player, const Event *event)
 {
     if (player->count == player->capacity) {
@@ -102,9 +108,26 @@ static Status add_event(Player *player, const Event *event)
         player->event    = grown;
         player->capacity = larger;
     }
-    player->event[player->count++] = *event;
-    player->sorted                 = false;
+    int at = player->count++;
+    for (int above; !player->causal && at > 0 && counts_before(event, &player->event[above = (at - 1) / 2]); at = above)
+        player->event[at] = player->event[above];
+    player->event[at] = *event;
     return STATUS_OK;
+}
+
+static Event take_event(Player *player)
+{
+    if (player->causal) return player->event[player->next++];
+    Event      *e     = player->event;
+    const Event first = e[0], last = e[--player->count];
+    int         at    = 0;
+    for (int below; (below = 2 * at + 1) < player->count; at = below) {
+        if (below + 1 < player->count && counts_before(&e[below + 1], &e[below])) below++;
+        if (!counts_before(&e[below], &last)) break;
+        e[at] = e[below];
+    }
+    e[at] = last;
+    return first;
 }
 
 static Status keep_octets(size_t *at, Player *player, const uint8_t *pdu, size_t count)
@@ -219,13 +242,6 @@ static double read_log(Player *player, double t_s)
 
 /* ---- output ------------------------------------------------------------------------------------- */
 
-static int compare_events(const void *a, const void *b)
-{
-    const Event *p = a, *q = b;
-    if (p->counts_s != q->counts_s) return p->counts_s < q->counts_s ? -1 : 1;
-    return p->order < q->order ? -1 : p->order > q->order;
-}
-
 static void note_fire(Player *player, const DisFire *fire)
 {
     if (dis_entity_id_is_none(fire->munition) || dis_entity_id_is_none(fire->target)) return;
@@ -276,13 +292,10 @@ static void feed_event(Player *player, EntityTable *table, const Event *event)
 
 static void feed_until(Player *player, EntityTable *table, double t_s)
 {
-    const size_t left = (size_t)(player->count - player->next);
-    if (!player->sorted && !player->causal && left > 1)
-        qsort(player->event + player->next, left, sizeof *player->event, compare_events);
-    player->sorted = true; /* arrivals are ordered already */
-    for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++) {
-        feed_event(player, table, &player->event[player->next]);
-        player->fed_s = player->event[player->next].counts_s;
+    while (player->next < player->count && player->event[player->next].counts_s <= t_s) {
+        const Event event = take_event(player);
+        feed_event(player, table, &event);
+        player->fed_s = event.counts_s;
     }
     if (player->next == player->count) { /* only what is not fed yet takes memory */
         player->next = player->count = 0;
