@@ -36,12 +36,12 @@ Status dis_log_times(DisLogTimes *out, const DisLog *log, int exercise)
     ExerciseClock *clock = NULL;
     Status         status = exercise_clock_create(&clock);
     for (int i = 0; i < log->count && status == STATUS_OK; i++) {
-        const DisDatagram *d = &log->datagram[i];
-        const uint8_t     *at = d->bytes, *pdu;
-        DisHeader          header;
-        while (status == STATUS_OK && dis_next_pdu(&header, &pdu, &at, d->bytes + d->octets, &ignored))
+        const DisDatagram d = dis_log_datagram(log, i);
+        const uint8_t    *at = d.bytes, *pdu;
+        DisHeader         header;
+        while (status == STATUS_OK && dis_next_pdu(&header, &pdu, &at, d.bytes + d.octets, &ignored))
             if (exercise < 0 || header.exercise == exercise)
-                status = add(&times, &capacity, exercise_clock_pdu_instant(clock, &header, pdu, d->capture_s));
+                status = add(&times, &capacity, exercise_clock_pdu_instant(clock, &header, pdu, d.capture_s));
     }
     if (status == STATUS_OK) {
         exercise_clock_whole(clock);

@@ -7,7 +7,7 @@
 static const char usage_text[] =
     "usage: pitviper inspect LOG [--pdus tsv [--full]] [--port N] [--exercise N]\n"
     "\n"
-    "LOG is a pcap or pcapng capture, also compressed (gzip, zstd, bzip2, xz). Without --pdus: a summary of\n"
+    "LOG is a pcap or pcapng capture, also compressed (gzip, zstd, bzip2, xz) or a pipe. Without --pdus: a summary of\n"
     "the exercise.\n"
     "\n"
     "  --pdus tsv    one line per Entity State PDU, with the columns and formats of\n"

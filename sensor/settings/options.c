@@ -108,14 +108,15 @@ static void print_help(CommandName command)
         "pixel\n"
         "and per target. Needs no configuration; automatic choices are printed with the key that changes them. LOG "
         "may\n"
-        "be compressed (gzip, zstd, bzip2, xz). When stopped by Ctrl-C (exit code 130) or SIGTERM (143) the frame is\n"
-        "finished, and run.json says `stopped`. A video of a band, at --rate 5:\n"
+        "be compressed (gzip, zstd, bzip2, xz), or a pipe. When stopped by Ctrl-C (exit code 130), SIGTERM (143) or\n"
+        "another signal N that would end it (128 + N) the frame is finished, and run.json says `stopped`. A video of a\n"
+        "band, at --rate 5:\n"
         "    ffmpeg -framerate 5 -pattern_type glob -i 'out/frames/lwir/*.png' -pix_fmt yuv420p lwir.mp4\n\n",
         "usage: pitviper run [-c FILE] [options]\n"
         "\n"
         "Renders a live DIS exercise: a node that listens on UDP, makes its automatic choices from what it receives\n"
-        "first (exercise.listen_s), and renders frames until it is stopped (Ctrl-C). It sends nothing unless told to\n"
-        "(--set publish.dis=sensor, or truth). A recording made with --record replays to the same images, to the bit.\n"
+        "first (exercise.listen_s), and renders frames until it is stopped (Ctrl-C, SIGTERM, SIGUSR1). It sends nothing\n"
+        "unless told to (--set publish.dis=sensor, or truth). A recording made with --record replays to the same images, to the bit.\n"
         "While there is no output the reason is reported, once each time it changes. Exit code 1 when no frame was\n"
         "rendered, or when nothing that was to be published could be sent or written; the reason is printed.\n\n"};
     fputs(about[command], stdout);
