@@ -279,16 +279,12 @@ int check_command(int argc, char **argv)
             fputs(help, stdout);
             return 0;
         }
-        if (option == '?') {
-            fputs("see `pitviper check --help`\n", stderr);
-            return 2;
-        }
+        if (option == '?') return 2; /* reported by next_option */
         defaults = true;
     }
-    if (defaults ? optind != argc : optind == argc) {
-        fputs("usage: pitviper check FILE ... | --default; see `pitviper check --help`\n", stderr);
-        return 2;
-    }
+    if (defaults && optind != argc) return wrong_line("check", "--default takes no file, not '%s'", argv[optind]);
+    if (!defaults && optind == argc)
+        return wrong_line("check", "no FILE is named: usage: pitviper check FILE ... | --default");
     if (defaults) {
         const Config config = config_default();
         config_write(stdout, &config);

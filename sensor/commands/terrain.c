@@ -42,8 +42,7 @@ static const char help[] =
 
 static int refuse(const char *option, const char *what)
 {
-    text_print(stderr, "pitviper terrain: %s: %s; see `pitviper terrain --help`\n", option, what);
-    return 2;
+    return wrong_line("terrain", "%s: %s", option, what);
 }
 
 typedef struct Wanted {
@@ -194,17 +193,14 @@ static int import_command(int argc, char **argv)
 
 int terrain_command(int argc, char **argv)
 {
-    static char called[] = "pitviper terrain import", called_info[] = "pitviper terrain info";
+    static char called[] = "pitviper terrain", called_info[] = "pitviper terrain info";
     const bool  info = argc > 1 && strcmp(argv[1], "info") == 0; /* has a help of its own */
     for (int i = 1; !info && i < argc && strcmp(argv[i], "--") != 0; i++)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             fputs(help, stdout);
             return 0;
         }
-    if (argc < 2) {
-        fputs(help, stderr);
-        return 2;
-    }
+    if (argc < 2) return wrong_line("terrain", "no action: import or info");
     if (strcmp(argv[1], "import") == 0) {
         argv[1] = called; /* program name in getopt's messages */
         return import_command(argc - 1, argv + 1);
@@ -213,6 +209,8 @@ int terrain_command(int argc, char **argv)
         argv[1] = called_info;
         return terrain_info_command(argc - 1, argv + 1);
     }
-    text_print(stderr, "pitviper terrain: no such action: %s; there are import and info\n", argv[1]);
-    return 2;
+    WordMeant meant = word_meant(argv[1]);
+    word_consider_list(&meant, "import|info", '|');
+    return wrong_line("terrain", "no such action: %s%s", argv[1],
+                      *word_hint(&meant) ? meant.hint : "; there are import and info");
 }

@@ -28,12 +28,11 @@ static void say(CaseResult *r, const char *text)
 void run_case_log(void *user, LogLevel level, const char *line)
 {
     (void)user;
-    const char *head = level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "";
     if (!case_here) {
-        fprintf(stderr, "%s%s\n", head, line);
+        fprintf(stderr, "%s%s\n", log_head(level), line);
         return;
     }
-    say(case_here, head);
+    say(case_here, level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "");
     say(case_here, line);
     say(case_here, "\n");
 }
