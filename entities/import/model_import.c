@@ -479,7 +479,11 @@ Status model_open(Model *out, ModelImport *report, bool *imported, const char *n
     *imported = model_is_path(name);
     if (*imported) return model_import(out, report, name);
     const Status status = parametric_build(out, name, sag_m);
-    if (status == STATUS_UNSUPPORTED)
-        log_error("model: no built-in model of this name: '%s'; a file's name has a dot or a slash in it", name);
+    if (status == STATUS_UNSUPPORTED) {
+        WordMeant meant = word_meant(name);
+        for (int i = 0; i < parametric_count(); i++) word_consider(&meant, parametric_name(i));
+        log_error("model: no built-in model of this name: '%s'%s; `pitviper model list` lists them; a file's name has a "
+                  "dot or a slash in it", name, word_hint(&meant));
+    }
     return status;
 }

@@ -13,13 +13,42 @@ static int band_named(const char *name, size_t length)
     return -1;
 }
 
-static bool no_bands(const char *text)
+static bool no_bands(const char *text, const char *band, size_t length)
 {
-    char further[256];
+    char further[256], word[64];
+    snprintf(word, sizeof word, "%.*s", (int)length, band);
+    WordMeant meant = word_meant(word);
     channels_list(further, sizeof further);
-    log_error("config: sensor.bands: '%s' is not a list of optical, radar or channels of etc/channels.csv: %s", text,
-              further);
+    word_consider_list(&meant, "optical|radar", '|');
+    for (const char *at = further; *(at += strspn(at, ", "));) {
+        char one[64];
+        const size_t n = strcspn(at, ", ");
+        snprintf(one, sizeof one, "%.*s", (int)n, at);
+        word_consider(&meant, one);
+        at += n;
+    }
+    log_error("config: sensor.bands: '%s': '%s' is not a band; a list of optical, radar or channels of "
+              "etc/channels.csv: %s%s", text, word, further, word_hint(&meant));
     return false;
+}
+
+/* Each band once: `lwir,lwir` is a slip. */
+static bool named_once(const char *text)
+{
+    for (const char *at = text; *at;) {
+        const size_t length = strcspn(at, ",");
+        for (const char *next = at + length; *next;) {
+            next += *next == ',';
+            const size_t other = strcspn(next, ",");
+            if (other == length && length > 0 && strncmp(at, next, length) == 0) {
+                log_error("config: sensor.bands: '%s': %.*s is named twice; name each band once", text, (int)length, at);
+                return false;
+            }
+            next += other;
+        }
+        at += length + (at[length] == ',');
+    }
+    return true;
 }
 
 bool bands_choose(unsigned *bands, const char *text)
@@ -27,6 +56,7 @@ bool bands_choose(unsigned *bands, const char *text)
     *bands = 0;
     if (channels_load() != STATUS_OK) return false;
     channels_standard();
+    if (!named_once(text)) return false;
     for (const char *at = text; *at;) {
         const size_t           length = strcspn(at, ",");
         const SpectralChannel *channel = channel_named(at, length);
@@ -47,7 +77,7 @@ bool bands_choose(unsigned *bands, const char *text)
                       text, band_name((Band)found));
             return false;
         }
-        if (found < 0) return no_bands(text);
+        if (found < 0) return no_bands(text, at, length);
         *bands |= 1u << found;
         at += length + (at[length] == ',');
     }

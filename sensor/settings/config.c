@@ -57,7 +57,7 @@ static const Setting keys[] = {
     {"sensor.mount_pitch_deg", SETTING_DOUBLE, AT(sensor.mount_pitch_deg), -90, 90, NULL, "deg", "then pitch, up"},
     {"sensor.mount_roll_deg", SETTING_DOUBLE, AT(sensor.mount_roll_deg), -180, 180, NULL, "deg",
      "roll of the stabilised image against upright, right side down"},
-    {"sensor.preset", SETTING_TEXT, AT(sensor.preset), 0, 0, NULL, "",
+    {"sensor.preset", SETTING_WORDS, AT(sensor.preset), 0, 0, NULL, "",
      "none, or rows of etc/sensors.csv, one per band, comma separated: staring_lwir,staring_mwir,tv"},
     {"sensor.table", SETTING_PATH, AT(sensor.table), 0, 0, NULL, "",
      "a sensor's data sheet with FLIR92's entries (etc/sensors/example_flir2.sheet), which takes precedence over "
@@ -464,12 +464,14 @@ ConfigKind config_kind(const char *name)
 
 Status config_set(Config *config, const char *name, const char *value, const char *source)
 {
-    return settings_set(config, config->given, &table, name, value, source);
+    return config_set_from(config, name, value, source, NULL);
 }
 
 Status config_set_from(Config *config, const char *name, const char *value, const char *source, const char *file)
 {
-    return settings_set_from(config, config->given, &table, name, value, source, file);
+    const Status status = settings_set_from(config, config->given, &table, name, value, source, file);
+    if (status == STATUS_OK) config->later[settings_find(&table, name)] = true;
+    return status;
 }
 
 int config_line(const char *name, const char *path) { return settings_line(&table, name, path); }
@@ -513,8 +515,29 @@ Status config_read_as(Config *config, const char *path, const char *file)
 {
     Config       filled = *config;
     const Status status = settings_read_as(&filled, filled.given, &table, path, file);
-    if (status == STATUS_OK) *config = filled;
+    if (status != STATUS_OK) return status;
+    *config = filled;
+    memset(config->later, 0, sizeof config->later);
+    snprintf(config->file, sizeof config->file, "%s", strlen(path) < sizeof config->file ? path : "");
+    return STATUS_OK;
+}
+
+Status config_read_checked(Config *config, const char *path)
+{
+    Status status = settings_read_as(config, config->given, &table, path, path);
+    snprintf(config->file, sizeof config->file, "%s", strlen(path) < sizeof config->file ? path : "");
+    if ((status == STATUS_OK || status == STATUS_BAD_VALUE) && config_check(config) != STATUS_OK) status = STATUS_BAD_VALUE;
     return status;
+}
+
+/* `node.yaml:3: ` where the key was set in a file, for messages; else "". Valid until the next call of the thread. */
+static const char *where(const Config *config, const char *key)
+{
+    static _Thread_local char text[sizeof config->file + 16];
+    const int row = settings_find(&table, key);
+    const int line = *config->file && config->given[row] && !config->later[row] ? config_line(key, config->file) : 0;
+    snprintf(text, sizeof text, "%s:%d: ", config->file, line);
+    return line > 0 ? text : "";
 }
 
 /* A store has all of the ground: nothing else can be named beside it, and it is not fitted to an exercise. */
@@ -543,14 +566,20 @@ static bool store_alone(const Config *config)
 
 Status config_check(const Config *config)
 {
+    bool good = true;
     if (config->detector.bits != 8 && config->detector.bits != 16) {
-        log_error("config: detector.bits: %d is not 8 or 16", config->detector.bits);
-        return STATUS_BAD_VALUE;
+        log_error("config: %sdetector.bits: %d is not 8 or 16", where(config, "detector.bits"), config->detector.bits);
+        good = false;
     }
-    if (!(config->detector.lwir_low_k < config->detector.lwir_high_k) ||
-        !(config->detector.mwir_low_k < config->detector.mwir_high_k)) {
-        log_error("config: detector: the low level must be below the high one");
-        return STATUS_BAD_VALUE;
+    if (!(config->detector.lwir_low_k < config->detector.lwir_high_k)) {
+        log_error("config: %sdetector.lwir_low_k: %g is not below detector.lwir_high_k, %g K",
+                  where(config, "detector.lwir_low_k"), config->detector.lwir_low_k, config->detector.lwir_high_k);
+        good = false;
+    }
+    if (!(config->detector.mwir_low_k < config->detector.mwir_high_k)) {
+        log_error("config: %sdetector.mwir_low_k: %g is not below detector.mwir_high_k, %g K",
+                  where(config, "detector.mwir_low_k"), config->detector.mwir_low_k, config->detector.mwir_high_k);
+        good = false;
     }
     static const char *const of_preset[] = {"detector.f_number", "detector.obscuration", "detector.integration_ms",
                                             "detector.jitter_px", "detector.bad_share", "detector.ac_per_line",
@@ -558,93 +587,106 @@ Status config_check(const Config *config)
     for (size_t i = 0; i < sizeof of_preset / sizeof *of_preset; i++)
         if (strcmp(config->sensor.preset, "none") == 0 && !*config_sheet(config) &&
             config_given(config, of_preset[i])) {
-            log_error("config: %s: overrides a sensor preset; choose one with sensor.preset or sensor.table",
-                      of_preset[i]);
-            return STATUS_BAD_VALUE;
+            log_error("config: %s%s: overrides a sensor preset; choose one with sensor.preset or sensor.table",
+                      where(config, of_preset[i]), of_preset[i]);
+            good = false;
         }
     if (table_has_rows(config) && strcmp(config->sensor.preset, "none") == 0) {
-        log_error("config: sensor.table: %s is a table of sensors; choose one of its rows with sensor.preset",
-                  config->sensor.table);
-        return STATUS_BAD_VALUE;
+        log_error("config: %ssensor.table: %s is a table of sensors; choose one of its rows with sensor.preset",
+                  where(config, "sensor.table"), config->sensor.table);
+        good = false;
     }
-    if (!store_alone(config)) return STATUS_BAD_VALUE;
+    good = store_alone(config) && good;
     if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&
         !(config->terrain.spacing_m >= 1 && config->terrain.spacing_m <= 30)) {
-        log_error("config: terrain.spacing_m: %g is not 0 or 1 .. 30 m for synthetic terrain",
-                  config->terrain.spacing_m);
-        return STATUS_BAD_VALUE;
+        log_error("config: %sterrain.spacing_m: %g is not 0 or 1 .. 30 m for synthetic terrain",
+                  where(config, "terrain.spacing_m"), config->terrain.spacing_m);
+        good = false;
     }
     if (!*config->terrain.elevation && (*config->terrain.cover || *config->terrain.orthophoto)) {
-        log_error("config: terrain.%s needs terrain.elevation: synthetic terrain does not match real land cover",
+        log_error("config: %sterrain.%s needs terrain.elevation: synthetic terrain does not match real land cover",
+                  where(config, *config->terrain.cover ? "terrain.cover" : "terrain.orthophoto"),
                   *config->terrain.cover ? "cover" : "orthophoto");
-        return STATUS_BAD_VALUE;
+        good = false;
     }
     const bool pairs = strcmp(config->publish.pairs, "off") != 0;
     if ((pairs || config->publish.coco) && !config->publish.files) {
-        log_error("config: publish.%s: needs image files; set publish.files: true", pairs ? "pairs" : "coco");
-        return STATUS_BAD_VALUE;
+        log_error("config: %spublish.%s: needs image files; set publish.files: true",
+                  where(config, pairs ? "publish.pairs" : "publish.coco"), pairs ? "pairs" : "coco");
+        good = false;
     }
     DisEntityId id;
     double      unix_s;
     unsigned    planes;
     if (!plane_choice_parse(&planes, config->publish.planes)) {
-        log_error("config: publish.planes: '%s' is not all, none, or a list of range, entity, part, material, "
-                  "temperature, "
-                  "normal, instance, cover, for example range,entity", config->publish.planes);
-        return STATUS_BAD_VALUE;
+        char why[200];
+        plane_choice_why(why, sizeof why, config->publish.planes);
+        log_error("config: %spublish.planes: '%s' is not all, none, or a list of range, entity, part, material, "
+                  "temperature, normal, instance, cover, each once, for example range,entity%s",
+                  where(config, "publish.planes"), config->publish.planes, why);
+        good = false;
     }
     const unsigned of_woods = 1u << PLANE_INSTANCE | 1u << PLANE_COVER;
     if (planes != planes_all && planes & of_woods && strcmp(config->terrain.woods, "on") != 0) {
-        log_error("config: publish.planes: instance and cover are of a world with plants: terrain.woods: on");
-        return STATUS_BAD_VALUE;
+        log_error("config: %spublish.planes: instance and cover are of a world with plants: terrain.woods: on",
+                  where(config, "publish.planes"));
+        good = false;
     }
     if (config->heat.facets % 2 == 0) {
-        log_error("config: heat.facets: %d is even; odd, 3 .. 17, so that one of them is level", config->heat.facets);
-        return STATUS_BAD_VALUE;
+        log_error("config: %sheat.facets: %d is even; odd, 3 .. 17, so that one of them is level",
+                  where(config, "heat.facets"), config->heat.facets);
+        good = false;
     }
     if (!strpbrk(config->weather.day, "/.") && strcmp(config->weather.day, "clear") != 0 &&
         strcmp(config->weather.day, "constant") != 0) {
-        log_error("config: weather.day: '%s' is neither clear nor constant nor the path of a weather file: ./%s",
-                  config->weather.day, config->weather.day);
-        return STATUS_BAD_VALUE;
+        WordMeant meant = word_meant(config->weather.day);
+        word_consider_list(&meant, "clear|constant", '|');
+        log_error("config: %sweather.day: '%s' is neither clear nor constant nor the path of a weather file: ./%s%s",
+                  where(config, "weather.day"), config->weather.day, config->weather.day, word_hint(&meant));
+        good = false;
     }
     if (!*config->sensor.mount) {
-        log_error("config: sensor.mount: is empty; auto, or a part of the host such as `primary turret`");
-        return STATUS_BAD_VALUE;
+        log_error("config: %ssensor.mount: is empty; auto, or a part of the host such as `primary turret`",
+                  where(config, "sensor.mount"));
+        good = false;
     }
     if (*config->exercise.host && strcmp(config->exercise.host, "munition") != 0 &&
         strcmp(config->exercise.host, "observer") != 0 && !dis_entity_id_parse(&id, config->exercise.host)) {
-        log_error("config: exercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor munition "
-                  "nor observer", config->exercise.host);
-        return STATUS_BAD_VALUE;
+        WordMeant meant = word_meant(config->exercise.host);
+        word_consider_list(&meant, "munition|observer", '|');
+        log_error("config: %sexercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor "
+                  "munition nor observer%s", where(config, "exercise.host"), config->exercise.host, word_hint(&meant));
+        good = false;
     }
     if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {
-        log_error("config: exercise.aim: '%s' is not site:application:entity, for example 1:3001:82",
-                  config->exercise.aim);
-        return STATUS_BAD_VALUE;
+        log_error("config: %sexercise.aim: '%s' is not site:application:entity, for example 1:3001:82",
+                  where(config, "exercise.aim"), config->exercise.aim);
+        good = false;
     }
     if (*config->exercise.utc && !text_to_unix_s(&unix_s, config->exercise.utc)) {
-        log_error("config: exercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100",
-                  config->exercise.utc);
-        return STATUS_BAD_VALUE;
+        log_error("config: %sexercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100",
+                  where(config, "exercise.utc"), config->exercise.utc);
+        good = false;
     }
     const char *const moment[2] = {config->exercise.from, config->exercise.to};
+    bool good_spans = true;
     for (int i = 0; i < 2; i++)
         if (!span_good(moment[i])) {
-            log_error("config: exercise.%s: '%s' is not a number of seconds: 3471.5 is exercise time, +12 is from the "
-                      "recording's start, -5 from its end", i ? "to_s" : "from_s", moment[i]);
-            return STATUS_BAD_VALUE;
+            good_spans = false;
+            log_error("config: %sexercise.%s: '%s' is not a number of seconds: 3471.5 is exercise time, +12 is from the "
+                      "recording's start, -5 from its end", where(config, i ? "exercise.to_s" : "exercise.from_s"),
+                      i ? "to_s" : "from_s", moment[i]);
+            good = false;
         }
-    if (span_backward(config->exercise.from, config->exercise.to)) {
-        log_error("config: exercise.from_s: %s is after exercise.to_s: %s", config->exercise.from, config->exercise.to);
-        return STATUS_BAD_VALUE;
+    if (good_spans && span_backward(config->exercise.from, config->exercise.to)) {
+        log_error("config: %sexercise.from_s: %s is after exercise.to_s: %s", where(config, "exercise.from_s"), config->exercise.from, config->exercise.to);
+        good = false;
     }
-    const Status status = video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,
-                              config->sensor.bands);
+    good &= video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,
+                              config->sensor.bands) == STATUS_OK;
     const bool sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config);
-    return status == STATUS_OK
-               ? memory_choice_check(config->publish.memory, config->publish.memory_planes, sensor)
-               : status;
+    good &= memory_choice_check(config->publish.memory, config->publish.memory_planes, sensor) == STATUS_OK;
+    return good ? STATUS_OK : STATUS_BAD_VALUE;
 }
 
 void config_text(char *out, size_t out_size, const Config *config)

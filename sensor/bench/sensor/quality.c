@@ -6,6 +6,8 @@
 #include "sensor/quality/lab.h"
 #include "sensor/quality/quality.h"
 
+#include <errno.h>
+
 enum { rounds_most = 2 };
 
 static const QualitySettings reference = {16, 0, 0};
@@ -91,6 +93,14 @@ static void list_row(Bench *bench, const QualityTable *table, int k, const Bench
     row.against    = "16 x 16 rays a pixel: worst band of the worst view";
     row.mark       = quality_wanted(table, k) ? "*" : NULL;
     bench_add(bench, &row);
+}
+
+Status bench_quality_check(const Bench *bench)
+{
+    const char *path = bench_option(bench, "table");
+    FILE       *file = path ? fopen(path, "a") : NULL;
+    if (path && !file) log_error("bench: --table: cannot write %s: %s; choose another place", path, strerror(errno));
+    return !path || (file && fclose(file) == 0) ? STATUS_OK : STATUS_IO;
 }
 
 Status bench_quality(Bench *bench)
