@@ -162,7 +162,7 @@ Status preset_read(SensorPreset *out, const char *path, const char *name)
     if (row >= 0)
         status = read_row(out, &table, row);
     else if (column >= 0)
-        log_error("sensors: %s: no sensor named '%s'%s%s; there are: %s", path, name, before, word_hint(&meant), known);
+        log_error("sensors: %s: no sensor named '%s'%s; there are: %s%s", path, name, before, known, word_hint(&meant));
     table_close(&table);
     return status;
 }

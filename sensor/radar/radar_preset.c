@@ -150,7 +150,7 @@ Status radar_preset_read(RadarPreset *out, const char *path, const char *name)
             word_consider(&meant, "none");
             for (int i = 0; i < t.rows && n + 40 < sizeof names; i++)
                 n += (size_t)snprintf(names + n, sizeof names - n, "%s%.32s", i ? ", " : "", table_text(&t, i, column));
-            log_error("radars: '%s' is no row of %s%s; it has %s", name, path, word_hint(&meant), names);
+            log_error("radars: '%s' is no row of %s; it has %s%s", name, path, names, word_hint(&meant));
         }
     }
     table_close(&t);

@@ -4,6 +4,7 @@
 #include "pitviper_channels.h"
 
 #include "dis/pdu.h"
+#include "sensor/settings/band_choice.h"
 #include "sensor/settings/memory_choice.h"
 #include "sensor/settings/plane_choice.h"
 #include "sensor/settings/span.h"
@@ -527,6 +528,10 @@ Status config_read_checked(Config *config, const char *path)
     Status status = settings_read_as(config, config->given, &table, path, path);
     snprintf(config->file, sizeof config->file, "%s", strlen(path) < sizeof config->file ? path : "");
     if ((status == STATUS_OK || status == STATUS_BAD_VALUE) && config_check(config) != STATUS_OK) status = STATUS_BAD_VALUE;
+    log_suppress(true);
+    if (!bands_check(config->sensor.bands, "")) /* reported: what follows is checked with all bands */
+        strcpy(config->sensor.bands, config_default().sensor.bands);
+    log_suppress(false);
     return status;
 }
 
@@ -566,7 +571,7 @@ static bool store_alone(const Config *config)
 
 Status config_check(const Config *config)
 {
-    bool good = true;
+    bool good = bands_check(config->sensor.bands, where(config, "sensor.bands"));
     if (config->detector.bits != 8 && config->detector.bits != 16) {
         log_error("config: %sdetector.bits: %d is not 8 or 16", where(config, "detector.bits"), config->detector.bits);
         good = false;
