@@ -156,7 +156,7 @@ static int parse(Options *o, int argc, char **argv)
         case INTERFACE:
             ok = optarg[0] && strlen(optarg) < sizeof o->udp.interface;
             if (ok) strcpy(o->udp.interface, optarg);
-            else log_error("exercise: --interface: '%s' is no name of an interface; `ip link` lists them", optarg);
+            else log_error("exercise: --interface: '%s' is not the name of an interface; `ip link` lists them", optarg);
             break;
         case TTL: ok = whole(&o->udp.ttl, "ttl", optarg, 0, 255); break;
         case SPEED: ok = parse_speed(&o->speed, optarg); break;

@@ -12,8 +12,8 @@ const char rcs_library_help[] =
     "usage: pitviper rcs MODEL --library FOLDER --preset NAME [--azimuth FROM:TO] [--elevation FROM:TO]\n"
     "                    [--range FROM:TO] [--joint NAME=VALUE]... [--damage N] [--warp MM]\n"
     "\n"
-    "Makes what the radar of radar.preset needs of a target in every bin of aspect (0.3 deg) and range (a factor of 1.19),\n"
-    "a file each, for radar.library of a run. Bins that are there are left as they are: stopped, it goes on where it was.\n"
+    "Computes the signatures of a target for a radar, one file for each bin of aspect (0.3 deg) and range (a factor of 1.19),\n"
+    "for radar.library of a run. Existing files are kept: after an interruption the same command continues.\n"
     "\n"
     "MODEL: an entity type as in the catalog (1.1.222.1.1.1.0), or a built-in name in the shape's own size.\n"
     "  --preset NAME        a row of etc/radars.csv: seeker_94\n"
@@ -132,7 +132,7 @@ static Status set_joints(Work *w)
         int          node = 0;
         while (node < w->of->node_count && (strlen(w->of->node[node].name) != length || strncmp(w->of->node[node].name, text, length) != 0)) node++;
         if (node == w->of->node_count || w->of->node[node].joint == JOINT_FIXED || !text_to_double(&value, equals + 1)) {
-            log_error("rcs: --joint %s: the model has no such joint, or that is no number; `pitviper model show` names them", text);
+            log_error("rcs: --joint %s: the model has no such joint, or the value is not a number; `pitviper model show` names them", text);
             return STATUS_BAD_VALUE;
         }
         w->joint[node] = w->of->node[node].joint == JOINT_ROTATION ? value * rad_per_deg : value;

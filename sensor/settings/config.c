@@ -59,7 +59,7 @@ static const Setting keys[] = {
     {"sensor.mount_roll_deg", SETTING_DOUBLE, AT(sensor.mount_roll_deg), -180, 180, NULL, "deg",
      "roll of the stabilised image against upright, right side down"},
     {"sensor.preset", SETTING_WORDS, AT(sensor.preset), 0, 0, NULL, "",
-     "none, or rows of etc/sensors.csv, one per band, comma separated: staring_lwir,staring_mwir,tv"},
+     "none, or rows of etc/sensors.csv, one per band, separated by commas, or a list: staring_lwir,staring_mwir,tv"},
     {"sensor.table", SETTING_PATH, AT(sensor.table), 0, 0, NULL, "",
      "a sensor's data sheet with FLIR92's entries (etc/sensors/example_flir2.sheet), which takes precedence over "
      "sensor.preset; or a .csv with the columns of etc/sensors.csv, whose rows sensor.preset may name"},
@@ -123,13 +123,13 @@ static const Setting keys[] = {
      "a .csv with the columns of etc/radars.csv, whose rows radar.preset names in place of those"},
     {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of ground and plants; with a preset"},
     {"radar.ground_bounce", SETTING_BOOL, AT(radar.ground_bounce), 0, 1, NULL, "",
-     "the ground near entities mirrors that radar's waves to them and back; with a preset"},
+     "reflections of that radar's waves by the ground near entities, on the way in and out; with a preset"},
     {"radar.chaff_dipoles", SETTING_DOUBLE, AT(radar.chaff_dipoles), 0, 1e10, NULL, "",
      "dipoles in resonance with that radar in a cloud of chaff (type 8.*.*.1 or .3); 0: chaff is not seen"},
     {"radar.warp_mm", SETTING_DOUBLE, AT(radar.warp_mm), 0, 20, NULL, "mm",
-     "unevenness of entities' surfaces for that radar, rms over 0.5 m: models are planer than sheet metal; 0: as they are"},
+     "unevenness of entities' surfaces for that radar, rms over 0.5 m: models are flatter than real sheet metal; 0: unchanged"},
     {"radar.given", SETTING_PATH, AT(radar.given), 0, 0, NULL, "",
-     "CSV file of signatures for that radar, measured or from another program, that stand in for models; empty: none"},
+     "CSV file of signatures for that radar, measured or from another program, that replace those of models; empty: none"},
     {"radar.library", SETTING_PATH, AT(radar.library), 0, 0, NULL, "",
      "folder of targets' signatures for that radar (`pitviper rcs MODEL --library`), read and added to; it changes times, not bits"},
     {"radar.scan_deg", SETTING_DOUBLE, AT(radar.scan_deg), 0, 160, NULL, "deg",
@@ -234,7 +234,7 @@ static const Setting keys[] = {
     {"weather.cloud", SETTING_DOUBLE, AT(weather.cloud), 0, 1, NULL, "",
      "mean share of the sky that clouds cover, which dim the sun and warm the sky"},
     {"weather.rain_mmh", SETTING_DOUBLE, AT(weather.rain_mmh), 0, 300, NULL, "mm/h",
-     "rain: weakens and returns what radar.preset sends, and wets the ground; other bands do not see it: lower "
+     "rain rate; attenuates and scatters the waves of radar.preset, and wets the ground; the other bands do not show it: lower "
      "weather.visibility_m for them"},
     {"heat.vehicle_step_s", SETTING_DOUBLE, AT(heat.vehicle_step_s), 1, 600, NULL, "s",
      "longest step of the heat of vehicles, people and buildings"},
@@ -259,7 +259,7 @@ static const Setting keys[] = {
     {"terrain.store", SETTING_PATH, AT(terrain.store), 0, 0, NULL, "",
      "terrain store of `pitviper terrain import`, instead of elevation, cover and orthophoto; empty: none"},
     {"terrain.elevation", SETTING_PATHS, AT(terrain.elevation), 0, 0, NULL, "",
-     "elevation files or folders, comma separated; empty: synthetic terrain"},
+     "elevation files or folders, separated by commas, or a list; empty: synthetic terrain"},
     {"terrain.vertical", SETTING_TEXT, AT(terrain.vertical), 0, 0, "auto|geoid|ellipsoid", "",
      "vertical datum of the files; auto: from their CRS, else the geoid"},
     {"terrain.geoid", SETTING_PATH, AT(terrain.geoid), 0, 0, NULL, "", "geoid grid (.gtx); empty: EGM96 of proj-data"},
@@ -287,7 +287,7 @@ static const Setting keys[] = {
     {"terrain.woods_leaves", SETTING_TEXT, AT(terrain.woods_leaves), 0, 0, "on|off", "",
      "leaves of deciduous trees; off: bare, as in winter"},
     {"terrain.woods_sway", SETTING_DOUBLE, AT(terrain.woods_sway), 0, 5, NULL, "",
-     "how far plants sway in the wind of weather.wind_mps: 1 as they do, 0 not at all"},
+     "amplitude of the sway of plants in the wind of weather.wind_mps: 1 realistic, 0 none"},
     {"terrain.woods_level1_px", SETTING_DOUBLE, AT(terrain.woods_level1_px), 0, 1000, NULL, "px",
      "plants lower than this in the image are traced with fewer, larger leaves; 0: none, all in full detail"},
     {"terrain.woods_low_m", SETTING_DOUBLE, AT(terrain.woods_low_m), 0, 1000, NULL, "m",
@@ -315,7 +315,7 @@ static const Setting keys[] = {
     {"entities.shown", SETTING_INT, AT(entities.shown), 1, 1000000, NULL, "",
      "most entities in a frame: those whose reports lie nearest the host's"},
     {"entities.new_per_s", SETTING_INT, AT(entities.new_per_s), 1, 1000000, NULL, "1/s",
-     "most entities that one sender may add, in a second and at once; what is over is counted"},
+     "most entities that one sender may add, in a second and at once; those beyond are counted"},
     {"quality.budget", SETTING_TEXT, AT(quality.budget), 0, 0, "off|on", "",
      "each frame's estimate of its own error, in truth.jsonl; changes no image"},
     {"quality.radiance_rmse_percent", SETTING_DOUBLE, AT(quality.radiance_rmse_percent), 0.01, 1000, NULL, "%",
@@ -535,8 +535,7 @@ Status config_read_checked(Config *config, const char *path)
     return status;
 }
 
-/* `node.yaml:3: ` where the key was set in a file, for messages; else "". Valid until the next call of the thread. */
-static const char *where(const Config *config, const char *key)
+const char *config_where(const Config *config, const char *key)
 {
     static _Thread_local char text[sizeof config->file + 16];
     const int row = settings_find(&table, key);
@@ -571,19 +570,19 @@ static bool store_alone(const Config *config)
 
 Status config_check(const Config *config)
 {
-    bool good = bands_check(config->sensor.bands, where(config, "sensor.bands"));
+    bool good = bands_check(config->sensor.bands, config_where(config, "sensor.bands"));
     if (config->detector.bits != 8 && config->detector.bits != 16) {
-        log_error("config: %sdetector.bits: %d is not 8 or 16", where(config, "detector.bits"), config->detector.bits);
+        log_error("config: %sdetector.bits: %d is not 8 or 16", config_where(config, "detector.bits"), config->detector.bits);
         good = false;
     }
     if (!(config->detector.lwir_low_k < config->detector.lwir_high_k)) {
         log_error("config: %sdetector.lwir_low_k: %g is not below detector.lwir_high_k, %g K",
-                  where(config, "detector.lwir_low_k"), config->detector.lwir_low_k, config->detector.lwir_high_k);
+                  config_where(config, "detector.lwir_low_k"), config->detector.lwir_low_k, config->detector.lwir_high_k);
         good = false;
     }
     if (!(config->detector.mwir_low_k < config->detector.mwir_high_k)) {
         log_error("config: %sdetector.mwir_low_k: %g is not below detector.mwir_high_k, %g K",
-                  where(config, "detector.mwir_low_k"), config->detector.mwir_low_k, config->detector.mwir_high_k);
+                  config_where(config, "detector.mwir_low_k"), config->detector.mwir_low_k, config->detector.mwir_high_k);
         good = false;
     }
     static const char *const of_preset[] = {"detector.f_number", "detector.obscuration", "detector.integration_ms",
@@ -593,31 +592,31 @@ Status config_check(const Config *config)
         if (strcmp(config->sensor.preset, "none") == 0 && !*config_sheet(config) &&
             config_given(config, of_preset[i])) {
             log_error("config: %s%s: overrides a sensor preset; choose one with sensor.preset or sensor.table",
-                      where(config, of_preset[i]), of_preset[i]);
+                      config_where(config, of_preset[i]), of_preset[i]);
             good = false;
         }
     if (table_has_rows(config) && strcmp(config->sensor.preset, "none") == 0) {
         log_error("config: %ssensor.table: %s is a table of sensors; choose one of its rows with sensor.preset",
-                  where(config, "sensor.table"), config->sensor.table);
+                  config_where(config, "sensor.table"), config->sensor.table);
         good = false;
     }
     good = store_alone(config) && good;
     if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&
         !(config->terrain.spacing_m >= 1 && config->terrain.spacing_m <= 30)) {
         log_error("config: %sterrain.spacing_m: %g is not 0 or 1 .. 30 m for synthetic terrain",
-                  where(config, "terrain.spacing_m"), config->terrain.spacing_m);
+                  config_where(config, "terrain.spacing_m"), config->terrain.spacing_m);
         good = false;
     }
     if (!*config->terrain.elevation && (*config->terrain.cover || *config->terrain.orthophoto)) {
         log_error("config: %sterrain.%s needs terrain.elevation: synthetic terrain does not match real land cover",
-                  where(config, *config->terrain.cover ? "terrain.cover" : "terrain.orthophoto"),
+                  config_where(config, *config->terrain.cover ? "terrain.cover" : "terrain.orthophoto"),
                   *config->terrain.cover ? "cover" : "orthophoto");
         good = false;
     }
     const bool pairs = strcmp(config->publish.pairs, "off") != 0;
     if ((pairs || config->publish.coco) && !config->publish.files) {
         log_error("config: %spublish.%s: needs image files; set publish.files: true",
-                  where(config, pairs ? "publish.pairs" : "publish.coco"), pairs ? "pairs" : "coco");
+                  config_where(config, pairs ? "publish.pairs" : "publish.coco"), pairs ? "pairs" : "coco");
         good = false;
     }
     DisEntityId id;
@@ -628,18 +627,18 @@ Status config_check(const Config *config)
         plane_choice_why(why, sizeof why, config->publish.planes);
         log_error("config: %spublish.planes: '%s' is not all, none, or a list of range, entity, part, material, "
                   "temperature, normal, instance, cover, each once, for example range,entity%s",
-                  where(config, "publish.planes"), config->publish.planes, why);
+                  config_where(config, "publish.planes"), config->publish.planes, why);
         good = false;
     }
     const unsigned of_woods = 1u << PLANE_INSTANCE | 1u << PLANE_COVER;
     if (planes != planes_all && planes & of_woods && strcmp(config->terrain.woods, "on") != 0) {
         log_error("config: %spublish.planes: instance and cover are of a world with plants: terrain.woods: on",
-                  where(config, "publish.planes"));
+                  config_where(config, "publish.planes"));
         good = false;
     }
     if (config->heat.facets % 2 == 0) {
         log_error("config: %sheat.facets: %d is even; odd, 3 .. 17, so that one of them is level",
-                  where(config, "heat.facets"), config->heat.facets);
+                  config_where(config, "heat.facets"), config->heat.facets);
         good = false;
     }
     if (!strpbrk(config->weather.day, "/.") && strcmp(config->weather.day, "clear") != 0 &&
@@ -647,12 +646,12 @@ Status config_check(const Config *config)
         WordMeant meant = word_meant(config->weather.day);
         word_consider_list(&meant, "clear|constant", '|');
         log_error("config: %sweather.day: '%s' is neither clear nor constant nor the path of a weather file: ./%s%s",
-                  where(config, "weather.day"), config->weather.day, config->weather.day, word_hint(&meant));
+                  config_where(config, "weather.day"), config->weather.day, config->weather.day, word_hint(&meant));
         good = false;
     }
     if (!*config->sensor.mount) {
         log_error("config: %ssensor.mount: is empty; auto, or a part of the host such as `primary turret`",
-                  where(config, "sensor.mount"));
+                  config_where(config, "sensor.mount"));
         good = false;
     }
     if (*config->exercise.host && strcmp(config->exercise.host, "munition") != 0 &&
@@ -660,17 +659,17 @@ Status config_check(const Config *config)
         WordMeant meant = word_meant(config->exercise.host);
         word_consider_list(&meant, "munition|observer", '|');
         log_error("config: %sexercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor "
-                  "munition nor observer%s", where(config, "exercise.host"), config->exercise.host, word_hint(&meant));
+                  "munition nor observer%s", config_where(config, "exercise.host"), config->exercise.host, word_hint(&meant));
         good = false;
     }
     if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {
         log_error("config: %sexercise.aim: '%s' is not site:application:entity, for example 1:3001:82",
-                  where(config, "exercise.aim"), config->exercise.aim);
+                  config_where(config, "exercise.aim"), config->exercise.aim);
         good = false;
     }
     if (*config->exercise.utc && !text_to_unix_s(&unix_s, config->exercise.utc)) {
         log_error("config: %sexercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100",
-                  where(config, "exercise.utc"), config->exercise.utc);
+                  config_where(config, "exercise.utc"), config->exercise.utc);
         good = false;
     }
     const char *const moment[2] = {config->exercise.from, config->exercise.to};
@@ -679,12 +678,12 @@ Status config_check(const Config *config)
         if (!span_good(moment[i])) {
             good_spans = false;
             log_error("config: %sexercise.%s: '%s' is not a number of seconds: 3471.5 is exercise time, +12 is from the "
-                      "recording's start, -5 from its end", where(config, i ? "exercise.to_s" : "exercise.from_s"),
+                      "recording's start, -5 from its end", config_where(config, i ? "exercise.to_s" : "exercise.from_s"),
                       i ? "to_s" : "from_s", moment[i]);
             good = false;
         }
     if (good_spans && span_backward(config->exercise.from, config->exercise.to)) {
-        log_error("config: %sexercise.from_s: %s is after exercise.to_s: %s", where(config, "exercise.from_s"), config->exercise.from, config->exercise.to);
+        log_error("config: %sexercise.from_s: %s is after exercise.to_s: %s", config_where(config, "exercise.from_s"), config->exercise.from, config->exercise.to);
         good = false;
     }
     good &= video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,

@@ -169,6 +169,8 @@ Status config_set(Config *config, const char *key, const char *value, const char
 Status config_set_from(Config *config, const char *key, const char *value, const char *source, const char *file);
 /* The line of a key in a file read by config_read; 0: not set there. */
 int    config_line(const char *key, const char *path);
+/* `node.yaml:3: ` where the key was set in a file, for messages; else "". Valid until the next call of the thread. */
+const char *config_where(const Config *config, const char *key);
 /* The data sheet of sensor.table; empty: none, or it is a .csv. */
 const char *config_sheet(const Config *config);
 /* Makes the tables of this configuration take precedence (etc_own), for the whole process. */
