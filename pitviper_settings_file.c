@@ -175,8 +175,8 @@ static Status fill_value(void *out, const Reading *r, const SettingTable *table,
         char accepted[512], said[64];
         settings_accepted(accepted, sizeof accepted, row);
         text_escape(said, sizeof said, shown(value), strlen(shown(value)));
-        log_error("%s: %s: %s%s: '%s' is not one value: needs %s", table->module, source, settings_prefix(table),
-                  row->name, said, accepted);
+        log_error("%s: %s: %s%s needs one value, not '%s': %s", table->module, source, settings_prefix(table), row->name,
+                  said, accepted);
         return STATUS_BAD_VALUE;
     }
     return settings_store(out, table, row, text_of(value), source, r->file);

@@ -32,7 +32,7 @@ void run_case_log(void *user, LogLevel level, const char *line)
         fprintf(stderr, "%s%s\n", log_head(level), line);
         return;
     }
-    say(case_here, level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "");
+    say(case_here, log_head(level));
     say(case_here, line);
     say(case_here, "\n");
 }
@@ -41,8 +41,9 @@ void run_case_log(void *user, LogLevel level, const char *line)
 static void last_error(char *out, size_t out_size, const char *said)
 {
     const char *found = NULL;
-    for (const char *at = said; (at = strstr(at, "error: ")); at++)
-        if (at == said || at[-1] == '\n') found = at + 7;
+    const char *const head = log_head(LOG_ERROR);
+    for (const char *at = said; (at = strstr(at, head)); at++)
+        if (at == said || at[-1] == '\n') found = at + strlen(head);
     if (found) snprintf(out, out_size, "%.*s", (int)strcspn(found, "\n"), found);
     else snprintf(out, out_size, "no error message");
 }

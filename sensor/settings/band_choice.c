@@ -27,8 +27,8 @@ static bool no_bands(const char *text, const char *band, size_t length, const ch
         word_consider(&meant, one);
         at += n;
     }
-    log_error("config: %ssensor.bands: '%s': '%s' is not a band; a list of optical, radar or channels of "
-              "etc/channels.csv: %s%s", where, text, word, further, word_hint(&meant));
+    log_error("config: %ssensor.bands: '%s' is not a list of optical, radar or channels of etc/channels.csv: %s; there is "
+              "no '%s'%s", where, text, further, word, word_hint(&meant));
     return false;
 }
 

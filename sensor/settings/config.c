@@ -607,7 +607,8 @@ Status config_check(const Config *config)
                   config_where(config, "terrain.spacing_m"), config->terrain.spacing_m);
         good = false;
     }
-    if (!*config->terrain.elevation && (*config->terrain.cover || *config->terrain.orthophoto)) {
+    if (!*config->terrain.elevation && !*config->terrain.store &&
+        (*config->terrain.cover || *config->terrain.orthophoto)) {
         log_error("config: %sterrain.%s needs terrain.elevation: synthetic terrain does not match real land cover",
                   config_where(config, *config->terrain.cover ? "terrain.cover" : "terrain.orthophoto"),
                   *config->terrain.cover ? "cover" : "orthophoto");

@@ -20,7 +20,7 @@ while IFS= read -r page; do
         [ -e "$(dirname "$page")/$link" ] || fail "${page#"$tmp/prefix/"}: its link to $link leads nowhere"
     done < <(grep -oE '\]\([^)]+\)' "$page" | sed -E 's/^\]\(//; s/\)$//; s/#.*//' | grep -vE '^$|://' | sort -u)
 done < <(find "$tmp/prefix" -name '*.md')
-check "links were looked at" [ $links -gt 150 ]
+check "links were looked at" [ $links -gt 40 ]
 check "the list that uninstalling goes by" grep -qF "$tmp/prefix/bin/pitviper" "$build/install_manifest.txt"
 check "man -M" eval 'man -M "$tmp/prefix/share/man" pitviper 2>/dev/null | grep -q "sensor simulation"'
 check "man -l" eval 'man -l "$build/pitviper.1" 2>/dev/null | grep -q "sensor simulation"'
