@@ -367,17 +367,14 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
             print_help(command);
             return 1 + 0;
         }
-        if (!row || !take(o, row, optarg) || !note_given(o, row, optarg)) {
-            fprintf(stderr, "see `pitviper %s --help`\n", name);
-            return 1 + 2;
-        }
+        if (!row || !take(o, row, optarg) || !note_given(o, row, optarg)) return 1 + 2;
     }
     if (optind + (command == COMMAND_REPLAY) != argc) {
         if (command == COMMAND_RUN)
-            log_error("options: '%s' is not an option; a live node takes no log, `replay` does", argv[optind]);
-        fprintf(stderr, "usage: pitviper %s [options]; see `pitviper %s --help`\n",
-                command == COMMAND_REPLAY ? "replay LOG" : "run [-c FILE]", name);
-        return 1 + 2;
+            return 1 + wrong_line(name, "'%s' is not an option; a live node takes no log, `pitviper replay` does",
+                                  argv[optind]);
+        if (optind == argc) return 1 + wrong_line(name, "no LOG is named: usage: pitviper replay LOG [options]");
+        return 1 + wrong_line(name, "one LOG at a time, not also '%s'", argv[optind + 1]);
     }
     if (command == COMMAND_REPLAY) o->log = argv[optind];
     if (o->host_count == 1 && config_set(&o->config, "exercise.host", o->host[0], "--host") != STATUS_OK) return 1 + 2;

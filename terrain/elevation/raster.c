@@ -675,7 +675,7 @@ static bool read_kept(float *out, const Raster *raster, int x0, int y0, int widt
 
 static Status damaged(const RasterSheet *s, const char *key)
 {
-    log_error("%s: %s is damaged: %s; fetch it anew, or leave it out", key, s->path, reason("rows are missing"));
+    log_error("%s: %s is damaged: %s; fetch it again, or leave it out", key, s->path, reason("rows are missing"));
     return STATUS_IO;
 }
 
