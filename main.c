@@ -8,6 +8,7 @@
 #include "sensor/commands/heat.h"
 #include "sensor/commands/inspect.h"
 #include "sensor/node/live.h"
+#include "sensor/node/stop.h"
 #include "sensor/commands/model.h"
 #include "sensor/commands/rcs.h"
 #include "sensor/commands/record.h"
@@ -16,10 +17,12 @@
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
 #include "sensor/regress/regress.h"
+#include "sensor/settings/next_option.h"
 #include "terrain/probe.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,22 +76,22 @@ static void probe_usage(FILE *to)
 static int probe_command(int argc, char **argv)
 {
     size_t state[2] = {0};
-    if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
-        probe_usage(argc < 2 ? stderr : stdout);
-        return argc < 2 ? 2 : 0;
-    }
-    for (const Probe *probe; (probe = next_probe(state));) {
-        if (strcmp(argv[1], probe->name) != 0) continue;
-        if (!probe->arguments && argc > 2) {
-            text_print(stderr, "pitviper probe: %s takes no argument, but `%s` was given; rows are read from standard "
-                               "input\n",
-                    probe->name, argv[2]);
-            return 2;
+    if (argc < 2) return wrong_line("probe", "no probe is named: usage: pitviper probe WHAT [ARGUMENT ...] < rows.csv");
+    WordMeant meant = word_meant(argv[1]);
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+            probe_usage(stdout);
+            return 0;
         }
+    for (const Probe *probe; (probe = next_probe(state));) {
+        word_consider(&meant, probe->name);
+        if (strcmp(argv[1], probe->name) != 0) continue;
+        if (!probe->arguments && argc > 2)
+            return wrong_line("probe", "%s takes no argument, but '%s' was given; rows are read from standard input",
+                              probe->name, argv[2]);
         return probe_run(probe, argc - 1, argv + 1, stdin, stdout) == STATUS_OK ? 0 : 1;
     }
-    text_print(stderr, "pitviper probe: no such probe: %s; `pitviper probe --help` lists them\n", argv[1]);
-    return 2;
+    return wrong_line("probe", "no such %s: %s%s", argv[1][0] == '-' ? "option" : "probe", argv[1], word_hint(&meant));
 }
 
 static int run_bench(int argc, char **argv) { return bench_command(argc, argv, bench_next_suite); }
@@ -100,28 +103,31 @@ static const struct Command {
     int (*run)(int argc, char **argv);
     const char *help;
     bool        reads_tables; /* of etc/, except with --default and --keys */
+    bool        only_prints;  /* and ends when what reads that has gone */
 } commands[] = {
-    {"run", run_command, "render a live exercise on the network", true},
-    {"replay", replay_command, "render what a missile's seeker sees in a recorded exercise", true},
+    {"run", run_command, "render a live exercise on the network", true, false},
+    {"replay", replay_command, "render what a missile's seeker sees in a recorded exercise", true, false},
     {"frame", frame_command, "re-render one saved frame without its log and verify that it is the same to the bit",
-     true},
-    {"regress", regress_command, "re-render recorded exercises and compare them with approved baselines", true},
-    {"inspect", inspect_command, "list the entities of a recording, what they did, what was malformed", true},
-    {"check", check_command, "validate a configuration file; or print one to start from", true},
-    {"exercise", exercise_command, "generate an exercise from a scenario: record it or send it", true},
-    {"record", record_command, "record an exercise from the network", false},
-    {"model", model_command, "list models; describe or draw one, built in or from a file", true},
-    {"heat", heat_command, "a vehicle's temperatures over a clear day: table, plot and thermal images", true},
-    {"rcs", rcs_command, "a target's radar cross section over aspect: table, polar plot and a radar image", true},
-    {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true},
-    {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false},
-    {"bench", run_bench, "benchmark this build on this machine: times with their errors", true},
+     true, false},
+    {"regress", regress_command, "re-render recorded exercises and compare them with approved baselines", true, false},
+    {"inspect", inspect_command, "list the entities of a recording, what they did, what was malformed", true, true},
+    {"check", check_command, "validate a configuration file; or print one to start from", true, true},
+    {"exercise", exercise_command, "generate an exercise from a scenario: record it or send it", true, false},
+    {"record", record_command, "record an exercise from the network", false, false},
+    {"model", model_command, "list models; describe or draw one, built in or from a file", true, false},
+    {"heat", heat_command, "a vehicle's temperatures over a clear day: table, plot and thermal images", true, false},
+    {"rcs", rcs_command, "a target's radar cross section over aspect: table, polar plot and a radar image", true, false},
+    {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true, false},
+    {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false, true},
+    {"bench", run_bench, "benchmark this build on this machine: times with their errors", true, false},
 };
 enum { command_count = sizeof commands / sizeof commands[0] };
 
 static const char common_help[] =
     "  -q, --quiet        only errors, warnings and requested output: no choices, progress, notices or summary\n"
-    "  -v, --verbose      also the tables, settings and models read, and where the time goes\n";
+    "  -v, --verbose      also the tables, settings and models read, and where the time goes\n"
+    "  -h, --help         print the help of the command\n"
+    "  -V, --version      print the version\n";
 
 static void usage(FILE *to)
 {
@@ -156,10 +162,18 @@ static bool environment_good(const struct Command *command, int argc, char **arg
     return false;
 }
 
-/* Exit code 1 when the output could not be written. */
+/* Whether standard output is a pipe that its reader has left. */
+static bool reader_has_gone(void)
+{
+    struct pollfd out = {.fd = STDOUT_FILENO};
+    return poll(&out, 1, 0) == 1 && out.revents & POLLERR;
+}
+
+/* Exit code 1 when the output could not be written; that nobody wanted the rest of it is no failure. */
 static int printed(int code)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    if (reader_has_gone()) return code;
     if (code == 0) log_error("cannot write the output: %s", errno ? strerror(errno) : "it is closed");
     return code ? code : 1;
 }
@@ -177,17 +191,36 @@ static bool take_verbosity(int *argc, char **argv)
         if (!q && !v) argv[kept++] = argv[i];
     }
     argv[*argc = kept] = NULL;
-    if (quiet && verbose) fputs("pitviper: --quiet and --verbose exclude each other\n", stderr);
+    if (quiet && verbose) log_error("--quiet and --verbose exclude each other; leave one out");
     else if (quiet) log_set_level(LOG_WARN);
     else if (verbose) log_set_level(LOG_DETAIL);
     return !(quiet && verbose);
 }
 
-static bool asks_for_help(int argc, char **argv)
+/* Whether an option is anywhere before `--`. */
+static bool asks_for(const char *name, const char *letter, int argc, char **argv)
 {
     for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) return true;
+        if (strcmp(argv[i], name) == 0 || strcmp(argv[i], letter) == 0) return true;
     return false;
+}
+
+static int unknown(const char *what, const char *typed, bool topics_too)
+{
+    char      topics[1024] = "";
+    WordMeant meant = word_meant(typed);
+    FILE     *list = topics_too ? fmemopen(topics, sizeof topics - 1, "w") : NULL;
+    for (int i = 0; i < command_count; i++) word_consider(&meant, commands[i].name);
+    word_consider(&meant, "help");
+    if (typed[0] == '-') word_consider_list(&meant, "--help|--version", '|');
+    if (list) {
+        reference_list(list);
+        fclose(list);
+        word_consider_list(&meant, topics, ' ');
+    }
+    const char *hint = word_hint(&meant);
+    log_error("no such %s: %s%s `pitviper --help` lists them", what, typed, *hint ? hint : ";");
+    return 2;
 }
 
 static int run_named(int argc, char **argv)
@@ -195,16 +228,20 @@ static int run_named(int argc, char **argv)
     char called[64];
     for (int i = 0; i < command_count; i++) {
         if (strcmp(argv[0], commands[i].name) != 0) continue;
-        const bool help = asks_for_help(argc, argv);
+        const bool help = asks_for("--help", "-h", argc, argv);
+        if (asks_for("--version", "-V", argc, argv)) {
+            puts("pitviper " PITVIPER_VERSION);
+            return 0;
+        }
         if (!help && !environment_good(&commands[i], argc, argv)) return 1;
         snprintf(called, sizeof called, "pitviper %s", argv[0]);
+        if (!commands[i].only_prints) stop_outlive_readers();
         argv[0] = called; /* program name in getopt's messages */
         const int code = commands[i].run(argc, argv);
         if (help && code == 0) printf("\n%s", common_help);
         return code;
     }
-    text_print(stderr, "pitviper: no such command: %s; `pitviper --help` lists them\n", argv[0]);
-    return 2;
+    return unknown(argv[0][0] == '-' ? "option" : "command", argv[0], false);
 }
 
 /* `pitviper help` COMMAND, TOPIC, or --markdown. */
@@ -212,7 +249,7 @@ static int help_command(int argc, char **argv)
 {
     static char help[] = "--help";
     if (argc > 1) {
-        text_print(stderr, "pitviper help: takes one command or topic, not also `%s`\n", argv[1]);
+        log_error("help: takes one command or topic, not also '%s'", argv[1]);
         return 2;
     }
     for (int i = 0; i < command_count; i++)
@@ -222,8 +259,7 @@ static int help_command(int argc, char **argv)
         return 0;
     }
     if (reference_write(stdout, argv[0])) return 0;
-    text_print(stderr, "pitviper help: no such command or topic: %s; `pitviper --help` lists them\n", argv[0]);
-    return 2;
+    return unknown("command or topic", argv[0], true);
 }
 
 int main(int argc, char **argv)
@@ -232,7 +268,7 @@ int main(int argc, char **argv)
     thread_flush_denormals(); /* so that a probe computes as a frame does */
     if (!take_verbosity(&argc, argv)) return 2;
     if (argc < 2) {
-        usage(stderr);
+        log_error("no command is given; `pitviper --help` lists them, `pitviper replay LOG` renders a recording");
         return 2;
     }
     if (argc > 2 && strcmp(argv[1], "help") == 0) return printed(help_command(argc - 2, argv + 2));
@@ -240,7 +276,7 @@ int main(int argc, char **argv)
         usage(stdout);
         return printed(0);
     }
-    if (strcmp(argv[1], "--version") == 0) {
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
         puts("pitviper " PITVIPER_VERSION);
         return printed(0);
     }

@@ -42,6 +42,7 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
 
     table->config = *config;
     table->catalog = catalog;
+    table->arrival_s = NAN;
     const int slots = config->capacity + 1;
     table->slot = calloc((size_t)slots, sizeof *table->slot);
     table->free_slot = calloc((size_t)slots, sizeof *table->free_slot);
@@ -180,6 +181,7 @@ const EffectCounters *entity_table_effect_counters(const EntityTable *table)
 
 static const uint16_t all_ids = 0xFFFF;
 
+enum { frozen_transmits = 1 << 1 }; /* frozen behaviour: entities go on transmitting updates */
 enum { most_rounds = 1000 }; /* of one Fire PDU: a burst, not a number that a sender made up */
 
 void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
@@ -245,6 +247,7 @@ void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
         slot->spin_from_s = stop_s;
         slot->stop_s = stop_s;
         slot->stopped = true;
+        slot->reports_on = pdu->frozen_behaviour & frozen_transmits;
         table->stopped_count++;
         entity_effects_report(table, slot, stop_s);
     }
@@ -291,6 +294,12 @@ static Status take_report(EntityTable *table, const DisPdu *pdu, double t_s, Dis
                   : entity_table_entity_state(table, &pdu->entity_state, t_s);
 }
 
+void entity_table_arrival(EntityTable *table, double now_s, bool by_stamp)
+{
+    table->arrival_s = now_s;
+    table->by_stamp  = by_stamp;
+}
+
 void entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters)
 {
     if (!isfinite(t_s)) return;
@@ -301,9 +310,9 @@ void entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCoun
         break;
     case dis_pdu_fire: entity_table_fire(table, &pdu->fire, t_s); break;
     case dis_pdu_detonation: entity_table_detonation(table, &pdu->detonation, t_s); break;
-    case dis_pdu_remove_entity: entity_table_remove(table, &pdu->remove, t_s); break;
-    case dis_pdu_start_resume: entity_table_start(table, &pdu->start, t_s); break;
-    case dis_pdu_stop_freeze: entity_table_stop(table, &pdu->stop, t_s); break;
+    case dis_pdu_remove_entity: case dis_pdu_remove_entity_r: entity_table_remove(table, &pdu->remove, t_s); break;
+    case dis_pdu_start_resume: case dis_pdu_start_resume_r: entity_table_start(table, &pdu->start, t_s); break;
+    case dis_pdu_stop_freeze: case dis_pdu_stop_freeze_r: entity_table_stop(table, &pdu->stop, t_s); break;
     default: break;
     }
 }

@@ -1,6 +1,7 @@
 /* sensor/commands/exercise.c: writes the datagrams of a scenario to a file, to the network by the clock, or one by
  * one to a folder. */
 #include "sensor/commands/exercise.h"
+#include "pitviper_output.h"
 
 #include "dis/recorder.h"
 #include "dis/udp.h"
@@ -9,6 +10,7 @@
 #include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <netdb.h>
 #include <stdio.h>
@@ -155,7 +157,7 @@ static int parse(Options *o, int argc, char **argv)
         case INTERFACE:
             ok = optarg[0] && strlen(optarg) < sizeof o->udp.interface;
             if (ok) strcpy(o->udp.interface, optarg);
-            else log_error("exercise: --interface: '%s' is no name of an interface; `ip link` lists them", optarg);
+            else log_error("exercise: --interface: '%s' is not the name of an interface; `ip link` lists them", optarg);
             break;
         case TTL: ok = whole(&o->udp.ttl, "ttl", optarg, 0, 255); break;
         case SPEED: ok = parse_speed(&o->speed, optarg); break;
@@ -163,19 +165,17 @@ static int parse(Options *o, int argc, char **argv)
         case HELP: fputs(help, stdout); return 1;
         default: ok = false; break; /* reported by next_option */
         }
-        if (!ok) {
-            fputs("see `pitviper exercise --help`\n", stderr);
-            return 1 + 2;
-        }
+        if (!ok) return 1 + 2;
     }
-    if (optind + 1 != argc || !(o->out || o->send || o->datagrams)) {
-        fputs("usage: pitviper exercise SCENARIO (-o LOG | --send ADDRESS); see `pitviper exercise --help`\n", stderr);
-        return 1 + 2;
-    }
+    if (optind + 1 < argc) return 1 + wrong_line("exercise", "one SCENARIO at a time, not also '%s'", argv[optind + 1]);
+    if (optind == argc || !(o->out || o->send || o->datagrams))
+        return 1 + wrong_line("exercise", "%s: usage: pitviper exercise SCENARIO (-o LOG | --send ADDRESS)",
+                              optind == argc ? "no SCENARIO is named" : "neither -o LOG nor --send ADDRESS is given");
     if (of_sending && !o->send) {
         log_error("exercise: --%s is of datagrams that are sent: give --send ADDRESS too, or leave it out", of_sending);
         return 1 + 2;
     }
+    if (o->out && !dis_recorder_name("exercise: -o", o->out)) return 1 + 2;
     o->scenario = argv[optind];
     return !o->send || parse_address(&o->udp, o->send) ? 0 : 1 + 2;
 }
@@ -199,6 +199,24 @@ static bool is_file(const char *path)
     return stat(path, &about) == 0 && !S_ISDIR(about.st_mode);
 }
 
+/* Of the scenarios that come with the program. */
+static WordMeant scenario_meant(const char *name)
+{
+    WordMeant meant = word_meant(name);
+    char      folder[path_size];
+    DIR      *there = etc_path(folder, sizeof folder, "scenarios") ? opendir(folder) : NULL;
+    for (struct dirent *entry; there && (entry = readdir(there));) {
+        char  known[256];
+        char *dot;
+        snprintf(known, sizeof known, "%s", entry->d_name);
+        if (!(dot = strrchr(known, '.')) || strcmp(dot, ".yaml") != 0) continue;
+        *dot = 0;
+        word_consider(&meant, known);
+    }
+    if (there) closedir(there);
+    return meant;
+}
+
 /* A file, or the name of a scenario that comes with the program; a folder of that name is neither. */
 static Status read_scenario(Scenario *scenario, const Options *o)
 {
@@ -208,8 +226,9 @@ static Status read_scenario(Scenario *scenario, const Options *o)
         snprintf(name, sizeof name, "scenarios/%s.yaml", o->scenario);
         char bundled[path_size];
         if (!etc_path(bundled, sizeof bundled, name) || !is_file(bundled)) {
-            log_error("exercise: there is no file '%s' and no scenario of that name; `pitviper exercise --help` lists "
-                      "them", o->scenario);
+            WordMeant meant = scenario_meant(o->scenario);
+            log_error("exercise: there is no file '%s' and no scenario of that name%s `pitviper exercise --help` lists "
+                      "them", o->scenario, *word_hint(&meant) ? meant.hint : ";");
             return STATUS_BAD_VALUE;
         }
         memcpy(path, bundled, sizeof path);
@@ -234,10 +253,10 @@ static bool datagram_file(Run *run, const uint8_t *bytes, size_t octets)
     char path[path_size];
     if (!run->datagrams) return true;
     const int length = snprintf(path, sizeof path, "%s/%04d.pdu", run->datagrams, ++run->files);
-    FILE     *file = length > 0 && length < (int)sizeof path ? fopen(path, "wb") : NULL;
+    FILE     *file = length > 0 && length < (int)sizeof path ? output_file(path, 0) : NULL;
     bool      ok = file && (octets == 0 || fwrite(bytes, octets, 1, file) == 1);
     if (file && fclose(file) != 0) ok = false;
-    if (!ok) log_error("exercise: cannot write %s: %s", path, strerror(errno));
+    if (!ok) log_error("exercise: cannot write %s: %s", path, output_reason(errno));
     return ok;
 }
 
@@ -325,14 +344,15 @@ static Status open_outputs(Run *run, const Options *o, double epoch_unix_s)
 {
     char   comment[300];
     Status status = STATUS_OK;
-    if (o->datagrams && mkdir(o->datagrams, 0777) != 0 && errno != EEXIST) {
-        log_error("exercise: cannot make %s: %s", o->datagrams, strerror(errno));
+    if (o->datagrams && output_folder(o->datagrams) != 0) {
+        log_error("exercise: cannot make %s: %s", o->datagrams, output_reason(errno));
         return STATUS_IO;
     }
     run->datagrams = o->datagrams;
     if (o->send) status = dis_udp_open_sender(&run->udp, &o->udp);
     snprintf(comment, sizeof comment, "pitviper exercise %.200s", o->scenario);
     if (status == STATUS_OK && o->out) status = dis_recorder_open(&run->recorder, o->out, comment);
+    if (status == STATUS_OK && o->out) status = dis_recorder_begin(run->recorder);
     /* whole seconds and the fraction apart: a double of Unix time resolves only 0.2 us */
     run->epoch_ns = (int64_t)floor(epoch_unix_s) * 1000000000 + llround(fmod(epoch_unix_s, 1) * 1e9);
     return status;
@@ -347,8 +367,7 @@ int exercise_command(int argc, char **argv)
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
 
-    Status status = o.out ? overwrite_file("exercise", o.out, o.overwrite) : STATUS_OK;
-    if (status == STATUS_OK) status = read_scenario(&scenario, &o);
+    Status status = read_scenario(&scenario, &o);
     if (status == STATUS_NO_MEMORY) log_error("exercise: out of memory");
     if (status != STATUS_OK) return 1;
     for (int i = 0; i < o.set_count; i++)
@@ -358,6 +377,7 @@ int exercise_command(int argc, char **argv)
         }
     status = scenario_check(&scenario);
     if (status == STATUS_OK) status = cast_create(&cast, &scenario);
+    if (status == STATUS_OK && o.out) status = overwrite_file("exercise", o.out, o.overwrite);
     if (status == STATUS_OK) {
         stop_by_signals();
         const double epoch_unix_s = epoch_of(&scenario, o.send != NULL);

@@ -1,5 +1,6 @@
 /* sensor/regress/run_case.c: runs one case: its log, settings and replay, then the comparison or the update. */
 #include "sensor/regress/run_case.h"
+#include "pitviper_output.h"
 
 #include "sensor/settings/config.h"
 #include "sensor/publish/frame_files.h"
@@ -28,12 +29,11 @@ static void say(CaseResult *r, const char *text)
 void run_case_log(void *user, LogLevel level, const char *line)
 {
     (void)user;
-    const char *head = level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "";
     if (!case_here) {
-        fprintf(stderr, "%s%s\n", head, line);
+        fprintf(stderr, "%s%s\n", log_head(level), line);
         return;
     }
-    say(case_here, head);
+    say(case_here, log_head(level));
     say(case_here, line);
     say(case_here, "\n");
 }
@@ -42,8 +42,9 @@ void run_case_log(void *user, LogLevel level, const char *line)
 static void last_error(char *out, size_t out_size, const char *said)
 {
     const char *found = NULL;
-    for (const char *at = said; (at = strstr(at, "error: ")); at++)
-        if (at == said || at[-1] == '\n') found = at + 7;
+    const char *const head = log_head(LOG_ERROR);
+    for (const char *at = said; (at = strstr(at, head)); at++)
+        if (at == said || at[-1] == '\n') found = at + strlen(head);
     if (found) snprintf(out, out_size, "%.*s", (int)strcspn(found, "\n"), found);
     else snprintf(out, out_size, "no error message");
 }
@@ -138,7 +139,7 @@ static bool make_paths_absolute(const char *config, const CaseResult *r)
     log_suppress(true);
     if (ok) *read = config_default();
     if (ok && config_read_as(read, config, in_case) == STATUS_OK) {
-        FILE *file = fopen(config, "w");
+        FILE *file = output_file(config, 0);
         if (file) config_write_settings(file, read);
         ok = file && fclose(file) == 0;
     }
@@ -158,13 +159,13 @@ static bool find_config(char config[path_size], CaseResult *r)
         snprintf(config, path_size, "%s", path);
     } else if (*r->c.config) {
         snprintf(config, path_size, "%.4080s/config.yaml", r->work);
-        FILE *file = fopen(config, "w");
+        FILE *file = output_file(config, 0);
         bool  ok   = file && fputs(r->c.config, file) >= 0;
         if (file && fclose(file) != 0) ok = false;
         ok = ok && make_paths_absolute(config, r);
         if (!ok)
             return end_case(r, CASE_BROKEN, "cannot write %.300s: %s; choose another place with --work", config,
-                            strerror(errno));
+                            output_reason(errno));
     }
     return true;
 }

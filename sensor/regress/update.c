@@ -1,5 +1,6 @@
 /* sensor/regress/update.c: approves the output of a run: writes the baseline (record/) and card.md. */
 #include "sensor/regress/update.h"
+#include "pitviper_output.h"
 
 #include "sensor/publish/frame_files.h"
 
@@ -13,13 +14,10 @@ enum { path_size = case_path_size + 64, file_most = 64 << 20 };
 
 static Status write_file(const char *path, const char *text, size_t octets)
 {
-    char  part[path_size + 16];
-    FILE *file = (size_t)snprintf(part, sizeof part, "%s.part", path) < sizeof part ? fopen(part, "wb") : NULL;
-    bool  ok   = file && fwrite(text, 1, octets, file) == octets;
-    if (file && fclose(file) != 0) ok = false;
-    if (ok && rename(part, path) == 0) return STATUS_OK;
-    log_error("regress: cannot write %s: %s", path, strerror(errno));
-    if (file) unlink(part);
+    FILE *file = output_begin(path, 0);
+    if (file) fwrite(text, 1, octets, file);
+    if (file && output_end(file, path)) return STATUS_OK;
+    log_error("regress: cannot write %s: %s", path, output_reason(errno));
     return STATUS_IO;
 }
 
@@ -36,8 +34,8 @@ static Status copy_file(const char *from_folder, const char *to_folder, const ch
     return status;
 }
 
-/* run.json without what differs in every run, so that an equal run gives an equal file. */
-static Status copy_run(const char *from_folder, const char *to_folder)
+/* run.json without what differs in every run and place, so that an equal run gives an equal file. */
+static Status copy_run(const char *from_folder, const char *to_folder, const Case *c)
 {
     static const char *const other[] = {"timings_ms", "threads"};
     char   path[path_size], *text, *same = NULL;
@@ -47,6 +45,7 @@ static Status copy_run(const char *from_folder, const char *to_folder)
     if (status != STATUS_OK) return status;
     status = json_text_without(&same, text, octets, other, 2, "regress", path);
     free(text);
+    if (status == STATUS_OK) status = case_relative(&same, c);
     snprintf(path, sizeof path, "%.4090s/run.json", to_folder);
     if (status == STATUS_OK) status = write_file(path, same, strlen(same));
     free(same);
@@ -67,13 +66,13 @@ static bool move_files(const char *folder, const char *to)
 {
     char from_path[path_size + 300], to_path[path_size + 300];
     bool ok        = true;
-    DIR *directory = opendir(folder);
+    DIR *directory = output_list(folder);
     if (!directory) return errno == ENOENT;
     for (struct dirent *entry; (entry = readdir(directory));) {
         if (!is_of_record(entry->d_name)) continue;
         snprintf(from_path, sizeof from_path, "%s/%s", folder, entry->d_name);
         snprintf(to_path, sizeof to_path, "%s/%s", to ? to : "", entry->d_name);
-        ok = (to ? rename(from_path, to_path) : unlink(from_path)) == 0 && ok;
+        ok = (to ? output_rename(from_path, to_path) : output_remove(from_path)) == 0 && ok;
     }
     closedir(directory);
     return ok;
@@ -90,7 +89,7 @@ static Status write_products(const CaseResult *r, const char *out, const char *t
         frame_free(&frame);
     }
     if (status == STATUS_OK) status = copy_file(out, to, "truth.jsonl");
-    if (status == STATUS_OK) status = copy_run(out, to);
+    if (status == STATUS_OK) status = copy_run(out, to, &r->c);
     return status;
 }
 
@@ -228,7 +227,7 @@ void update_case(CaseResult *r, const char *why)
     if (status == STATUS_OK) status = write_products(r, out, fresh, date);
     if (status == STATUS_OK && (frame_files_folder(record) != STATUS_OK || !move_files(record, NULL) ||
                                 !move_files(fresh, record))) {
-        log_error("regress: cannot write in %s: %s", record, strerror(errno));
+        log_error("regress: cannot write in %s: %s", record, output_reason(errno));
         status = STATUS_IO;
     }
     if (status == STATUS_OK) status = write_card(r, why, &run, date);
