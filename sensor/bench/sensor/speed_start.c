@@ -1,5 +1,6 @@
 /* sensor/bench/sensor/speed_start.c: what comes before the first frame: the set-up of a world by its parts, as a node with the
  * default settings makes it over synthetic terrain; and a whole variant of a sweep, a process that does all of it. */
+#include "pitviper_output.h"
 #include "sensor/bench/sensor/network_node.h"
 #include "sensor/bench/sensor/speed_private.h"
 #include "sensor/settings/config.h"
@@ -119,7 +120,7 @@ static double run_s(const char *const *argument, const char *said)
 {
     struct rusage unused;
     const double  begun_s = wall_clock_s();
-    const int     out = open(said, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    const int     out = output_open(said, 0);
     const pid_t   child = out < 0 ? -1 : node_start(argument, out, out);
     const int     code = child > 0 ? node_finish(child, 600, &unused) : -1;
     if (out >= 0) close(out);
@@ -142,7 +143,7 @@ static Status time_sweep(Speed *s)
     const char *const replay[] = {"pitviper", "replay", log, "--size", "96x64", "--only", "30", "--no-files",
                                   "--sweep", sweep, "--out", out, NULL};
     const char *const gains = variants == 2 ? "[1, 1.1]" : "[1, 1.1, 1.2, 1.3]";
-    FILE             *file = fopen(sweep, "w");
+    FILE             *file = output_file(sweep, 0);
     bool              ok = file && fprintf(file, "axes:\n  detector.gain: %s\n", gains) > 0;
     ok = file && fclose(file) == 0 && ok;
     bench_progress(s->bench, "a sweep");
