@@ -61,9 +61,16 @@ static bool wanted(const Options *o, int *at, double n)
     return *at < o->only_count && o->only[*at] == n;
 }
 
-/* The part of a span that --only needs: up to the last frame it names; all of them must be in the span. */
+/* The part of a span that --only needs: up to the last frame it names; all of them, and those to be saved, must be in the
+ * span. */
 static Status take_only(double *last, const Options *o, double first)
 {
+    for (int i = 0, at = 0; i < o->save_count; i++)
+        if (o->save[i] < first || o->save[i] > *last || !wanted(o, &at, o->save[i])) {
+            log_error("replay: --save-frame: frame %d is not rendered: they go from %.0f to %.0f%s; see also --from, --to and --rate",
+                      o->save[i], first, *last, o->only_count ? ", those of --only" : "");
+            return STATUS_BAD_VALUE;
+        }
     if (o->only_count == 0) return STATUS_OK;
     const int low = o->only[0], high = o->only[o->only_count - 1];
     if (low < first || high > *last) {

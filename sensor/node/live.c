@@ -45,6 +45,7 @@ typedef struct Live {
     double       begun_s, flushed_s, shown_s;
     uint64_t     shown_frames;      /* by then */
     int64_t      due_ns;            /* Unix time of the present frame */
+    double       rate_hz;           /* of frames, asked; 0: not known yet */
     double       latency_s;         /* from then until it was rendered, the worst since shown_s; NaN: none */
 } Live;
 
@@ -296,7 +297,8 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     const double from_s = fmax(plan->start_s, span_time_s(o->config.exercise.from, plan->start_s, NAN)); /* NaN: none */
     const double   to_s   = span_time_s(o->config.exercise.to, plan->start_s, NAN);
     const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
-    l->player = player;
+    l->player  = player;
+    l->rate_hz = grid->rate_hz;
     health_making(&l->health, wall_clock_s());
     l->health.sample.host = plan->any_munition                      ? HEALTH_MUNITION
                             : dis_entity_id_is_none(plan->host) ? HEALTH_OBSERVER
@@ -388,16 +390,22 @@ static void say_summary(const Live *l)
     if (l->health.sample.publishes)
         snprintf(sent, sizeof sent, "; PDUs sent %llu, not sent %llu", (unsigned long long)c->sent,
                  (unsigned long long)c->send_failed);
+    const uint64_t frames = l->health.sample.frames, due = frames + c->frames_late;
     log_info("run: %llu datagrams heard, %llu of them our own; lost %llu; frames made %llu, left out %llu%s",
              (unsigned long long)c->datagrams, (unsigned long long)l->run.own, (unsigned long long)lost(c),
-             (unsigned long long)l->health.sample.frames, (unsigned long long)c->frames_late, sent);
+             (unsigned long long)frames, (unsigned long long)c->frames_late, sent);
+    if (c->frames_late > 0 && frames > 0 && l->rate_hz > 0)
+        (2 * frames < due ? log_warn : log_info)("run: kept %.2g of %g frames a second%s", l->rate_hz * (double)frames / (double)due,
+                                                 l->rate_hz, 2 * frames < due ? ": too slow for this machine; a smaller --size, a "
+                                                 "lower --rate, fewer --bands or quality.frame_ms" : "");
     if (c->files_failed || c->files_left_out)
         log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or "
                  "--no-files leaves more time", (unsigned long long)c->files_left_out,
                  (unsigned long long)c->files_failed);
 }
 
-/* A run without any result of one requested kind is a failure: no frame, no file of any frame, no PDU of any. */
+/* A run without any result of one requested kind is a failure: no frame, no file of any frame, no PDU of any. A node that
+ * was stopped while it heard nothing has not failed. */
 static Status verdict(Live *l)
 {
     HealthSample *s = &l->health.sample;
@@ -405,6 +413,10 @@ static Status verdict(Live *l)
     HealthNames   names = names_of(l, NULL);
     if (*l->host) names.host = l->host;
     s->now_s = wall_clock_s();
+    if (s->frames == 0 && stop_asked() && l->counters.datagrams == 0) { /* idle, and told to stop */
+        log_info("run: stopped before the first frame: nothing was heard");
+        return STATUS_OK;
+    }
     if (s->frames == 0) {
         health_text(text, health_final(s), s, &names);
         log_error("run: ended before the first frame: %s", text);

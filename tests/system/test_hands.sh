@@ -88,7 +88,8 @@ for wrong in "speed --size 17" "speed --model none.obj" "speed --bands all" "spe
     refused "bench $wrong" pitviper
     check "bench $wrong: before any work" [ ! -s "$tmp/stdout" ]
 done
-for wrong in "--csv $tmp/none/x.csv" "--report $tmp/none/x.html" "--plots $tmp/none/x/y"; do
+touch "$tmp/plain"
+for wrong in "--csv $tmp/none/x.csv" "--report $tmp/none/x.html" "--plots $tmp/plain/y"; do
     # shellcheck disable=SC2086
     run bench speed $wrong --quick
     check "bench $wrong: before any work" [ $code = 1 -a ! -s "$tmp/stdout" ]

@@ -102,6 +102,11 @@ for out, ts, name, all_of in (("a", "a.ts", "group", 41), ("b", "b/lwir.ts", "ho
     assert [round(b - a) for a, b in zip(pts, pts[1:])] == [4500] * (all_of - 1), "time stamps: 20 Hz of exercise time"
     # exercise time, modulo 33 bits, in both
     assert all(abs((unix_us(k) * 9 // 100 - p + 45) % 2**33 - 45) <= 2 for k, p in zip(klv, pts)), "metadata's time is the picture's"
+    h264 = subprocess.run(["ffmpeg", "-v", "error", "-i", f"{tmp}/{ts}", "-map", "0:v:0", "-c", "copy", "-f", "h264", "-"], stdout=subprocess.PIPE).stdout
+    stamps = [s[:12] for s in h264.replace(b"\0\0\3", b"\0\0").split(b"MISPmicrosectime")[1:]]  # ST 0604, in an SEI message
+    assert all(s[0] == 0x9F and s[3] == s[6] == s[9] == 0xFF for s in stamps), stamps[:2]
+    stamps = [int.from_bytes(s[1:3] + s[4:6] + s[7:9] + s[10:12], "big") for s in stamps]
+    assert stamps == [unix_us(k) for k in klv], (stamps[:2], unix_us(klv[0]))
     of_klv = probe(ts, "d")
     assert of_klv == (["N/A"] * all_of if out == "a" else [str(p) for p in pts]), of_klv[:3]
     # program map: type and PID 0x101; stream id of its PES packets; synchronous: an AU cell's header before the key
