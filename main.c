@@ -8,6 +8,7 @@
 #include "sensor/commands/heat.h"
 #include "sensor/commands/inspect.h"
 #include "sensor/node/live.h"
+#include "sensor/node/stop.h"
 #include "sensor/commands/model.h"
 #include "sensor/commands/rcs.h"
 #include "sensor/commands/record.h"
@@ -20,6 +21,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,22 +102,23 @@ static const struct Command {
     int (*run)(int argc, char **argv);
     const char *help;
     bool        reads_tables; /* of etc/, except with --default and --keys */
+    bool        only_prints;  /* and ends when what reads that has gone */
 } commands[] = {
-    {"run", run_command, "render a live exercise on the network", true},
-    {"replay", replay_command, "render what a missile's seeker sees in a recorded exercise", true},
+    {"run", run_command, "render a live exercise on the network", true, false},
+    {"replay", replay_command, "render what a missile's seeker sees in a recorded exercise", true, false},
     {"frame", frame_command, "re-render one saved frame without its log and verify that it is the same to the bit",
-     true},
-    {"regress", regress_command, "re-render recorded exercises and compare them with approved baselines", true},
-    {"inspect", inspect_command, "list the entities of a recording, what they did, what was malformed", true},
-    {"check", check_command, "validate a configuration file; or print one to start from", true},
-    {"exercise", exercise_command, "generate an exercise from a scenario: record it or send it", true},
-    {"record", record_command, "record an exercise from the network", false},
-    {"model", model_command, "list models; describe or draw one, built in or from a file", true},
-    {"heat", heat_command, "a vehicle's temperatures over a clear day: table, plot and thermal images", true},
-    {"rcs", rcs_command, "a target's radar cross section over aspect: table, polar plot and a radar image", true},
-    {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true},
-    {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false},
-    {"bench", run_bench, "benchmark this build on this machine: times with their errors", true},
+     true, false},
+    {"regress", regress_command, "re-render recorded exercises and compare them with approved baselines", true, false},
+    {"inspect", inspect_command, "list the entities of a recording, what they did, what was malformed", true, true},
+    {"check", check_command, "validate a configuration file; or print one to start from", true, true},
+    {"exercise", exercise_command, "generate an exercise from a scenario: record it or send it", true, false},
+    {"record", record_command, "record an exercise from the network", false, false},
+    {"model", model_command, "list models; describe or draw one, built in or from a file", true, false},
+    {"heat", heat_command, "a vehicle's temperatures over a clear day: table, plot and thermal images", true, false},
+    {"rcs", rcs_command, "a target's radar cross section over aspect: table, polar plot and a radar image", true, false},
+    {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true, false},
+    {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false, true},
+    {"bench", run_bench, "benchmark this build on this machine: times with their errors", true, false},
 };
 enum { command_count = sizeof commands / sizeof commands[0] };
 
@@ -156,10 +159,18 @@ static bool environment_good(const struct Command *command, int argc, char **arg
     return false;
 }
 
-/* Exit code 1 when the output could not be written. */
+/* Whether standard output is a pipe that its reader has left. */
+static bool reader_has_gone(void)
+{
+    struct pollfd out = {.fd = STDOUT_FILENO};
+    return poll(&out, 1, 0) == 1 && out.revents & POLLERR;
+}
+
+/* Exit code 1 when the output could not be written; that nobody wanted the rest of it is no failure. */
 static int printed(int code)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    if (reader_has_gone()) return code;
     if (code == 0) log_error("cannot write the output: %s", errno ? strerror(errno) : "it is closed");
     return code ? code : 1;
 }
@@ -198,6 +209,7 @@ static int run_named(int argc, char **argv)
         const bool help = asks_for_help(argc, argv);
         if (!help && !environment_good(&commands[i], argc, argv)) return 1;
         snprintf(called, sizeof called, "pitviper %s", argv[0]);
+        if (!commands[i].only_prints) stop_outlive_readers();
         argv[0] = called; /* program name in getopt's messages */
         const int code = commands[i].run(argc, argv);
         if (help && code == 0) printf("\n%s", common_help);

@@ -142,8 +142,8 @@ void text_show(char *out, size_t out_size, const char *text, bool lines);
 void text_print(FILE *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_vprint(FILE *to, const char *format, va_list arguments) __attribute__((format(printf, 2, 0)));
 
-/* A file of what put prints: written to PATH.part and renamed, so that nobody reads half of it. Failures are logged as the
- * module's: STATUS_BAD_VALUE (a name too long), STATUS_IO. */
+/* A file of what put prints, by output_begin (pitviper_output.h): nobody reads half of it. STATUS_IO: logged as the
+ * module's. */
 Status text_write_file(const char *module, const char *path, void (*put)(FILE *to, const void *user), const void *user);
 /* A whole file of at most `most` octets and a 0 behind them; the caller frees it. Failures are logged as the
  * module's. */
@@ -248,6 +248,9 @@ Status settings_set(void *out, bool *given, const SettingTable *table, const cha
 Status settings_set_from(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                          const char *source, const char *file);
 bool   settings_is_path(const Setting *row);
+/* Whether each path is of a regular file, of a folder, or of nothing that is there; else logged: a FIFO or a device would
+ * be waited for. outputs: names of keys, `a.b,c.d`, that may be of anything. */
+bool   settings_paths_good(const void *from, const SettingTable *table, const char *outputs);
 /* Paths become absolute, as far as they fit: for files in other folders, and for hashes. */
 void   settings_absolute(void *out, const SettingTable *table);
 /* Line of a key in a file that was read; 0: absent. */

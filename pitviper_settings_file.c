@@ -1,6 +1,8 @@
 /* pitviper_settings_file.c: a YAML file into a struct by its table: libyaml, which keeps line numbers for messages. */
 #include "pitviper_settings_private.h"
 
+#include "pitviper_file.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <yaml.h>
@@ -296,7 +298,7 @@ Status settings_read_as(void *out, bool *given, const SettingTable *table, const
 {
     char  *text;
     size_t octets;
-    Status status = text_read_file(&text, &octets, table->module, path, settings_file_octets);
+    Status status = file_read_whole(&text, &octets, table->module, path, settings_file_octets, FILE_FROM_SHELL);
     if (status != STATUS_OK) return status;
     status = parse_as(out, given, table, path, file, text, octets);
     free(text);
@@ -328,7 +330,7 @@ int settings_line(const SettingTable *table, const char *name, const char *path)
     size_t          octets;
     yaml_document_t document;
     int             line = 0;
-    if (text_read_file(&text, &octets, table->module, path, settings_file_octets) != STATUS_OK) return 0;
+    if (file_read_whole(&text, &octets, table->module, path, settings_file_octets, FILE_FROM_SHELL) != STATUS_OK) return 0;
     if (load(&document, table, path, text, octets) == STATUS_OK) {
         const yaml_node_t *root = yaml_document_get_root_node(&document);
         if (root && root->type == YAML_MAPPING_NODE) line = line_in(table, &document, "", name, root);

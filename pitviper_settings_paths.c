@@ -1,6 +1,8 @@
 /* pitviper_settings_paths.c: names of files in settings: relative to the file that gives them, or made absolute. */
 #include "pitviper_settings_private.h"
 
+#include "pitviper_file.h"
+
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -53,6 +55,36 @@ static bool absolute(char *out, size_t out_size, const char *path)
     const int   n = folder ? snprintf(out, out_size, "%s%s%s", folder, *folder ? "/" : "", real ? real : path) : -1;
     free(real);
     return n >= 0 && n < (int)out_size;
+}
+
+static bool is_among(const char *name, const char *names)
+{
+    const size_t length = strlen(name);
+    for (const char *at = names; (at = strstr(at, name)); at += length)
+        if ((at == names || at[-1] == ',') && (at[length] == 0 || at[length] == ',')) return true;
+    return false;
+}
+
+bool settings_paths_good(const void *from, const SettingTable *table, const char *outputs)
+{
+    for (int i = 0; i < table->count; i++) {
+        const Setting *row = &table->row[i];
+        const char    *at  = (const char *)from + row->offset;
+        if (!settings_is_path(row) || is_among(row->name, outputs)) continue;
+        if (row->type == SETTING_NAME_OR_PATH && !strpbrk(at, "/.")) continue;
+        while (*at) {
+            const size_t length = row->type == SETTING_PATHS ? strcspn(at, ",") : strlen(at);
+            char         path[4096], why[file_why_size];
+            struct stat  about;
+            snprintf(path, sizeof path, "%.*s", (int)length, at);
+            at += length + (at[length] != 0);
+            if (stat(path, &about) != 0 || S_ISREG(about.st_mode) || S_ISDIR(about.st_mode)) continue;
+            file_is_regular(why, path);
+            log_error("%s: %s: cannot read %s: %s", table->module, row->name, path, why);
+            return false;
+        }
+    }
+    return true;
 }
 
 void settings_absolute(void *out, const SettingTable *table)

@@ -1,5 +1,6 @@
 /* pitviper_text.c: tables of text, numbers from text, sanitizing of untrusted bytes. */
-#include "pitviper.h"
+#include "pitviper_file.h"
+#include "pitviper_output.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -128,38 +129,7 @@ void text_print(FILE *to, const char *format, ...)
 
 Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most)
 {
-    size_t size = 0, capacity = 1 << 16;
-    FILE  *file = fopen(path, "rb");
-    if (!file) {
-        log_error("%s: cannot open %s: %s", module, path, strerror(errno));
-        return STATUS_IO;
-    }
-    Status status = STATUS_OK;
-    char  *text = malloc(capacity);
-    if (!text) status = STATUS_NO_MEMORY;
-    while (status == STATUS_OK) {
-        size += fread(text + size, 1, capacity - size - 1, file);
-        if (size < capacity - 1 || size > most) break;
-        char *larger = realloc(text, capacity *= 2);
-        if (larger) text = larger;
-        else status = STATUS_NO_MEMORY;
-    }
-    if (status == STATUS_OK && ferror(file)) {
-        log_error("%s: cannot read %s: %s", module, path, strerror(errno));
-        status = STATUS_IO;
-    } else if (status == STATUS_OK && size > most) {
-        log_error("%s: %s: larger than %zu octets", module, path, most);
-        status = STATUS_BAD_VALUE;
-    }
-    fclose(file);
-    if (status != STATUS_OK) {
-        free(text);
-        return status;
-    }
-    text[size] = 0;
-    *out    = text;
-    *octets = size;
-    return STATUS_OK;
+    return file_read_whole(out, octets, module, path, most, FILE_FROM_DISK);
 }
 
 /* ---- tables ------------------------------------------------------------------------------- */
@@ -340,20 +310,9 @@ bool text_to_unix_s(double *unix_s, const char *text)
 
 Status text_write_file(const char *module, const char *path, void (*put)(FILE *to, const void *user), const void *user)
 {
-    char part[4096];
-    if (snprintf(part, sizeof part, "%s.part", path) >= (int)sizeof part) {
-        log_error("%s: the name %s is too long", module, path);
-        return STATUS_BAD_VALUE;
-    }
-    FILE *to = fopen(part, "w");
-    if (!to) {
-        log_error("%s: cannot write %s: %s", module, part, strerror(errno));
-        return STATUS_IO;
-    }
-    put(to, user);
-    const bool whole = !ferror(to);
-    if (fclose(to) == 0 && whole && rename(part, path) == 0) return STATUS_OK;
-    log_error("%s: cannot write %s: %s", module, path, strerror(errno));
-    remove(part);
+    FILE *to = output_begin(path, OUTPUT_STREAM);
+    if (to) put(to, user);
+    if (to && output_end(to, path)) return STATUS_OK;
+    log_error("%s: cannot write %s: %s", module, path, output_reason(errno));
     return STATUS_IO;
 }

@@ -6,6 +6,8 @@
 
 /* Next PDU of a datagram: *at advances by the length field. True and header/pdu set when there is one;
  * false at the end or at the first inconsistent length, which is counted. PDUs returned are counted by type.
+ * Up to 7 zeros before a PDU or at the end are padding. A length field of 0 is replaced in header, and counted, where the
+ * types and counts of the PDUs from there on end exactly with the datagram.
  *
  *     for (const uint8_t *at = bytes; dis_next_pdu(&header, &pdu, &at, bytes + count, counters);) ...
  *

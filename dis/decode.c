@@ -151,9 +151,9 @@ static const PduType pdu_type[256] = {
     [49] = {"LE Fire"},
     [50] = {"LE Detonation"},
     [51] = {"Create Entity-R"},
-    [52] = {"Remove Entity-R"},
-    [53] = {"Start/Resume-R"},
-    [54] = {"Stop/Freeze-R"},
+    [52] = {"Remove Entity-R", 32, decode_remove_entity, encode_remove_entity},
+    [53] = {"Start/Resume-R", 48, decode_start_resume, encode_start_resume},
+    [54] = {"Stop/Freeze-R", 40, decode_stop_freeze, encode_stop_freeze},
     [55] = {"Acknowledge-R"},
     [56] = {"Action Request-R"},
     [57] = {"Action Response-R"},
@@ -179,6 +179,21 @@ const char *dis_pdu_type_name(uint8_t type) { return pdu_type[type].name ? pdu_t
 unsigned dis_least_octets(uint8_t type)
 {
     return pdu_type[type].least_octets ? pdu_type[type].least_octets : dis_header_octets;
+}
+
+size_t dis_whole_octets(const uint8_t *pdu, size_t octets)
+{
+    static const struct {
+        uint8_t type, count_at; /* where the number of variable records is */
+    } counted[] = {{dis_pdu_entity_state, 19}, {dis_pdu_entity_state_update, 19}, {dis_pdu_detonation, 101}};
+    enum { record_octets = 16 };
+    if (octets < dis_header_octets) return 0;
+    const uint8_t  type = dis_load_header(pdu).type;
+    const unsigned least = pdu_type[type].least_octets;
+    if (least == 0 || least > octets) return 0;
+    for (size_t i = 0; i < sizeof counted / sizeof counted[0]; i++)
+        if (counted[i].type == type) return least + record_octets * (size_t)pdu[counted[i].count_at];
+    return least;
 }
 
 Status dis_decode(DisPdu *out, const uint8_t *pdu, size_t octets)

@@ -25,7 +25,7 @@ typedef struct DisPdu {
 
 /* pdu: header.length octets from dis_next_pdu. On failure `out` is untouched; when it succeeds, variable records and
  * datums beyond the counted ones are unchanged. Values are not validated here: see dis_entity_is_usable.
- * STATUS_TRUNCATED: fewer octets than the header or the type needs, or than the length field gives.
+ * STATUS_TRUNCATED: fewer octets than the header or the type needs, or than the length field gives (0: all octets).
  * STATUS_BAD_VALUE: a count that the length cannot hold.
  * STATUS_UNSUPPORTED: a type that is not decoded, or more datums than the output holds. */
 Status dis_decode(DisPdu *out, const uint8_t *pdu, size_t octets);

@@ -6,5 +6,8 @@
 
 /* What a type needs before its variable records: dis_next_pdu refuses shorter ones. */
 unsigned dis_least_octets(uint8_t type);
+/* How many octets the PDU at pdu has by its type and its own counts, whatever its length field says; 0: not known of its
+ * type, or more than there are octets. */
+size_t   dis_whole_octets(const uint8_t *pdu, size_t octets);
 
 #endif

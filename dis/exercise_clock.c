@@ -1,12 +1,14 @@
 /* dis/exercise_clock.c: a clock per sender, all on one exercise time.
  *
  * The capture clock is the reference: capture time shifted so that the first PDU has its own stamp's seconds. A
- * sender's stamps are placed on it once, at its first PDU, and from then on give the time; the reference selects the
- * hour of a stamp and is what stamps are checked against. So neither network jitter nor half an hour without PDUs
- * affects the times of a sender with valid stamps. */
+ * sender's stamps are tied to it at the sender's first PDU; from then on they give its own time, and the lower edge of its
+ * delays (dis/delay_line.h) says by how much that is to be shifted. The sender that set the epoch is never shifted: its
+ * edge says where zero delay is for the others. So neither network jitter nor half an hour without PDUs affects the times
+ * of a sender with valid stamps. */
 #include "dis/exercise_clock.h"
 
 #include "dis/datagram.h"
+#include "dis/delay_line.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,45 +17,62 @@ enum {
     sender_limit = 4096,  /* beyond that capture time is used */
     slot_count   = 8192,  /* a power of two, at most half full */
     memory_slots = 16384, /* entities remembered for the check; a later one replaces an earlier one */
-    odd_limit    = 2,     /* consecutive reports against a validated sender */
-    votes_needed = 2,     /* consecutive, for a rejected sender */
+    odd_limit    = 2,     /* consecutive reports against a sender */
+    votes_needed = 2,     /* consecutive, for a new or rejected sender */
     most_failures = 5,    /* the validation time is doubled at most this often: 2 minutes */
+    switches_needed = 6,  /* from one clock to another and back, to be two senders */
+    points_known = 8,     /* a new sender with that many stamps in order may have one that is not */
+    segment_limit = 1 << 20,
 };
 
 static const double hour_s = 3600.0;
 static const double leave_s = 5.0;         /* stamps ahead or behind: IEEE 1278.1, timestamp ahead/behind */
 static const double capture_limit_s = 1e11; /* the year 5138: beyond it a double no longer resolves 0.02 ms */
 
-/* What is expected of a network: datagrams bundled or delayed by some 100 ms, both ways about the first one's delay. */
-static const double jitter_s = 0.15, drift = 1e-4; /* and of clocks: s a second */
+/* What stamps at another rate must have gained before they are rejected; and the drift of clocks, s a second. */
+static const double gain_s = 0.15, drift = 1e-4;
 /* A stamp that far behind its sender's latest is of a reordered datagram, not of a counter. */
 static const double overtaken_s = 0.1;
-static const double settled_s = 1.0;       /* drift of a validated sender at which its offset is renewed */
 static const double vote_s = 2.0, longest_vote_s = 32.0; /* spans over which the rate of stamps is checked */
-/* Two reports of one entity that far apart, with stamps that advance less than a twentieth of it: they are constant. */
-static const double still_least_s = 0.1, still_most_s = 1800, still_rate = 0.05;
+static const double rate_known = 0.02; /* to be validated: three standard errors of the rate */
+/* Two reports of one entity that far apart, with stamps that advance less than a twentieth of it: they are constant.
+ * Jitter makes that of stamps that advance by more than still_step_s, but not over leave_s. */
+static const double still_least_s = 0.1, still_most_s = 1800, still_rate = 0.05, still_step_s = 0.005;
 
 typedef struct Moment {
     uint32_t stamp;
     double   capture_s;
 } Moment;
 
+/* Stamps tied to exercise time. */
+typedef struct Tie {
+    uint32_t stamp;
+    double   t_s;
+} Tie;
+
 typedef enum Standing { SENDER_NEW, SENDER_PROVEN, SENDER_INCONSISTENT } Standing;
+
+/* Whose scale a sender's stamps are on: its own, that of the sender that set the epoch, that of all absolute stamps. */
+typedef enum Scale { SCALE_OWN, SCALE_EPOCH, SCALE_ABSOLUTE } Scale;
 
 typedef struct Sender {
     uint32_t key; /* site, application */
-    bool     used;
-    uint8_t  standing;
+    bool     used, founds; /* its delays are those of its scale */
+    uint8_t  standing, scale;
     uint8_t  failures; /* number of rejections, most_failures at most */
     uint8_t  odd;      /* consecutive reports that deviate from the reference or are constant */
     uint8_t  agree;    /* consecutive passed checks, votes_needed at most */
-    bool     disagrees; /* the last check */
+    uint8_t  switches; /* consecutive, from one of two clocks to the other */
+    bool     shared;   /* reported as two senders */
+    bool     on_other;
     int      doubt;    /* index into the clock's anomalies; -1: never rejected, or list full */
-    uint32_t tied_stamp, latest_stamp;
-    double   tied_s;   /* exercise time of the tied one */
-    Moment   mark;     /* start of the span of the next check */
-    double   next_vote_s; /* capture time from which on there is one */
-    Moment   first;
+    uint32_t segment, next_segment; /* next: of PDUs that may begin it; 0: none */
+    uint32_t latest_stamp;
+    Tie      tie;
+    DelayLine  line;     /* since the tie */
+    DelayTrend trend;    /* since the mark */
+    double   mark_s, next_vote_s; /* capture times: begin of the check's span; from which on there is one */
+    Moment   first, one, other; /* one, other: the latest of each of two clocks */
     uint64_t pdus;
 } Sender;
 
@@ -63,15 +82,28 @@ typedef struct Memory {
     Moment   last;
 } Memory;
 
+/* A time over which a sender's stamps were valid. */
+typedef struct Segment {
+    uint32_t number;
+    uint8_t  scale;
+    Tie      tie;
+    DelayLine line;
+} Segment;
+
 struct ExerciseClock {
-    bool    started, first_is_absolute;
-    double  start_s;         /* exercise time of the first PDU */
-    double  start_capture_s; /* and when it was captured */
-    double  last_capture_s;
-    int     senders;
+    bool      started, first_is_absolute, scales[3]; /* scales: has a founder */
+    double    start_s;         /* exercise time of the first PDU */
+    double    start_capture_s; /* and when it was captured */
+    double    last_capture_s;
+    int       senders;
+    uint32_t  segments; /* begun */
     ExerciseClockAnomalies doubts;
-    Sender  slot[slot_count];
-    Memory  memory[memory_slots];
+    DelayLine founder[3];      /* delays of the scales' founders; of SCALE_OWN none */
+    Tie       absolute;        /* of SCALE_ABSOLUTE */
+    Segment  *valid;           /* by number once whole */
+    int       valid_count, valid_capacity;
+    Sender    slot[slot_count];
+    Memory    memory[memory_slots];
 };
 
 Status exercise_clock_create(ExerciseClock **out)
@@ -82,7 +114,11 @@ Status exercise_clock_create(ExerciseClock **out)
     return STATUS_OK;
 }
 
-void exercise_clock_destroy(ExerciseClock *clock) { free(clock); }
+void exercise_clock_destroy(ExerciseClock *clock)
+{
+    if (clock) free(clock->valid);
+    free(clock);
+}
 
 const ExerciseClockAnomalies *exercise_clock_anomalies(const ExerciseClock *clock) { return &clock->doubts; }
 
@@ -107,35 +143,76 @@ static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key)
 
 /* ---- placing -------------------------------------------------------------------------------------- */
 
-/* Time of a stamp by the sender's own offset: the shorter way round the hour, then whole hours towards the
- * reference. */
-static double stamped_time(const Sender *sender, uint32_t stamp, double ruler_s)
+static double whole_hours(double of_s) { return hour_s * round(of_s / hour_s); }
+
+/* Time of a stamp by a tie: the shorter way round the hour, then whole hours towards the reference. */
+static double tied_time(const Tie *tie, uint32_t stamp, double ruler_s)
 {
-    const double t_s = sender->tied_s + dis_timestamp_step_s(sender->tied_stamp, stamp);
-    return t_s + hour_s * round((ruler_s - t_s) / hour_s);
+    const double t_s = tie->t_s + dis_timestamp_step_s(tie->stamp, stamp);
+    return t_s + whole_hours(ruler_s - t_s);
 }
 
-static void tie(Sender *sender, Moment now, double t_s)
+/* A sender's own time as exercise time. */
+static double shifted_time(const ExerciseClock *clock, Scale scale, const DelayLine *own, double t_s)
 {
-    sender->tied_stamp = now.stamp;
-    sender->tied_s     = t_s;
-    sender->mark       = now;
+    if (scale == SCALE_EPOCH) return t_s;
+    const double z_s = t_s + delay_line_at(scale == SCALE_ABSOLUTE ? &clock->founder[scale] : own, t_s);
+    return z_s - delay_line_at(&clock->founder[SCALE_EPOCH], z_s);
+}
+
+/* Whether absolute stamps are on the common scale of them all, and then where. */
+static bool on_absolute_scale(Tie *tie, ExerciseClock *clock, Scale scale, uint32_t stamp, double ruler_s)
+{
+    const double past_s = dis_timestamp_seconds(stamp);
+    if (!clock->scales[scale]) return false;
+    *tie = (Tie){stamp, scale == SCALE_EPOCH ? past_s + whole_hours(ruler_s - past_s)
+                                             : tied_time(&clock->absolute, stamp, ruler_s)};
+    return fabs(tie->t_s - ruler_s) <= leave_s;
+}
+
+/* From this PDU on: a new segment. may_found: its delays may be those of its scale. */
+static void tie_sender(ExerciseClock *clock, Sender *sender, Moment now, double ruler_s, bool may_found)
+{
+    const bool  absolute = dis_timestamp_is_absolute(now.stamp);
+    const Scale scale = clock->first_is_absolute ? SCALE_EPOCH : SCALE_ABSOLUTE;
+    sender->scale  = SCALE_OWN;
+    sender->founds = false;
+    sender->tie    = (Tie){now.stamp, ruler_s};
+    if (absolute && on_absolute_scale(&sender->tie, clock, scale, now.stamp, ruler_s)) {
+        sender->scale = scale;
+    } else if (may_found && !clock->scales[SCALE_EPOCH]) {
+        sender->scale = SCALE_EPOCH;
+    } else if (may_found && absolute && !clock->scales[scale]) {
+        sender->scale   = SCALE_ABSOLUTE;
+        clock->absolute = (Tie){now.stamp, ruler_s};
+    }
+    if (sender->scale == SCALE_OWN) sender->tie = (Tie){now.stamp, ruler_s};
+    delay_line_begin(&sender->line, sender->tie.t_s, ruler_s - sender->tie.t_s);
+    if (sender->scale != SCALE_OWN && !clock->scales[sender->scale]) {
+        sender->founds = clock->scales[sender->scale] = true;
+        clock->founder[sender->scale] = sender->line;
+    }
+    sender->segment = sender->next_segment ? sender->next_segment : ++clock->segments;
+    sender->next_segment = 0;
+    sender->trend   = (DelayTrend){0};
+    delay_trend_add(&sender->trend, sender->tie.t_s, ruler_s - sender->tie.t_s);
+    sender->mark_s  = now.capture_s;
     sender->agree = sender->odd = 0;
-    sender->disagrees  = false;
     const int times = sender->standing == SENDER_INCONSISTENT ? 1 << (sender->failures - 1) : 1;
     sender->next_vote_s = now.capture_s + vote_s * times;
 }
 
-static void tie_first(Sender *sender, Moment now, double ruler_s, bool absolute)
+static void keep_segment(ExerciseClock *clock, const Sender *sender)
 {
-    tie(sender, now, ruler_s);
-    sender->first        = now;
-    sender->latest_stamp = now.stamp;
-    if (!absolute) return;
-    /* UTC on both sides: the stamp itself, in the hour of the reference */
-    const double past_s = dis_timestamp_seconds(now.stamp);
-    const double t_s = past_s + hour_s * round((ruler_s - past_s) / hour_s);
-    if (fabs(t_s - ruler_s) <= leave_s) sender->tied_s = t_s;
+    if (clock->valid_count == segment_limit) return;
+    if (clock->valid_count == clock->valid_capacity) {
+        const int larger = clock->valid_capacity ? 2 * clock->valid_capacity : 64;
+        Segment  *grown  = realloc(clock->valid, (size_t)larger * sizeof *grown);
+        if (!grown) return; /* its PDUs keep the time they were given */
+        clock->valid          = grown;
+        clock->valid_capacity = larger;
+    }
+    clock->valid[clock->valid_count++] = (Segment){sender->segment, sender->scale, sender->tie, sender->line};
 }
 
 /* ---- checking ------------------------------------------------------------------------------------- */
@@ -143,14 +220,8 @@ static void tie_first(Sender *sender, Moment now, double ruler_s, bool absolute)
 /* Elapsed time of stamps less that of arrivals since a moment, s; modulo whole hours. */
 static double gained_s(Moment since, Moment now)
 {
-    const double gain_s = dis_timestamp_step_s(since.stamp, now.stamp) - (now.capture_s - since.capture_s);
-    return gain_s - hour_s * round(gain_s / hour_s);
-}
-
-/* Whether the elapsed times of stamps and arrivals since a moment agree. */
-static bool keeps_pace(Moment since, Moment now)
-{
-    return fabs(gained_s(since, now)) <= jitter_s + drift * fabs(now.capture_s - since.capture_s);
+    const double gained = dis_timestamp_step_s(since.stamp, now.stamp) - (now.capture_s - since.capture_s);
+    return gained - whole_hours(gained);
 }
 
 /* Whether an entity's stamps are constant between two of its reports; remembers this one. */
@@ -161,8 +232,9 @@ static bool stands_still(ExerciseClock *clock, uint64_t entity_key, Moment now)
     const double passed_s = now.capture_s - memory->last.capture_s;
     const bool   known = memory->key_plus_1 == entity_key + 1;
     if (known && passed_s >= 0 && passed_s < still_least_s) return false;
-    const bool   stands = known && passed_s >= 0 && passed_s < still_most_s &&
-                          fabs(dis_timestamp_step_s(memory->last.stamp, now.stamp)) <= still_rate * passed_s;
+    const double step_s = fabs(dis_timestamp_step_s(memory->last.stamp, now.stamp));
+    const bool   stands = known && passed_s >= 0 && passed_s < still_most_s && step_s <= still_rate * passed_s &&
+                        (step_s <= still_step_s || passed_s > leave_s);
     *memory = (Memory){entity_key + 1, now};
     return stands;
 }
@@ -173,39 +245,111 @@ static bool is_overtaken(const Sender *sender, uint32_t stamp)
     return step_s <= -overtaken_s && step_s >= -leave_s;
 }
 
-static void doubt(ExerciseClock *clock, Sender *sender, Moment now, double ruler_s, ExerciseClockReason reason)
+/* Whether a sender's stamps have advanced since its first PDU: one that repeats may then be a datagram twice. */
+static bool advances(const Sender *sender, Moment now)
 {
-    if (sender->standing != SENDER_INCONSISTENT && sender->failures < most_failures) sender->failures++;
-    if (sender->standing != SENDER_INCONSISTENT && sender->doubt < 0 && clock->doubts.count < exercise_clock_anomalies_listed_max) {
-        sender->doubt = clock->doubts.count++;
-        clock->doubts.sender[sender->doubt] = (ExerciseClockAnomaly){
-            .site = (uint16_t)(sender->key >> 16), .application = (uint16_t)sender->key, .reason = reason};
-    }
-    sender->standing = SENDER_INCONSISTENT;
-    tie(sender, now, ruler_s);
+    const double passed_s = now.capture_s - sender->first.capture_s;
+    return passed_s >= still_least_s && dis_timestamp_step_s(sender->first.stamp, sender->latest_stamp) >= 0.5 * passed_s;
 }
 
-/* Rate check over the span since the mark: are the elapsed times of stamps and arrivals equal? After a failure the
- * first PDU that passes revokes it; without one for two seconds the failure is final. */
-static void vote(ExerciseClock *clock, Sender *sender, Moment now, double off_s, double ruler_s)
+/* Whether stamps alternate between two clocks that both run: two senders of one id. */
+static bool is_shared(Sender *sender, Moment now)
 {
-    if (now.capture_s < sender->mark.capture_s) { /* the capture clock stepped back */
-        sender->mark        = now;
+    const bool on_one = fabs(gained_s(sender->one, now)) <= 0.5 * leave_s;
+    const bool on_other = !on_one && sender->other.stamp && fabs(gained_s(sender->other, now)) <= 0.5 * leave_s;
+    if (!on_one && !on_other) sender->switches = 0;
+    else if (sender->on_other != on_other && sender->switches < switches_needed) sender->switches++;
+    sender->on_other = !on_one;
+    *(on_one ? &sender->one : &sender->other) = now;
+    return sender->switches >= switches_needed;
+}
+
+/* Whether absolute stamps are the time of day of their arrival. */
+static bool is_utc(const Sender *sender, Moment now)
+{
+    const double off_s = dis_timestamp_seconds(now.stamp) - now.capture_s;
+    return dis_timestamp_is_absolute(now.stamp) && sender->scale != SCALE_OWN && fabs(off_s - whole_hours(off_s)) <= leave_s;
+}
+
+/* Of a sender's second PDU: it may run at any rate. */
+static bool is_undecided(const Sender *sender, Moment now)
+{
+    const double gained = gained_s(sender->first, now);
+    return sender->trend.points == 2 && fabs(gained) > gain_s + drift * fabs(now.capture_s - sender->first.capture_s);
+}
+
+static int list_doubt(ExerciseClock *clock, const Sender *sender, ExerciseClockReason reason)
+{
+    if (clock->doubts.count == exercise_clock_anomalies_listed_max) return -1;
+    clock->doubts.sender[clock->doubts.count] = (ExerciseClockAnomaly){
+        .site = (uint16_t)(sender->key >> 16), .application = (uint16_t)sender->key, .reason = reason};
+    return clock->doubts.count++;
+}
+
+static void doubt(ExerciseClock *clock, Sender *sender, Moment now, double ruler_s, ExerciseClockReason reason)
+{
+    if (sender->standing == SENDER_PROVEN) keep_segment(clock, sender);
+    else if (sender->founds) clock->founder[sender->scale].offset_s = clock->founder[sender->scale].slope = 0;
+    if (sender->standing != SENDER_INCONSISTENT && sender->failures < most_failures) sender->failures++;
+    if (sender->standing != SENDER_INCONSISTENT && sender->doubt < 0) sender->doubt = list_doubt(clock, sender, reason);
+    sender->standing = SENDER_INCONSISTENT;
+    tie_sender(clock, sender, now, ruler_s, false);
+}
+
+/* Takes this PDU's delay into the sender's and, where it is their founder, into all others'. */
+static void observe(ExerciseClock *clock, Sender *sender, double t_s, double ruler_s)
+{
+    delay_line_add(&sender->line, t_s, ruler_s - t_s);
+    delay_trend_add(&sender->trend, t_s, ruler_s - t_s);
+    if (sender->founds) clock->founder[sender->scale] = sender->line;
+}
+
+/* Whether the stamps run at another rate than their arrivals: by the trend of all PDUs, of a validated sender by the lower
+ * edge too, which a queue that fills does not move. */
+static bool runs_wrong(const Sender *sender)
+{
+    const DelayTrend *trend = &sender->trend;
+    double            slope, error, edge_span_s, middle_s;
+    if (!delay_trend_slope(&slope, &error, trend) || fabs(slope) <= 3 * drift ||
+        fabs(slope) * (trend->last_x_s - trend->first_x_s) <= gain_s ||
+        fabs(slope) <= delay_trend_critical(trend->points) * error)
+        return false;
+    if (sender->standing != SENDER_PROVEN) return true;
+    const double edge = delay_line_edge(&edge_span_s, &middle_s, &sender->line);
+    return fabs(edge) > 2 * drift && edge * slope > 0;
+}
+
+/* Whether the rate is known to be that of the arrivals. */
+static bool runs_right(const Sender *sender)
+{
+    double slope, error;
+    return delay_trend_slope(&slope, &error, &sender->trend) && 3 * error <= rate_known &&
+           fabs(slope) <= fmax(3 * drift, 3 * error);
+}
+
+/* Rate check over the span since the mark. */
+static void vote(ExerciseClock *clock, Sender *sender, Moment now, double t_s, double ruler_s)
+{
+    if (now.capture_s < sender->mark_s) { /* the capture clock stepped back */
+        sender->mark_s      = now.capture_s;
         sender->next_vote_s = now.capture_s + vote_s;
+        sender->trend       = (DelayTrend){0};
+        delay_trend_add(&sender->trend, t_s, ruler_s - t_s);
     }
-    const bool due = now.capture_s >= sender->next_vote_s;
-    if (!due && !sender->disagrees) return;
-    if (!(keeps_pace(sender->mark, now) && fabs(off_s) <= settled_s)) {
-        if (!due) return;
-        if (sender->disagrees) doubt(clock, sender, now, ruler_s, EXERCISE_CLOCK_RATE);
-        else sender->disagrees = true, sender->agree = 0, sender->next_vote_s = now.capture_s + vote_s;
+    if (runs_wrong(sender)) {
+        doubt(clock, sender, now, ruler_s, EXERCISE_CLOCK_RATE);
         return;
     }
-    const double span_s = now.capture_s - sender->mark.capture_s;
-    sender->disagrees = false;
-    if (sender->agree < votes_needed) sender->agree++;
+    if (now.capture_s < sender->next_vote_s) return;
+    const double span_s = now.capture_s - sender->mark_s;
+    const bool   right  = runs_right(sender);
+    if (right && sender->agree < votes_needed) sender->agree++;
     if (sender->agree == votes_needed) sender->standing = SENDER_PROVEN;
-    if (span_s >= longest_vote_s) sender->mark = now;
+    if (span_s >= longest_vote_s && (right || span_s >= 4 * longest_vote_s)) {
+        sender->mark_s = now.capture_s;
+        sender->trend  = (DelayTrend){0};
+        delay_trend_add(&sender->trend, t_s, ruler_s - t_s);
+    }
     sender->next_vote_s = now.capture_s + (span_s >= longest_vote_s ? longest_vote_s : fmax(span_s, vote_s));
 }
 
@@ -224,8 +368,57 @@ static void note_inconsistent(ExerciseClock *clock, const Sender *sender, Moment
     d->counted = (uint32_t)(now.stamp - sender->first.stamp) / fmax((double)(sender->pdus - 1), 1);
 }
 
-double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
-                                  uint32_t timestamp, double capture_s)
+static void note_shared(ExerciseClock *clock, Sender *sender, Moment now)
+{
+    if (!is_shared(sender, now) || sender->shared) return;
+    sender->shared = true;
+    const int d = list_doubt(clock, sender, EXERCISE_CLOCK_SHARED);
+    if (d < 0) return;
+    clock->doubts.sender[d].pdus    = sender->pdus;
+    clock->doubts.sender[d].apart_s = fabs(gained_s(sender->one, sender->other));
+}
+
+/* Of a stamped PDU of a sender that is checked. */
+static ExerciseInstant judge(ExerciseClock *clock, Sender *sender, Moment now, int entity, double ruler_s)
+{
+    const bool overtaken = is_overtaken(sender, now.stamp);
+    sender->pdus++;
+    note_shared(clock, sender, now);
+    if (!overtaken) sender->latest_stamp = now.stamp;
+
+    const bool   stands = entity >= 0 && stands_still(clock, (uint64_t)sender->key << 16 | (uint16_t)entity, now);
+    const double t_s = tied_time(&sender->tie, now.stamp, ruler_s);
+    const bool   leaves = !(fabs(ruler_s - t_s - delay_line_at(&sender->line, t_s)) <= leave_s);
+    const ExerciseClockReason reason = leaves ? EXERCISE_CLOCK_JUMP : EXERCISE_CLOCK_STILL;
+    bool by_arrival = leaves;
+
+    sender->odd = stands || leaves ? sender->odd + 1 : 0;
+    if (leaves && !sender->next_segment) sender->next_segment = ++clock->segments;
+    if (leaves && sender->standing != SENDER_PROVEN && sender->trend.points < points_known) {
+        doubt(clock, sender, now, ruler_s, reason);
+    } else if (sender->odd >= odd_limit) {
+        doubt(clock, sender, now, ruler_s, reason);
+    } else if (stands) {
+        by_arrival = leaves || (sender->standing != SENDER_PROVEN && !advances(sender, now));
+    } else if (!leaves) {
+        sender->next_segment = 0;
+        observe(clock, sender, t_s, ruler_s);
+        by_arrival = sender->standing == SENDER_NEW && !overtaken && !is_utc(sender, now) && is_undecided(sender, now);
+        vote(clock, sender, now, t_s, ruler_s);
+    }
+    ExerciseInstant at = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = now.stamp, .segment = sender->segment};
+    if (leaves && sender->next_segment) at.segment = sender->next_segment;
+    if (sender->standing == SENDER_INCONSISTENT) {
+        note_inconsistent(clock, sender, now);
+    } else if (!by_arrival) {
+        at.t_s     = shifted_time(clock, sender->scale, &sender->line, tied_time(&sender->tie, now.stamp, ruler_s));
+        at.by_stamp = true;
+    }
+    return at;
+}
+
+ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
+                                       uint32_t timestamp, double capture_s)
 {
     const bool     absolute = dis_timestamp_is_absolute(timestamp);
     const uint32_t key = (uint32_t)site << 16 | application;
@@ -233,7 +426,8 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
     if (!(fabs(capture_s) <= capture_limit_s)) capture_s = clock->last_capture_s; /* NaN too */
     clock->last_capture_s = capture_s;
 
-    if (!clock->started) {
+    const bool opens = !clock->started;
+    if (opens) {
         clock->started = true;
         clock->first_is_absolute = absolute;
         clock->start_s = dis_timestamp_seconds(timestamp);
@@ -241,52 +435,75 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
     }
     const double ruler_s = clock->start_s + (capture_s - clock->start_capture_s);
     const Moment now = {timestamp, capture_s};
+    const ExerciseInstant arrival = {.t_s = ruler_s, .ruler_s = ruler_s};
 
     /* All bits zero: a sender that does not stamp. */
     if (timestamp == 0) {
         clock->doubts.unstamped++;
-        return ruler_s;
+        return arrival;
     }
     clock->doubts.stamped++;
 
     Sender *sender = find_sender(&is_new, clock, key);
     if (!sender) { /* more senders than are checked: counted as rejected */
         clock->doubts.by_arrival++;
-        return ruler_s;
+        return arrival;
     }
-    if (is_new) tie_first(sender, now, ruler_s, absolute && clock->first_is_absolute);
-    sender->pdus++;
-    const bool overtaken = is_overtaken(sender, timestamp);
-    if (!overtaken) sender->latest_stamp = timestamp;
+    if (!is_new) return judge(clock, sender, now, entity, ruler_s);
+    sender->first = sender->one = now;
+    sender->latest_stamp = timestamp;
+    sender->pdus = 1;
+    if (entity >= 0) stands_still(clock, (uint64_t)key << 16 | (uint16_t)entity, now);
+    tie_sender(clock, sender, now, ruler_s, true);
+    return (ExerciseInstant){.t_s = shifted_time(clock, sender->scale, &sender->line, sender->tie.t_s), .ruler_s = ruler_s,
+                             .stamp = timestamp, .segment = sender->segment, .by_stamp = true};
+}
 
-    const bool   stands = entity >= 0 && stands_still(clock, (uint64_t)key << 16 | (uint16_t)entity, now);
-    const double t_s = stamped_time(sender, timestamp, ruler_s), off_s = t_s - ruler_s;
-    const bool   leaves = !(fabs(off_s) <= leave_s);
-    const ExerciseClockReason reason =
-        stands ? EXERCISE_CLOCK_STILL : leaves ? EXERCISE_CLOCK_JUMP : EXERCISE_CLOCK_RATE;
+double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
+                                  uint32_t timestamp, double capture_s)
+{
+    return exercise_clock_instant(clock, site, application, entity, timestamp, capture_s).t_s;
+}
 
-    if (sender->standing == SENDER_PROVEN) {
-        sender->odd = stands || leaves ? sender->odd + 1 : 0;
-        if (sender->odd >= odd_limit) doubt(clock, sender, now, ruler_s, reason);
-        else if (!sender->odd) vote(clock, sender, now, off_s, ruler_s);
-    } else if (sender->standing == SENDER_NEW && !stands && !leaves && overtaken) {
-        return t_s;
-    } else if (stands || !keeps_pace(sender->mark, now)) {
-        doubt(clock, sender, now, ruler_s, reason);
-    } else {
-        vote(clock, sender, now, off_s, ruler_s);
-    }
-    if (sender->standing != SENDER_INCONSISTENT) return leaves ? ruler_s : stamped_time(sender, timestamp, ruler_s);
-    note_inconsistent(clock, sender, now);
-    return ruler_s;
+ExerciseInstant exercise_clock_pdu_instant(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu,
+                                           double capture_s)
+{
+    uint16_t sender[2];
+    if (!dis_pdu_sender(sender, header, pdu)) return (ExerciseInstant){.t_s = NAN, .ruler_s = NAN};
+    return exercise_clock_instant(clock, sender[0], sender[1], dis_pdu_entity(header, pdu), header->timestamp, capture_s);
 }
 
 double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu, double capture_s)
 {
-    uint16_t sender[2];
-    if (!dis_pdu_sender(sender, header, pdu)) return NAN;
-    return exercise_clock_report_time(clock, sender[0], sender[1], dis_pdu_entity(header, pdu), header->timestamp,
-                                      capture_s);
+    return exercise_clock_pdu_instant(clock, header, pdu, capture_s).t_s;
+}
+
+/* ---- of a whole recording --------------------------------------------------------------------------- */
+
+static int by_number(const void *a, const void *b)
+{
+    const Segment *p = a, *q = b;
+    return p->number < q->number ? -1 : p->number > q->number;
+}
+
+void exercise_clock_whole(ExerciseClock *clock)
+{
+    for (int i = 0; i < slot_count; i++) {
+        const Sender *sender = &clock->slot[i];
+        const bool    known = sender->trend.points > 2 || fabs(sender->line.mean_y_s) <= gain_s;
+        if (sender->used && (sender->standing == SENDER_PROVEN || (sender->standing == SENDER_NEW && known)))
+            keep_segment(clock, sender);
+    }
+    if (clock->valid_count > 1) qsort(clock->valid, (size_t)clock->valid_count, sizeof *clock->valid, by_number);
+}
+
+double exercise_clock_whole_time(const ExerciseClock *clock, const ExerciseInstant *at)
+{
+    const Segment key = {.number = at->segment};
+    if (at->segment == 0 || clock->valid_count == 0) return at->t_s;
+    const Segment *s = bsearch(&key, clock->valid, (size_t)clock->valid_count, sizeof key, by_number);
+    if (!s) return at->ruler_s;
+    return shifted_time(clock, s->scale, &s->line, tied_time(&s->tie, at->stamp, at->ruler_s));
 }
 
 /* ---- reporting ------------------------------------------------------------------------------------- */
@@ -304,6 +521,11 @@ void exercise_clock_anomaly_text(char *out, size_t size, const ExerciseClockAnom
         {2e3, "look like milliseconds"}, {1, "look like seconds"}, {2, "look like seconds"}};
     char        rate[64];
     const char *what = "jump about";
+    if (d->reason == EXERCISE_CLOCK_SHARED) {
+        snprintf(out, size, "time stamps of %u:%u follow two clocks %.1f s apart: two senders have this site and "
+                 "application; give one another", d->site, d->application, d->apart_s);
+        return;
+    }
     if (d->reason != EXERCISE_CLOCK_JUMP) {
         snprintf(rate, sizeof rate, "run at %.3g times the rate of their arrivals", d->rate);
         what = d->raw_hz == 0 ? "stand still" : rate;

@@ -5,18 +5,21 @@
  * time = its seconds past the hour, unwrapped. Absolute senders share that scale when the first is
  * absolute too; every other sender is tied to it by capture time at its first PDU. Depends on the order of PDUs only.
  *
+ * Offset and drift of such a sender follow the least of its delays (dis/delay_line.h), so jitter enters neither: after
+ * N PDUs with jitter J its offset is some J / N late, and improves; of a whole recording the offsets at its end are used for
+ * all of it (exercise_clock_whole).
+ *
  * Not every sender writes the time into the stamp: some leave a constant there, count milliseconds, microseconds,
  * Unix seconds or PDUs. Stamps are compared with arrival times from a sender's second PDU on. They are rejected, and
  * the arrival time is used instead, when
- *   - an entity's stamps are constant between two reports at least 0.1 s apart;
- *   - a sender not yet validated deviates from arrival times by more than 0.15 s since its first PDU: network bundling
- *     and delay are expected to be less. Until then stamps are used, so this is the largest error of stamps that run
- *     at another rate;
- *   - a validated sender deviates from them by 5 s in two consecutive PDUs (restart), or for two seconds in every PDU
- *     by 0.15 s since the start of a rate check, or by 1 s in total.
- * Rate checks compare the elapsed times of stamps and arrivals over 2 s, 4 s, .. 32 s; two consecutive checks that
- * agree validate a sender, new or rejected; its stamps are then used again with a new offset. A validated sender's
- * datagram that is seconds late keeps its stamp. Clocks may drift by 1e-4. */
+ *   - an entity's stamps are constant over three reports at least 0.1 s apart;
+ *   - a sender deviates by 5 s from the least of its delays, a validated one in two consecutive PDUs (restart);
+ *   - the delays of a sender have a trend of more than 0.15 s that chance makes once in a thousand times, of a validated one
+ *     their lower edge too: a clock at another rate. Jitter has none.
+ * A sender's second PDU counts from its arrival when that is 0.15 s from its stamp: nothing tells the rate yet.
+ * Rate checks over 2 s, 4 s, .. 32 s: two that know the rate, to 2 %, as that of the arrivals validate a sender, new or
+ * rejected; its stamps are then used again with a new offset. A validated sender's datagram that is seconds late keeps its
+ * stamp. Clocks may drift by 1e-4. */
 #ifndef DIS_EXERCISE_CLOCK_H
 #define DIS_EXERCISE_CLOCK_H
 
@@ -37,12 +40,32 @@ static inline double exercise_clock_time(ExerciseClock *clock, uint16_t site, ui
     return exercise_clock_report_time(clock, site, application, 0, timestamp, capture_s);
 }
 
+/* The same, with what is needed to find the time again when all PDUs are known. */
+typedef struct ExerciseInstant {
+    double   t_s, ruler_s; /* exercise time; that of the arrival */
+    uint32_t stamp, segment;
+    bool     by_stamp;     /* t_s */
+} ExerciseInstant;
+
+ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
+                                       uint32_t timestamp, double capture_s);
+/* By the PDU itself; t_s NaN, and the clock unmoved, for one that names no sender. */
+ExerciseInstant exercise_clock_pdu_instant(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu,
+                                           double capture_s);
+
+/* After the last PDU of a recording, once: what is then known of each sender counts for all its PDUs. */
+void   exercise_clock_whole(ExerciseClock *clock);
+double exercise_clock_whole_time(const ExerciseClock *clock, const ExerciseInstant *at);
+
 /* The same by the PDU itself; NaN, and the clock unmoved, for one that names no sender. */
 double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu, double capture_s);
 
 /* ---- senders with rejected stamps ------------------------------------------------------------- */
 
-typedef enum ExerciseClockReason { EXERCISE_CLOCK_STILL, EXERCISE_CLOCK_RATE, EXERCISE_CLOCK_JUMP } ExerciseClockReason;
+typedef enum ExerciseClockReason {
+    EXERCISE_CLOCK_STILL, EXERCISE_CLOCK_RATE, EXERCISE_CLOCK_JUMP,
+    EXERCISE_CLOCK_SHARED /* two senders of one site and application */
+} ExerciseClockReason;
 
 typedef struct ExerciseClockAnomaly {
     uint16_t            site, application;
@@ -51,6 +74,7 @@ typedef struct ExerciseClockAnomaly {
     double              passed_s;         /* since its first PDU */
     double              rate, raw_hz;     /* over it: seconds of stamp, and units of the field, per second */
     double              counted;          /* units of the field a PDU */
+    double              apart_s;          /* two senders: their clocks */
 } ExerciseClockAnomaly;
 
 enum { exercise_clock_anomalies_listed_max = 16, exercise_clock_anomaly_text_size = 160 };

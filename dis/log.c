@@ -1,6 +1,7 @@
 /* dis/log.c: from a capture file to a log: which packets are read, which port, and what is reported of the rest. */
 #include "dis/log.h"
 
+#include "dis/log_file.h"
 #include "dis/log_packet.h"
 #include "dis/log_pcap.h"
 
@@ -69,9 +70,10 @@ static Status scan_capture(Scan *scan, DisCapture *capture, const char *path)
         scan->log->counters.packets++;
         Status read = STATUS_OK;
         if (dis_packet_reads(packet.link))
-            read = dis_packet_read(scan->reader, packet.link, packet.capture_s, packet.bytes, packet.octets);
+            read = dis_packet_read(scan->reader, &packet);
         else
             skip_packet(scan, packet.link);
+        if (read == STATUS_IO) return read; /* of the scratch file; logged */
         if (read != STATUS_OK) {
             log_error("log: %s: out of memory after %d datagrams", path, scan->log->count);
             return read;
@@ -99,22 +101,25 @@ static Status scan_capture(Scan *scan, DisCapture *capture, const char *path)
         log_warn("log: %s ends early after packet %llu: %s; what came before is used", path,
                  (unsigned long long)scan->log->counters.packets, problem);
     }
-    dis_packet_reader_end(scan->reader);
+    scan->log->any_port = dis_packet_reader_end(scan->reader);
     return STATUS_OK;
 }
 
-static Status open_port(DisLog *out, const char *path, uint16_t port)
+Status dis_log_open_read(DisLog *out, const char *path, int port, DisLogRead *read, void *user)
 {
     DisCapture *capture = NULL;
-    Status      status = dis_capture_open(&capture, path);
+    if (port < dis_port_default || port > UINT16_MAX) return STATUS_BAD_VALUE;
+    Status status = dis_capture_open_tapped(&capture, path, read, user);
     if (status != STATUS_OK) return status;
 
     DisLog log = {0};
     Scan   scan = {.log = &log};
     log.storage = arena_create();
-    status = log.storage ? dis_packet_reader_create(&scan.reader, &log, log.storage, port) : STATUS_NO_MEMORY;
+    status = log.storage ? dis_log_file_create(&log.file, dis_capture_file(capture), path) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) status = dis_packet_reader_create(&scan.reader, &log, log.storage, port);
     if (status == STATUS_OK) status = scan_capture(&scan, capture, path);
     if (status == STATUS_OK) {
+        dis_capture_drain(capture);
         const size_t octets = strlen(dis_capture_notes(capture)) + 1;
         char        *notes = arena_alloc(log.storage, octets, 1);
         if (notes) memcpy(notes, dis_capture_notes(capture), octets);
@@ -127,32 +132,36 @@ static Status open_port(DisLog *out, const char *path, uint16_t port)
         dis_log_close(&log);
         return status;
     }
+    log.any_port |= port == dis_port_any;
+    log.retimed = dis_log_retime(&log);
+    if (dis_log_failed(&log)) {
+        dis_log_close(&log);
+        return STATUS_IO;
+    }
     *out = log;
     return STATUS_OK;
 }
 
-Status dis_log_open(DisLog *out, const char *path, int port)
+Status dis_log_open(DisLog *out, const char *path, int port) { return dis_log_open_read(out, path, port, NULL, NULL); }
+
+DisDatagram dis_log_datagram(const DisLog *log, int i)
 {
-    DisLog log;
-    if (port < dis_port_default || port > UINT16_MAX) return STATUS_BAD_VALUE;
-    Status status = open_port(&log, path, (uint16_t)(port == dis_port_default ? dis_port : port));
-    if (status != STATUS_OK) return status;
-    if (port == dis_port_default && log.count == 0 && log.counters.other_port > 0) {
-        dis_log_close(&log);
-        status = open_port(&log, path, dis_port_any);
-        if (status != STATUS_OK) return status;
-        log.any_port = true;
-    }
-    log.any_port |= port == dis_port_any;
-    log.retimed = dis_log_retime(&log);
-    *out = log;
-    return STATUS_OK;
+    DisDatagram d = log->datagram[i];
+    if (!(d.packet & dis_datagram_on_disk)) return d;
+    const uint8_t *bytes = dis_log_file_octets(log->file, d.at, d.octets);
+    d.packet &= ~dis_datagram_on_disk;
+    d.bytes = bytes ? bytes : (const uint8_t *)"";
+    if (!bytes) d.octets = 0;
+    return d;
 }
+
+bool dis_log_failed(const DisLog *log) { return dis_log_file_failed(log->file); }
 
 void dis_log_close(DisLog *log)
 {
     if (!log) return;
     free(log->datagram);
+    dis_log_file_destroy(log->file);
     arena_destroy(log->storage);
     *log = (DisLog){0};
 }

@@ -5,6 +5,8 @@
  * RFC 768 (UDP), IEEE 802.1Q. */
 #include "dis/log_packet.h"
 
+#include "dis/log_file.h"
+
 #include "dis/reader.h"
 
 #include <limits.h>
@@ -68,7 +70,11 @@ struct DisPacketReader {
     DisLog  *log;
     Arena   *arena;
     int      capacity;
-    uint16_t port;
+    int      port;
+    bool     sure;      /* of dis_port_default: one went to 3000 */
+    uint64_t maybe;     /* packets of datagrams to other ports, which are in the log until then */
+    size_t   in_memory; /* octets */
+    const DisCapturePacket *packet;
     double   capture_s;
     Assembly assembly[assemblies];
     uint64_t fragments; /* ever, for age */
@@ -85,6 +91,26 @@ static bool looks_like_dis(Span payload)
            header.length <= payload.octets;
 }
 
+/* In memory; beyond a limit where they are in the file, and a datagram of several packets in the scratch file. */
+static Status keep_octets(DisDatagram *out, DisPacketReader *reader, Span payload)
+{
+    const DisCapturePacket *packet = reader->packet;
+    DisLog                 *log = reader->log;
+    if (!log->file || reader->in_memory + payload.octets <= dis_log_in_memory) {
+        uint8_t *bytes = arena_alloc(reader->arena, payload.octets, 1);
+        if (!bytes) return STATUS_NO_MEMORY;
+        memcpy(bytes, payload.at, payload.octets);
+        out->bytes = bytes;
+        reader->in_memory += payload.octets;
+        return STATUS_OK;
+    }
+    out->packet |= dis_datagram_on_disk;
+    const bool here = payload.at >= packet->bytes && payload.at < packet->bytes + packet->octets;
+    if (!here || packet->at == UINT64_MAX) return dis_log_file_keep(&out->at, log->file, payload.at, payload.octets);
+    out->at = packet->at + (uint64_t)(payload.at - packet->bytes);
+    return STATUS_OK;
+}
+
 static void keep_datagram(DisPacketReader *reader, Span payload)
 {
     DisLog *log = reader->log;
@@ -99,17 +125,10 @@ static void keep_datagram(DisPacketReader *reader, Span payload)
         log->datagram = grown;
         reader->capacity = capacity;
     }
-    uint8_t *bytes = arena_alloc(reader->arena, payload.octets, 1);
-    if (!bytes) {
-        reader->status = STATUS_NO_MEMORY;
-        return;
-    }
-    memcpy(bytes, payload.at, payload.octets);
-    log->datagram[log->count++] = (DisDatagram){.capture_s = reader->capture_s,
-                                                .packet_s = reader->capture_s,
-                                                .packet = (uint32_t)log->counters.packets,
-                                                .octets = (uint32_t)payload.octets,
-                                                .bytes = bytes};
+    DisDatagram kept = {.capture_s = reader->capture_s, .packet_s = reader->capture_s,
+                        .packet = (uint32_t)log->counters.packets, .octets = (uint32_t)payload.octets};
+    reader->status = keep_octets(&kept, reader, payload);
+    if (reader->status == STATUS_OK) log->datagram[log->count++] = kept;
 }
 
 /* packets: how many packets of the file this IP payload came in. */
@@ -127,10 +146,19 @@ static void read_udp(DisPacketReader *reader, Span ip_payload, uint32_t packets)
         return;
     }
     const Span payload = {ip_payload.at + 8, length - 8};
-    if (reader->port ? port != reader->port : !looks_like_dis(payload)) {
+    if (reader->port == dis_port_default && port == dis_port && !reader->sure) {
+        reader->sure      = true;
+        reader->log->count = 0;
+        counters->other_port += reader->maybe;
+        arena_reset(reader->arena);
+        reader->in_memory = 0;
+    }
+    const bool any = reader->port == dis_port_any || (reader->port == dis_port_default && !reader->sure);
+    if (any ? !looks_like_dis(payload) : port != (reader->port == dis_port_default ? dis_port : reader->port)) {
         counters->other_port += packets;
         return;
     }
+    reader->maybe += packets;
     keep_datagram(reader, payload);
 }
 
@@ -414,7 +442,7 @@ static void read_frame(DisPacketReader *reader, int link, Span frame)
 
 /* ---- the reader ---------------------------------------------------------------------------------------- */
 
-Status dis_packet_reader_create(DisPacketReader **out, DisLog *log, Arena *arena, uint16_t port)
+Status dis_packet_reader_create(DisPacketReader **out, DisLog *log, Arena *arena, int port)
 {
     DisPacketReader *reader = calloc(1, sizeof *reader);
     if (!reader) return STATUS_NO_MEMORY;
@@ -432,15 +460,17 @@ void dis_packet_reader_destroy(DisPacketReader *reader)
     free(reader);
 }
 
-Status dis_packet_read(DisPacketReader *reader, int link, double capture_s, const uint8_t *bytes, size_t octets)
+Status dis_packet_read(DisPacketReader *reader, const DisCapturePacket *packet)
 {
-    reader->capture_s = capture_s;
-    read_frame(reader, link, (Span){bytes, octets});
+    reader->packet    = packet;
+    reader->capture_s = packet->capture_s;
+    read_frame(reader, packet->link, (Span){packet->bytes, packet->octets});
     return reader->status;
 }
 
-void dis_packet_reader_end(DisPacketReader *reader)
+bool dis_packet_reader_end(DisPacketReader *reader)
 {
     for (int i = 0; i < assemblies; i++)
         if (reader->assembly[i].used) give_up(reader, &reader->assembly[i]);
+    return reader->port == dis_port_default && !reader->sure && (reader->maybe || reader->log->counters.other_port);
 }

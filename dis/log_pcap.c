@@ -46,7 +46,8 @@ struct DisCapture {
     size_t     note_octets, note_capacity;
     Status     status;
     char       problem[200];
-    uint8_t    body[body_most];
+    uint64_t       body_at;        /* offset in the file; UINT64_MAX: none */
+    uint8_t        body[body_most];
 };
 
 __attribute__((format(printf, 2, 3))) static bool stop(DisCapture *c, const char *format, ...)
@@ -200,7 +201,8 @@ static bool take_packet(DisCapturePacket *out, DisCapture *c, const uint8_t *at,
                         const Interface *face)
 {
     if (captured > there) return stop(c, "a packet of %u octets in a block with room for %zu", captured, there);
-    *out = (DisCapturePacket){c->last_s, face->link, captured, at};
+    *out = (DisCapturePacket){c->last_s, face->link, captured, at, c->body_at};
+    if (out->at != UINT64_MAX) out->at += (uint64_t)(at - c->body);
     return true;
 }
 
@@ -245,6 +247,7 @@ static bool next_block(bool *found, DisCapturePacket *out, DisCapture *c)
     }
     const uint64_t octets = length - begun - 4;
     const size_t   looked_at = octets < body_most ? (size_t)octets : body_most;
+    c->body_at = dis_stream_offset(c->stream);
     if (dis_stream_read(c->stream, c->body, looked_at) < looked_at || !dis_stream_skip(c->stream, octets - looked_at) ||
         dis_stream_read(c->stream, tail, 4) < 4)
         return stop(c, "it ends inside a block");
@@ -264,12 +267,13 @@ static bool next_record(DisCapturePacket *out, DisCapture *c)
     if (got < c->record_octets) return stop(c, "it ends inside a packet's header");
     const uint32_t captured = load_u32(c, head + 8);
     if (captured > packet_most) return stop(c, "a packet of %u octets", captured);
+    c->body_at = dis_stream_offset(c->stream);
     if (dis_stream_read(c->stream, c->body, captured) < captured) return stop(c, "it ends inside a packet");
     const Interface *face = c->interface;
     Interface        whole = *face; /* seconds of 32 bits, then a fraction that may be more than one */
     whole.offset_s         = (int64_t)load_u32(c, head);
     c->last_s              = stamp_s(&whole, load_u32(c, head + 4));
-    *out                   = (DisCapturePacket){c->last_s, face->link, captured, c->body};
+    *out                   = (DisCapturePacket){c->last_s, face->link, captured, c->body, c->body_at};
     return true;
 }
 
@@ -311,11 +315,16 @@ static bool begin(DisCapture *c)
     return true;
 }
 
-Status dis_capture_open(DisCapture **out, const char *path)
+void dis_capture_drain(DisCapture *c) { dis_stream_drain(c->stream); }
+int  dis_capture_file(const DisCapture *c) { return dis_stream_file(c->stream); }
+
+Status dis_capture_open(DisCapture **out, const char *path) { return dis_capture_open_tapped(out, path, NULL, NULL); }
+
+Status dis_capture_open_tapped(DisCapture **out, const char *path, DisStreamTap *tap, void *user)
 {
     DisCapture *c = calloc(1, sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
-    Status status = dis_stream_open(&c->stream, path);
+    Status status = dis_stream_open_tapped(&c->stream, path, tap, user);
     if (status == STATUS_OK && !begin(c)) {
         const char *packing = dis_stream_packing(c->stream);
         status              = c->status != STATUS_OK ? c->status : STATUS_UNSUPPORTED;

@@ -6,7 +6,7 @@
 #ifndef DIS_LOG_PCAP_H
 #define DIS_LOG_PCAP_H
 
-#include "pitviper.h"
+#include "dis/log_stream.h"
 
 typedef struct DisCapture DisCapture;
 
@@ -15,10 +15,15 @@ typedef struct DisCapturePacket {
     int            link;      /* LINKTYPE_ of its interface */
     size_t         octets;    /* captured, of at most 256 KiB */
     const uint8_t *bytes;     /* until the next packet */
+    uint64_t       at;        /* offset of bytes in the file; UINT64_MAX: it is compressed, or a pipe */
 } DisCapturePacket;
 
 /* A file that is no capture, or cannot be read: a logged reason and the status. */
 Status dis_capture_open(DisCapture **out, const char *path);
+/* tap: as dis_stream_open_tapped has it; dis_capture_drain: reads the rest of the file for it. */
+Status dis_capture_open_tapped(DisCapture **out, const char *path, DisStreamTap *tap, void *user);
+void   dis_capture_drain(DisCapture *capture);
+int    dis_capture_file(const DisCapture *capture); /* its descriptor */
 void   dis_capture_close(DisCapture *capture);
 
 /* False: no more, because the file ends or because of an error, see dis_capture_problem. */

@@ -4,11 +4,14 @@
  * liblzma, with decoders that verify the checksums of the formats. */
 #include "dis/log_stream.h"
 
+#include "pitviper_file.h"
+
 #include <bzlib.h>
 #include <errno.h>
 #include <lzma.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 #include <zlib.h>
 #include <zstd.h>
 #include <zstd_errors.h>
@@ -22,9 +25,12 @@ typedef enum Packing { PACKING_NONE, PACKING_GZIP, PACKING_ZSTD, PACKING_BZIP2, 
 static const char *const packing_name[PACKING_COUNT] = {NULL, "gzip", "zstd", "bzip2", "xz"};
 
 struct DisStream {
-    FILE       *file;
+    int         file; /* a descriptor */
     char       *path;
     Packing     packing;
+    bool        pipe;
+    DisStreamTap *tap;      /* NULL: none */
+    void       *tap_user;
     bool        file_over;  /* end of the file */
     bool        over;       /* nor from the decoder */
     Status      status;
@@ -57,11 +63,12 @@ static void fill(DisStream *s, size_t octets)
     memmove(s->in, s->in + s->at, s->count - s->at);
     s->count -= s->at;
     s->at = 0;
-    const size_t got = fread(s->in + s->count, 1, sizeof s->in - s->count, s->file);
-    s->count += got;
-    s->read += got;
+    const long got = file_read(s->file, s->in + s->count, sizeof s->in - s->count);
+    s->count += got > 0 ? (size_t)got : 0;
+    s->read += got > 0 ? (uint64_t)got : 0;
+    if (s->tap && got > 0) s->tap(s->tap_user, s->in + s->count - got, (size_t)got);
     s->file_over = s->count < sizeof s->in;
-    if (s->file_over && ferror(s->file)) stop(s, STATUS_IO, strerror(errno));
+    if (got < 0) stop(s, STATUS_IO, errno == ECANCELED ? "stopped by a signal" : strerror(errno));
 }
 
 static Packing packing_of(const uint8_t *p, size_t octets)
@@ -261,9 +268,12 @@ static Status open_stream(DisStream *s, const char *path)
 {
     s->path = strdup(path);
     if (!s->path) return STATUS_NO_MEMORY;
-    s->file = fopen(path, "rb");
-    if (!s->file) {
-        log_error("log: cannot open %s: %s", path, strerror(errno));
+    char     why[file_why_size];
+    uint64_t octets = 0;
+    s->file = file_open(why, &octets, path, FILE_FROM_PIPE);
+    s->pipe = octets == UINT64_MAX;
+    if (s->file < 0) {
+        log_error("log: cannot open %s: %s", path, why);
         return STATUS_IO;
     }
     fill(s, magic_octets);
@@ -279,10 +289,30 @@ static Status open_stream(DisStream *s, const char *path)
     return begin_decoder(s) ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-Status dis_stream_open(DisStream **out, const char *path)
+void dis_stream_drain(DisStream *s)
+{
+    while (s->tap && !s->file_over && s->status == STATUS_OK) {
+        s->at = s->count;
+        fill(s, 1);
+    }
+}
+
+uint64_t dis_stream_offset(const DisStream *s)
+{
+    return s->packing == PACKING_NONE && !s->pipe ? s->read - (s->count - s->at) : UINT64_MAX;
+}
+
+int dis_stream_file(const DisStream *s) { return s->file; }
+
+Status dis_stream_open(DisStream **out, const char *path) { return dis_stream_open_tapped(out, path, NULL, NULL); }
+
+Status dis_stream_open_tapped(DisStream **out, const char *path, DisStreamTap *tap, void *user)
 {
     DisStream *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
+    s->file             = -1;
+    s->tap              = tap;
+    s->tap_user         = user;
     s->xz               = (lzma_stream)LZMA_STREAM_INIT;
     const Status status = open_stream(s, path);
     if (status == STATUS_OK) *out = s;
@@ -294,7 +324,7 @@ void dis_stream_close(DisStream *s)
 {
     if (!s) return;
     end_decoder(s);
-    if (s->file) fclose(s->file);
+    if (s->file >= 0) close(s->file);
     free(s->path);
     free(s);
 }

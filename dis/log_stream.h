@@ -15,6 +15,14 @@ enum { dis_stream_ratio_most = 256, dis_stream_free_octets = 1 << 24 };
 
 /* A file that cannot be opened or read, or is empty: a logged reason and the status. */
 Status dis_stream_open(DisStream **out, const char *path);
+/* Gets all octets of the file in order, before they are expanded; from the first on when it is given before any is read. */
+typedef void DisStreamTap(void *user, const void *octets, size_t count);
+Status dis_stream_open_tapped(DisStream **out, const char *path, DisStreamTap *tap, void *user);
+/* Reads what is left of the file, for the tap alone. */
+void   dis_stream_drain(DisStream *stream);
+/* Offset in the file of what is read next; UINT64_MAX: compressed, or a pipe. */
+uint64_t dis_stream_offset(const DisStream *stream);
+int    dis_stream_file(const DisStream *stream); /* its descriptor */
 void   dis_stream_close(DisStream *stream);
 
 /* Fewer than requested: end of file, or an error, see dis_stream_problem. */

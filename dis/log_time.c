@@ -43,7 +43,8 @@ static bool loudest_sender(uint16_t out[2], const DisLog *log)
         DisHeader header;
         uint16_t  sender[2];
         int       v = 0;
-        if (!first_pdu(&header, sender, &log->datagram[i])) continue;
+        const DisDatagram datagram = dis_log_datagram(log, i);
+        if (!first_pdu(&header, sender, &datagram)) continue;
         while (v < voices && (voice[v].sender[0] != sender[0] || voice[v].sender[1] != sender[1])) v++;
         if (v == sender_limit) continue;
         if (v == voices) voice[voices++] = (Voice){{sender[0], sender[1]}, 0};
@@ -68,7 +69,8 @@ static bool walk(DisLog *log, const uint16_t sender[2], bool write, double *stam
         DisDatagram *datagram = &log->datagram[i];
         DisHeader    header;
         uint16_t     who[2];
-        if (first_pdu(&header, who, datagram) && who[0] == sender[0] && who[1] == sender[1]) {
+        const DisDatagram there = dis_log_datagram(log, i);
+        if (first_pdu(&header, who, &there) && who[0] == sender[0] && who[1] == sender[1]) {
             if (!begun) {
                 begun   = true;
                 first_s = last_s = datagram->capture_s;
@@ -105,13 +107,14 @@ static bool motion_is_at_packet_pace(const DisLog *log, const uint16_t sender[2]
         DisHeader      header;
         DisPdu         decoded;
         uint16_t       who[2];
-        const uint8_t *at = log->datagram[i].bytes, *pdu, *end = at + log->datagram[i].octets;
+        const DisDatagram d = dis_log_datagram(log, i);
+        const uint8_t *at = d.bytes, *pdu, *end = at + d.octets;
         while (dis_next_pdu(&header, &pdu, &at, end, &ignored)) {
             if (header.type != dis_pdu_entity_state || !dis_pdu_sender(who, &header, pdu) || who[0] != sender[0] ||
                 who[1] != sender[1] || dis_decode(&decoded, pdu, header.length) != STATUS_OK)
                 continue;
             const DisEntityState *state = &decoded.entity_state;
-            const double *p = state->p_ecef, capture_s = log->datagram[i].capture_s;
+            const double *p = state->p_ecef, capture_s = d.capture_s;
             Seen         *s = &seen[state->id.entity % entity_slots], now = {true, state->id.entity, header.timestamp,
                                                                             capture_s, {p[0], p[1], p[2]}, 0};
             const double  v[3] = {state->velocity_mps[0], state->velocity_mps[1], state->velocity_mps[2]};

@@ -14,6 +14,9 @@ enum {
     dis_pdu_remove_entity       = 12,
     dis_pdu_start_resume        = 13,
     dis_pdu_stop_freeze         = 14,
+    dis_pdu_remove_entity_r     = 52, /* with reliability: the same, with a reliability octet more */
+    dis_pdu_start_resume_r      = 53,
+    dis_pdu_stop_freeze_r       = 54,
     dis_pdu_entity_state_update = 67,
     dis_header_octets           = 12,
     dis_port                    = 3000,
@@ -56,7 +59,8 @@ void dis_entity_type_text(char out[dis_type_text_size], DisEntityType type);
 typedef enum DisDrop {
     DIS_DROP_SHORT_HEADER,    /* fewer than 12 octets left */
     DIS_DROP_BAD_VERSION,     /* not 5, 6 or 7 */
-    DIS_DROP_LENGTH_TOO_SHORT,/* length field below 12 (zero too), or below what its type needs */
+    DIS_DROP_LENGTH_ZERO,     /* length field 0, and the datagram's own length does not say what belongs there */
+    DIS_DROP_LENGTH_TOO_SHORT,/* length field below 12, or below what its type needs */
     DIS_DROP_LENGTH_TOO_LONG, /* length field beyond the datagram */
     DIS_DROP_TRUNCATED,       /* the record ends before its fields do */
     DIS_DROP_BAD_COUNT,       /* a count that the length cannot hold */
@@ -69,11 +73,14 @@ typedef enum DisDrop {
 } DisDrop;
 
 const char *dis_drop_name(DisDrop drop);
+const char *dis_drop_cause(DisDrop drop); /* a few words for people: `a length field of 0` */
 
 typedef struct DisCounters {
     uint64_t datagrams;
     uint64_t pdus[256];    /* by type, every well-formed header */
     uint64_t dropped[DIS_DROP_COUNT];
+    uint64_t lengths_made;   /* PDUs with a length field of 0, taken by their type and the datagram's length */
+    uint64_t padded;         /* runs of zeros behind a PDU, passed over */
     uint64_t stamps_doubted; /* PDUs that count from their arrival although they are stamped: exercise_clock.h */
 } DisCounters;
 

@@ -196,10 +196,11 @@ static inline DisEntityType dis_read_entity_type(DisReader *r)
     return p ? dis_load_entity_type(p) : (DisEntityType){0};
 }
 
-/* A reader over one PDU: up to its own length field, and never beyond the octets given. */
+/* A reader over one PDU: up to its own length field, and never beyond the octets given; all of these where the field is
+ * 0: dis_next_pdu found out how many there are. */
 static inline DisReader dis_pdu_reader(const uint8_t *pdu, size_t octets)
 {
-    const size_t length = octets < dis_header_octets ? 0 : dis_load_u16(pdu + 8);
+    const size_t field = octets < dis_header_octets ? 0 : dis_load_u16(pdu + 8), length = field ? field : octets;
     if (length < dis_header_octets || length > octets) return (DisReader){pdu, pdu, true};
     return (DisReader){pdu, pdu + length, false};
 }

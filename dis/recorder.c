@@ -3,10 +3,14 @@
  * Sources: PCAP Next Generation (draft-ietf-opsawg-pcapng), the pcap file format of libpcap (pcap-savefile(5)),
  * link type RAW (101), RFC 791 (IPv4), RFC 8200 (IPv6), RFC 768 (UDP), RFC 1071 (checksum). */
 #include "dis/recorder.h"
+#include "pitviper_output.h"
 #include "dis/reader.h"
 
 #include <errno.h>
 #include <stdlib.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 enum {
     link_raw_ip = 101,
@@ -25,7 +29,9 @@ static const int64_t ns_per_s = 1000000000;
 struct DisRecorder {
     FILE    *file;
     char    *path;
+    char    *comment;
     bool     pcapng, failed;
+    bool     older, begun;          /* there was another recording; it is this one's file now */
     uint16_t identification;     /* of the next IPv4 packet */
     uint8_t  to4[16], to6[16];
     uint16_t to_port;
@@ -182,7 +188,7 @@ Status dis_recorder_add(DisRecorder *r, int64_t capture_ns, const uint8_t from[1
     if (octets > (size_t)(is_ipv4(from) ? dis_recorder_ipv4_octets : dis_recorder_ipv6_octets) || capture_ns < 0 ||
         (!r->pcapng && capture_ns / ns_per_s > UINT32_MAX))
         return STATUS_BAD_VALUE;
-    if (r->failed) return STATUS_IO;
+    if (dis_recorder_begin(r) != STATUS_OK) return STATUS_IO;
 
     const size_t header_octets = make_headers(headers, r, from, port, bytes, octets);
     if (r->pcapng) {
@@ -202,7 +208,7 @@ Status dis_recorder_note(DisRecorder *r, int64_t capture_ns, const char *text)
     enum { interface_statistics = 5, opt_comment = 1, end_of_options = 4 };
     if (!r->pcapng) return STATUS_UNSUPPORTED;
     if (capture_ns < 0) return STATUS_BAD_VALUE;
-    if (r->failed) return STATUS_IO;
+    if (dis_recorder_begin(r) != STATUS_OK) return STATUS_IO;
     const uint64_t ns = (uint64_t)capture_ns;
     const size_t   said = strnlen(text, longest_text);
     const uint32_t length = (uint32_t)(24 + option_octets(said) + end_of_options);
@@ -215,43 +221,59 @@ Status dis_recorder_note(DisRecorder *r, int64_t capture_ns, const char *text)
 
 /* ---- open and close --------------------------------------------------------------------------------------------- */
 
-static bool ends_with(const char *text, const char *end)
+bool dis_recorder_name(const char *what, const char *path)
 {
-    const size_t octets = strlen(text), wanted = strlen(end);
-    return octets >= wanted && strcmp(text + octets - wanted, end) == 0;
+    const char *ending = output_ending(path);
+    if (!*ending || strcasecmp(ending, ".pcapng") == 0 || strcasecmp(ending, ".pcap") == 0) return true;
+    log_error("%s: '%s': recordings are pcapng or pcap: choose a name that ends with .pcapng or .pcap", what, path);
+    return false;
 }
 
 Status dis_recorder_open(DisRecorder **out, const char *path, const char *comment)
 {
     DisRecorder *r = calloc(1, sizeof *r);
     if (!r) return STATUS_NO_MEMORY;
-    r->path = strdup(path);
-    if (!r->path) {
-        free(r);
+    r->path    = strdup(path);
+    r->comment = comment ? strdup(comment) : NULL;
+    if (!r->path || (comment && !r->comment)) {
+        dis_recorder_close(r);
         return STATUS_NO_MEMORY;
     }
-    r->pcapng = !ends_with(path, ".pcap");
+    r->pcapng = strcasecmp(output_ending(path), ".pcap") != 0;
     dis_recorder_to(r, NULL, dis_port);
-    r->file = fopen(path, "wbe");
+    r->file = output_file(path, OUTPUT_STREAM | OUTPUT_KEEP);
     if (!r->file) {
-        log_error("recorder: cannot make %s: %s; the folder must exist and be writable", path, strerror(errno));
+        log_error("recorder: cannot make %s: %s; the folder must exist and be writable", path,
+                  output_reason(errno));
         dis_recorder_close(r);
         return STATUS_IO;
     }
     setvbuf(r->file, NULL, _IOFBF, file_buffer_octets);
-    if (r->pcapng) {
-        put_section(r, comment);
-        put_interface(r);
-    } else {
-        put_pcap_header(r);
-    }
-    if (dis_recorder_flush(r) != STATUS_OK) {
+    struct stat about;
+    r->older = lstat(path, &about) == 0 && S_ISREG(about.st_mode) && about.st_size > 0;
+    if (!r->older && dis_recorder_begin(r) != STATUS_OK) {
         dis_recorder_close(r);
         return STATUS_IO;
     }
     *out = r;
     return STATUS_OK;
 }
+
+Status dis_recorder_begin(DisRecorder *r)
+{
+    if (r->begun) return r->failed ? STATUS_IO : STATUS_OK;
+    r->begun = true;
+    if (r->older && ftruncate(fileno(r->file), 0) != 0) return fail(r);
+    if (r->pcapng) {
+        put_section(r, r->comment);
+        put_interface(r);
+    } else {
+        put_pcap_header(r);
+    }
+    return dis_recorder_flush(r);
+}
+
+bool dis_recorder_begun(const DisRecorder *r) { return r->begun; }
 
 void dis_recorder_to(DisRecorder *r, const uint8_t to[16], uint16_t port)
 {
@@ -275,6 +297,7 @@ Status dis_recorder_close(DisRecorder *r)
     if (!r) return STATUS_OK;
     if (r->file && fclose(r->file) != 0 && !r->failed) fail(r);
     const Status status = r->failed || !r->file ? STATUS_IO : STATUS_OK;
+    free(r->comment);
     free(r->path);
     free(r);
     return status;

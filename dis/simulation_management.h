@@ -9,9 +9,12 @@ typedef struct DisClockTime {
     uint32_t past_hour; /* as a time stamp: (x >> 1) * 3600 / 2^31 s */
 } DisClockTime;
 
+/* The family with reliability (types 52, 53, 54) shares these structs: header.type says which. reliability, and the
+ * padding behind it, belong to it alone. */
 typedef struct DisRemoveEntity {
     DisHeader   header;
     DisEntityId originating, receiving; /* receiving: the entity removed; 0xFFFF is a wildcard */
+    uint8_t     reliability, reliability_padding[3];
     uint32_t    request;
 } DisRemoveEntity;
 
@@ -19,6 +22,7 @@ typedef struct DisStartResume {
     DisHeader    header;
     DisEntityId  originating, receiving;
     DisClockTime real_world, simulation;
+    uint8_t      reliability, reliability_padding[3];
     uint32_t     request;
 } DisStartResume;
 
@@ -27,7 +31,7 @@ typedef struct DisStopFreeze {
     DisEntityId  originating, receiving;
     DisClockTime real_world;
     uint8_t      reason, frozen_behaviour;
-    uint8_t      padding[2];
+    uint8_t      padding[2]; /* with reliability: that octet, then padding */
     uint32_t     request;
 } DisStopFreeze;
 

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include <signal.h>
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -58,6 +60,19 @@ static inline void text_file(char path[text_file_size], const char *text)
     const int    file   = mkstemp(path);
     const size_t octets = strlen(text);
     CHECK(file >= 0 && write(file, text, octets) == (ssize_t)octets && close(file) == 0);
+}
+
+/* Until it is undone no file of this process takes another octet, as on a full disk: EFBIG. Not while a test prints. */
+static inline void check_full_disk(bool full)
+{
+    static struct rlimit before;
+    struct rlimit        none = {0};
+    if (full) {
+        signal(SIGXFSZ, SIG_IGN);
+        getrlimit(RLIMIT_FSIZE, &before);
+        none.rlim_max = before.rlim_max;
+    }
+    setrlimit(RLIMIT_FSIZE, full ? &none : &before);
 }
 
 /* What was said last at warning level or above, while log_set_sink(check_listen, NULL). */

@@ -327,8 +327,9 @@ Status catalog_open(Catalog **out, const char *path, double sag_m)
 
     status = find_or_add(&unknown, catalog, "unknown", &own_size, "");
     if (status != STATUS_OK) log_error("catalog: cannot build the unknown model: %s", status_name(status));
-    if (status == STATUS_OK && own_path) status = read_table(catalog, &own, true);
+    /* the program's models keep their numbers, whatever the user adds: row_order decides the precedence */
     if (status == STATUS_OK) status = read_table(catalog, &table, false);
+    if (status == STATUS_OK && own_path) status = read_table(catalog, &own, true);
     qsort(catalog->row, (size_t)catalog->row_count, sizeof *catalog->row, row_order);
     if (status == STATUS_OK) warn_sizes(catalog);
 

@@ -1,5 +1,6 @@
 /* entities/catalog/catalog_one.c: a catalog of one model for all entity types. */
 #include "entities/catalog/catalog.h"
+#include "pitviper_output.h"
 
 #include "entities/import/model_import.h"
 
@@ -15,7 +16,7 @@ Status catalog_open_one(Catalog **out, int *model, const char *name, double sag_
         free(real);
         return STATUS_IO;
     }
-    FILE *file = fopen(path, "w");
+    FILE *file = output_file(path, 0);
     if (file) {
         fputs("type,model,origin\n*,\"", file);
         for (const char *c = real ? real : name; *c; c++) fputs(*c == '"' ? "\"\"" : (const char[]){*c, 0}, file);

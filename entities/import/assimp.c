@@ -28,6 +28,7 @@ typedef struct Files {
     char shown[1024]; /* without .gz */
     size_t folder;    /* length of the folder's name with its slash */
     bool no_memory;     /* for a file of it */
+    char refused[1100]; /* a file outside the folder, or what is no file */
 } Files;
 
 typedef struct OpenFile {
@@ -67,14 +68,22 @@ static enum aiReturn file_seek(struct aiFile *file, size_t offset, enum aiOrigin
     return aiReturn_SUCCESS;
 }
 
+/* The first name; assimp asks for a file several times, and by more than one. */
+static void refuse(Files *files, const char *name)
+{
+    if (!*files->refused) snprintf(files->refused, sizeof files->refused, "%s", name);
+}
+
 static struct aiFile *files_open(struct aiFileIO *io, const char *name, const char *mode)
 {
     Files *files = (Files *)io->UserData;
     char packed[1100];
     (void)mode;
     const bool is_model = strcmp(name, files->shown) == 0;
-    if (!is_model && (strncmp(name, files->shown, files->folder) != 0 || strstr(name + files->folder, "..")))
+    if (!is_model && (strncmp(name, files->shown, files->folder) != 0 || strstr(name + files->folder, ".."))) {
+        refuse(files, name);
         return NULL;
+    }
     OpenFile *f = calloc(1, sizeof *f);
     Status status = f ? STATUS_OK : STATUS_NO_MEMORY;
     snprintf(packed, sizeof packed, "%s.gz", name);
@@ -82,7 +91,9 @@ static struct aiFile *files_open(struct aiFileIO *io, const char *name, const ch
     if (status != STATUS_OK && status != STATUS_NO_MEMORY && !is_model)
         status = import_read_whole(&f->bytes, &f->octets, packed, true);
     if (status != STATUS_OK) {
+        struct stat there;
         files->no_memory = files->no_memory || status == STATUS_NO_MEMORY;
+        if (stat(name, &there) == 0 && !S_ISREG(there.st_mode)) refuse(files, name);
         free(f);
         return NULL;
     }
@@ -102,7 +113,7 @@ static void files_close(struct aiFileIO *io, struct aiFile *file)
 
 typedef struct Header {
     int status;
-    char said[256];
+    char said[256], refused[1100];
     int node_count, material_count, mesh_count, vertex_count, triangle_count;
     int lost[IMPORT_LOST_COUNT];
 } Header;
@@ -272,6 +283,8 @@ static void child_reads(int fd, const char *path)
             fill_node(&flat, flat.source->mRootNode, -1);
             for (int m = 0; m < s->material_count; m++) fill_material(&s->material[m], flat.source->mMaterials[m]);
             count_lost(s, flat.source);
+            s->lost[LOST_EXTERNAL_REFERENCES] = *files.refused != 0;
+            snprintf(header.refused, sizeof header.refused, "%s", files.refused);
             header.status = STATUS_OK;
         }
     }
@@ -397,6 +410,10 @@ static Status take_scene(ImportScene *out, const char *bytes, size_t octets, con
         !take(s.normal, (size_t)s.vertex_count * sizeof *s.normal, &at, end) ||
         !take(s.triangle, (size_t)s.triangle_count * sizeof *s.triangle, &at, end) || at != end || !scene_is_sound(&s))
         goto broken;
+    header.refused[sizeof header.refused - 1] = 0;
+    if (*header.refused)
+        log_warn("model: %s names a file that is outside its folder or no regular file, and is left out: %s", path,
+                 header.refused);
     *out = s;
     return STATUS_OK;
 

@@ -1,8 +1,9 @@
 /* entities/import/model_files.c: which files a model is read from: its own and its sidecar. */
 #include "entities/import/model_import_private.h"
 
+#include "pitviper_file.h"
+
 #include <ctype.h>
-#include <errno.h>
 #include <strings.h>
 #include <sys/stat.h>
 
@@ -23,10 +24,11 @@ void import_split_extension(char out[16], size_t *stem, const char *path)
         }
 }
 
-static bool is_file(const char *path)
+/* A sidecar beside a model is read if it is there, and refused if it is no file. */
+static bool is_there(const char *path)
 {
     struct stat info;
-    return stat(path, &info) == 0 && S_ISREG(info.st_mode);
+    return stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
 }
 
 bool model_is_path(const char *name) { return strpbrk(name, "/.") != NULL; }
@@ -58,7 +60,7 @@ Status import_find_files(ModelImport *report, Sidecar *sidecar, const char *path
     } else {
         snprintf(report->file, sizeof report->file, "%s", path);
         snprintf(report->sidecar, sizeof report->sidecar, "%.*s.yaml", (int)stem, path);
-        if (is_file(report->sidecar)) {
+        if (is_there(report->sidecar)) {
             const Status status = sidecar_read(sidecar, report->sidecar);
             if (status != STATUS_OK) return status;
         } else {
@@ -66,14 +68,12 @@ Status import_find_files(ModelImport *report, Sidecar *sidecar, const char *path
         }
     }
     struct stat info;
-    if (stat(report->file, &info) != 0) {
-        log_error("model: cannot open: file=%s: %s", report->file, strerror(errno));
+    char        why[file_why_size];
+    if (!file_is_regular(why, report->file)) {
+        log_error("model: cannot open: file=%s: %s", report->file, why);
         return STATUS_IO;
     }
-    if (!S_ISREG(info.st_mode) || info.st_size > import_max_octets) {
-        log_error("model: cannot read: file=%s: %s", report->file,
-                  S_ISREG(info.st_mode) ? "larger than 256 MiB" : "not a file");
-        return S_ISREG(info.st_mode) ? STATUS_BAD_VALUE : STATUS_IO;
-    }
-    return STATUS_OK;
+    if (stat(report->file, &info) == 0 && info.st_size <= import_max_octets) return STATUS_OK;
+    log_error("model: cannot read: file=%s: larger than 256 MiB", report->file);
+    return STATUS_BAD_VALUE;
 }

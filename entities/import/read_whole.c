@@ -1,26 +1,29 @@
 /* entities/import/read_whole.c: reads a complete model file, plain or compressed by gzip. */
 #include "entities/import/model_import_private.h"
 
+#include "pitviper_file.h"
+
 #include <errno.h>
 #include <stdlib.h>
-#include <sys/stat.h>
+#include <unistd.h>
 #include <zlib.h>
 
 Status import_read_whole(char **out, size_t *octets, const char *path, bool quiet)
 {
-    struct stat info;
+    char refused[file_why_size];
     const char *why = NULL;
+    const int file_at = file_open(refused, NULL, path, FILE_FROM_DISK);
     gzFile file = NULL;
     char *text = NULL;
     size_t size = 0, capacity = 1 << 16;
     Status status = STATUS_IO;
 
-    if (stat(path, &info) != 0)
+    if (file_at < 0)
+        why = refused;
+    else if (!(file = gzdopen(file_at, "rb"))) {
         why = strerror(errno);
-    else if (!S_ISREG(info.st_mode))
-        why = "not a file";
-    else if (!(file = gzopen(path, "rb")))
-        why = strerror(errno);
+        close(file_at);
+    }
     while (!why) {
         char *larger = realloc(text, capacity + 1);
         if (!larger) {

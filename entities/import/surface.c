@@ -24,14 +24,15 @@ static Status read_paints(ImportPaints *paints, const char *path)
         status = STATUS_BAD_VALUE;
     }
     for (int r = 0; r < table.rows && status == STATUS_OK; r++) {
-        if (import_paints_have(paints, table_text(&table, r, name))) continue; /* replaced by the user's own */
-        snprintf(paints->name[paints->count], sizeof paints->name[0], "%s", table_text(&table, r, name));
+        int row = 0; /* of the same name: the user's own replaces it in its place, since the first of two equals counts */
+        while (row < paints->count && strcmp(paints->name[row], table_text(&table, r, name)) != 0) row++;
+        snprintf(paints->name[row], sizeof paints->name[0], "%s", table_text(&table, r, name));
         for (int c = 0; c < 3 && status == STATUS_OK; c++) {
             double rho = 0;
             status = table_number(&rho, &table, r, column[c], 0, 1);
-            paints->rgb[paints->count][c] = (float)rho;
+            paints->rgb[row][c] = (float)rho;
         }
-        paints->count++;
+        paints->count += row == paints->count;
     }
     table_close(&table);
     return status;
@@ -43,8 +44,8 @@ Status import_paints_open(ImportPaints *out)
     const char *own = etc_own("materials.csv");
     ImportPaints paints = {0};
     if (!etc_path(path, sizeof path, "materials.csv")) return STATUS_BAD_VALUE;
-    Status status = own ? read_paints(&paints, own) : STATUS_OK;
-    if (status == STATUS_OK) status = read_paints(&paints, path);
+    Status status = read_paints(&paints, path);
+    if (status == STATUS_OK && own) status = read_paints(&paints, own);
     if (status == STATUS_OK)
         *out = paints;
     else

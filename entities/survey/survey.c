@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 enum {
-    most_points = 20000000, /* 144 octets each: under 3 GB. The log itself is then in memory too */
+    most_points = 20000000, /* 72 octets each: under 1.5 GB */
     most_tracks = 1 << 20,
     most_warfare = 4000000,
     most_absolute = 65536, /* absolute stamps that are compared; the first ones */
@@ -45,7 +45,7 @@ typedef struct Building {
 static Status grow(void **array, int *capacity, size_t size, int at_least)
 {
     if (at_least <= *capacity) return STATUS_OK;
-    const int larger = *capacity < 8 ? 16 : *capacity * 2;
+    const int larger = *capacity < 8 ? 16 : *capacity < 4096 ? *capacity * 2 : *capacity + *capacity / 4;
     void *moved = realloc(*array, (size_t)larger * size);
     if (!moved) return STATUS_NO_MEMORY;
     *array = moved;
@@ -96,10 +96,13 @@ static Status add_point(Building *b, int t, const double p_ecef[3], const float 
                           .deactivated = appearance >> dis_appearance_deactivated_bit & 1,
                           .engine = appearance >> dis_appearance_power_plant_bit & 1};
     memcpy(point->p_ecef, p_ecef, sizeof point->p_ecef);
-    r_ecef_from_body_euler(point->r_ecef_from_body, euler_rad[0], euler_rad[1], euler_rad[2]);
+    memcpy(point->euler_rad, euler_rad, sizeof point->euler_rad);
     if (!(v3_length(v) <= largest_speed_mps)) return STATUS_OK;
-    if (dead_reckoning_in_body_axes(b->build[t].algorithm)) m3_mul_v3(point->v_ecef_mps, point->r_ecef_from_body, v);
-    else memcpy(point->v_ecef_mps, v, sizeof v);
+    if (dead_reckoning_in_body_axes(b->build[t].algorithm)) {
+        double r[9];
+        track_point_rotation(r, point);
+        m3_mul_v3(point->v_ecef_mps, r, v);
+    } else memcpy(point->v_ecef_mps, v, sizeof v);
     return STATUS_OK;
 }
 
@@ -235,7 +238,7 @@ static Status hear(Building *b, const DisPdu *pdu, double t_s)
         return add_warfare(b, &(WarfareEvent){.t_s = t_s, .firing = pdu->fire.firing, .target = pdu->fire.target,
                                               .munition = pdu->fire.munition, .event = pdu->fire.event});
     case dis_pdu_detonation: return receive_detonation(b, &pdu->detonation, t_s);
-    case dis_pdu_start_resume: receive_start(b, &pdu->start, t_s); return STATUS_OK;
+    case dis_pdu_start_resume: case dis_pdu_start_resume_r: receive_start(b, &pdu->start, t_s); return STATUS_OK;
     default: return STATUS_OK;
     }
 }
@@ -255,7 +258,7 @@ static Status receive_datagram(Building *b, int d, const DisDatagram *datagram, 
         const uint64_t doubted = exercise_clock_anomalies(b->clock)->by_arrival;
         const double   t_s     = exercise_clock_pdu_time(b->clock, &header, pdu, datagram->capture_s);
         if (isnan(t_s)) continue; /* of unknown type, and without a sender */
-        if (isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
+        if (d < survey_times_most && isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
         if (!(survey->first_s <= t_s)) survey->first_s = t_s;
         if (!(survey->last_s >= t_s)) survey->last_s = t_s;
         Status status = STATUS_OK;
@@ -320,12 +323,14 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
 
     Status status = exercise_clock_create(&b.clock);
     if (status == STATUS_OK) status = entity_index_create(&b.index, 512);
-    survey.datagram_s = calloc((size_t)log->count + 1, sizeof *survey.datagram_s);
+    const int times = log->count < survey_times_most ? log->count : survey_times_most;
+    survey.datagram_s = calloc((size_t)times + 1, sizeof *survey.datagram_s);
     if (!survey.datagram_s) status = STATUS_NO_MEMORY;
 
     for (int d = 0; d < log->count && status == STATUS_OK; d++) {
-        survey.datagram_s[d] = NAN;
-        status = receive_datagram(&b, d, log->datagram + d, exercise);
+        if (d < times) survey.datagram_s[d] = NAN;
+        const DisDatagram datagram = dis_log_datagram(log, d);
+        status = receive_datagram(&b, d, &datagram, exercise);
     }
     if (status == STATUS_OK) status = survey_join_shots(&survey.shot, &survey.shot_count, b.warfare, b.warfare_count);
     if (status == STATUS_OK) status = survey_order_shots(&survey.shot_by_munition, survey.shot, survey.shot_count);

@@ -8,11 +8,11 @@
 #include "dis/log.h"
 #include "entities/survey/shot.h"
 
-/* One report of where an entity was. */
+/* One report of where an entity was: 72 octets, and a long log has millions. */
 typedef struct TrackPoint {
     double t_s;
     double p_ecef[3], v_ecef_mps[3]; /* velocity in world axes for all algorithms */
-    double r_ecef_from_body[9];
+    float  euler_rad[3];             /* psi, theta, phi as reported: track_point_rotation */
     bool   frozen, deactivated, engine; /* engine: its power-plant bit */
 } TrackPoint;
 
@@ -24,6 +24,8 @@ typedef struct Track {
     int           count;
     TrackPoint   *point;          /* in order of time; of a munition with a later Detonation, that is the last */
 } Track;
+
+enum { survey_times_most = 65536 };
 
 typedef struct Survey {
     int       track_count, shot_count;
@@ -38,7 +40,8 @@ typedef struct Survey {
     int       absolute_stamps, absolute_left_out; /* how many there were, and of them how many disagree */
     ExerciseClockAnomalies doubts;           /* senders with rejected time stamps */
     DisCounters counters;                 /* all received and dropped PDUs, whole log */
-    double   *datagram_s;                 /* exercise time of each datagram's first PDU [log->count]; NaN: none */
+    double   *datagram_s;                 /* exercise time of the first PDU of each datagram [log->count, of a long log
+                                           * the first survey_times_most]; NaN: none */
     uint64_t  refused;                    /* track points dropped because they exceed the memory bound */
     uint64_t  late;                       /* reports older than the one before them, left out */
 } Survey;
@@ -56,5 +59,8 @@ typedef struct TrackPose {
     double p_ecef[3], v_ecef_mps[3], r_ecef_from_body[9];
 } TrackPose;
 void track_at(TrackPose *out, const Track *track, double t_s);
+void track_point_rotation(double r_ecef_from_body[9], const TrackPoint *point);
+/* Between two rotations, u 0 .. 1: the shortest turn at an even rate. */
+void track_turn(double out[9], const double r0[9], const double r1[9], double u);
 
 #endif

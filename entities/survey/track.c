@@ -1,6 +1,8 @@
 /* entities/survey/track.c: interpolates a recorded entity between its reports. */
 #include "entities/survey/survey.h"
 
+#include "entities/motion/dead_reckoning.h"
+
 /* ---- attitude: the shortest turn at an even rate ------------------------------------------ */
 
 /* Unit quaternion (w, x, y, z) of a rotation; the largest component is taken first, so none is divided by a small
@@ -31,7 +33,7 @@ static void rotation_from_quaternion(double r[9], const double q[4])
     r[6] = 2 * (x * z - w * y), r[7] = 2 * (y * z + w * x), r[8] = 1 - 2 * (x * x + y * y);
 }
 
-static void interpolate_rotation(double out[9], const double r0[9], const double r1[9], double u)
+void track_turn(double out[9], const double r0[9], const double r1[9], double u)
 {
     double q0[4], q1[4], q[4], along = 0, across = 0, length = 0;
 
@@ -78,10 +80,16 @@ static void safe_tangent(double out[3], const double v_mps[3], const double chor
     if (speed > 3 * chord) v3_scale(out, 3 * chord / speed, out);
 }
 
+void track_point_rotation(double r_ecef_from_body[9], const TrackPoint *point)
+{
+    r_ecef_from_body_euler(r_ecef_from_body, (double)point->euler_rad[0], (double)point->euler_rad[1],
+                           (double)point->euler_rad[2]);
+}
+
 static void hold(TrackPose *out, const TrackPoint *point, bool moves)
 {
     memcpy(out->p_ecef, point->p_ecef, sizeof out->p_ecef);
-    memcpy(out->r_ecef_from_body, point->r_ecef_from_body, sizeof out->r_ecef_from_body);
+    track_point_rotation(out->r_ecef_from_body, point);
     for (int i = 0; i < 3; i++) out->v_ecef_mps[i] = moves ? point->v_ecef_mps[i] : 0;
 }
 
@@ -111,7 +119,7 @@ void track_at(TrackPose *out, const Track *track, double t_s)
         return;
     }
     const double h_s = b->t_s - a->t_s, u = (t_s - a->t_s) / h_s, w = 1 - u;
-    double d[3], chord_mps[3], va[3], vb[3];
+    double d[3], chord_mps[3], va[3], vb[3], ra[9], rb[9];
 
     /* from a, not from the Earth's centre: the cubic then works on metres */
     v3_sub(d, b->p_ecef, a->p_ecef);
@@ -126,5 +134,7 @@ void track_at(TrackPose *out, const Track *track, double t_s)
         out->v_ecef_mps[i] = step ? w * a->v_ecef_mps[i] + u * b->v_ecef_mps[i]
                                   : 6 * u * w * chord_mps[i] + w * (1 - 3 * u) * va[i] + u * (3 * u - 2) * vb[i];
     }
-    interpolate_rotation(out->r_ecef_from_body, a->r_ecef_from_body, b->r_ecef_from_body, u);
+    track_point_rotation(ra, a);
+    track_point_rotation(rb, b);
+    track_turn(out->r_ecef_from_body, ra, rb, u);
 }

@@ -55,7 +55,7 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
     const bool   stands = entity_slot_frozen(slot) || slot->stopped;
     const double below_m = base_below_m(slot, model), top_m = below_m - model->height_m;
     EffectSource source = {.key = entity_key(slot->id) + 1, .from_s = t_s,
-                           .to_s = slot->stopped ? INFINITY : slot->report_s + slot->timeout_s,
+                           .to_s = slot->stopped ? INFINITY : slot->report_s + slot->paused_s + slot->timeout_s,
                            .motion = slot->reported, .motion_s = slot->report_s + slot->paused_s,
                            .hold_s = slot->hold_s, .scale = size_of(model), .below_m = below_m,
                            .grounded = contact_applies(slot->type)};

@@ -41,7 +41,7 @@ static void base_of(double p_base_ecef[3], const EntitySlot *slot, const Model *
 
 /* ---- stands ----------------------------------------------------------------------------------- */
 
-static double lasts_until_s(const EntitySlot *slot) { return slot->report_s + slot->timeout_s; }
+static double lasts_until_s(const EntitySlot *slot) { return slot->report_s + slot->paused_s + slot->timeout_s; }
 
 /* What its exhaust did from this place, after a report. False: its engine runs again, and that is another stand's. */
 static bool blows(EntityTable *table, const EntitySlot *slot, EntityMarks *m, bool is_first, double t_s)

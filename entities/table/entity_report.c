@@ -121,9 +121,9 @@ static void take_state(EntityTable *table, EntitySlot *slot, uint8_t version, ui
 {
     slot->appearance = appearance;
     slot->report_s = t_s;
-    table->stopped_count -= slot->stopped;
-    slot->stopped = false;
     slot->paused_s = 0;
+    if (slot->stopped && slot->reports_on) slot->stop_s = t_s;
+    else if (slot->stopped && t_s > slot->stop_s) table->stopped_count--, slot->stopped = false;
     slot->timeout_s = timeout_of(table, slot, version);
     slot->hold_s = table->config.extrapolation_limit_s * (slot->timeout_s / table->config.timeout_s);
 

@@ -304,9 +304,10 @@ static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport
     e->appearance = slot->appearance;
     e->model = slot->model;
     e->age_s = fmax(t_s - slot->report_s, 0);
-    e->position_error_m = stands ? 0 : snapshot_position_error_m(e->age_s, slot->timeout_s / timeout_per_heartbeat,
+    const double moved_s = fmax(e->age_s - slot->paused_s, 0); /* time stopped does not add to an error */
+    e->position_error_m = stands ? 0 : snapshot_position_error_m(moved_s, slot->timeout_s / timeout_per_heartbeat,
                                                                  slot->hold_s, v3_length(e->v_ecef_mps));
-    snapshot_drift(&e->drift_m, &e->drift_rad, e->age_s, slot->missed_m, slot->missed_rad, slot->missed_s,
+    snapshot_drift(&e->drift_m, &e->drift_rad, moved_s, slot->missed_m, slot->missed_rad, slot->missed_s,
                    e->position_error_m, slot->timeout_s / timeout_per_heartbeat);
     if (stands) e->drift_m = e->drift_rad = 0;
     drives_at(&e->drives, &slot->drives, t_s);

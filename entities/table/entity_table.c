@@ -180,6 +180,7 @@ const EffectCounters *entity_table_effect_counters(const EntityTable *table)
 
 static const uint16_t all_ids = 0xFFFF;
 
+enum { frozen_transmits = 1 << 1 }; /* frozen behaviour: entities go on transmitting updates */
 enum { most_rounds = 1000 }; /* of one Fire PDU: a burst, not a number that a sender made up */
 
 void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
@@ -245,6 +246,7 @@ void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
         slot->spin_from_s = stop_s;
         slot->stop_s = stop_s;
         slot->stopped = true;
+        slot->reports_on = pdu->frozen_behaviour & frozen_transmits;
         table->stopped_count++;
         entity_effects_report(table, slot, stop_s);
     }
@@ -301,9 +303,9 @@ void entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCoun
         break;
     case dis_pdu_fire: entity_table_fire(table, &pdu->fire, t_s); break;
     case dis_pdu_detonation: entity_table_detonation(table, &pdu->detonation, t_s); break;
-    case dis_pdu_remove_entity: entity_table_remove(table, &pdu->remove, t_s); break;
-    case dis_pdu_start_resume: entity_table_start(table, &pdu->start, t_s); break;
-    case dis_pdu_stop_freeze: entity_table_stop(table, &pdu->stop, t_s); break;
+    case dis_pdu_remove_entity: case dis_pdu_remove_entity_r: entity_table_remove(table, &pdu->remove, t_s); break;
+    case dis_pdu_start_resume: case dis_pdu_start_resume_r: entity_table_start(table, &pdu->start, t_s); break;
+    case dis_pdu_stop_freeze: case dis_pdu_stop_freeze_r: entity_table_stop(table, &pdu->stop, t_s); break;
     default: break;
     }
 }

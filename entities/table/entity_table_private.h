@@ -33,6 +33,7 @@ typedef struct EntitySlot {
     bool          stopped;    /* by Stop/Freeze, at stop_s */
     bool          marks;      /* has begun a stand or a trail: EntityMarks */
     bool          trails;     /* its trail is on */
+    bool          reports_on; /* the Stop/Freeze lets it go on reporting: a report does not end it */
     double        stop_s;
     double        paused_s;   /* spent stopped since the report */
     double        spin_s, spin_from_s; /* running clock at spin_from_s */
@@ -101,10 +102,10 @@ struct EntityTable {
 
 static inline bool entity_slot_lives(const EntitySlot *slot) { return slot->generation & 1; }
 static inline bool entity_slot_frozen(const EntitySlot *slot) { return slot->appearance >> dis_appearance_frozen_bit & 1; }
-/* Stopped entities are not expected to report. */
+/* Stopped entities are not expected to report, and the time that they were does not count afterwards. */
 static inline bool entity_slot_silent(const EntitySlot *slot, double t_s)
 {
-    return !slot->stopped && t_s - slot->report_s > slot->timeout_s;
+    return !slot->stopped && t_s - slot->paused_s - slot->report_s > slot->timeout_s;
 }
 
 /* Its own time: exercise time less the pauses since its report, still while it is frozen or stopped. */

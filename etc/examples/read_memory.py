@@ -39,8 +39,8 @@ class Header(ctypes.Structure):
                 ('plane_offset', u64), ('slot_offset', u64), ('slot_size', u64), ('target_offset', u64),
                 ('slot_count', u32), ('plane_count', u32), ('target_room', u32), ('kind', u32), ('epoch', u64),
                 ('writer_pid', i32), ('detections_port', u32), ('host', text * 24), ('program', text * 24),
-                ('config_sha256', text * 72), ('reserved', u8 * 32), ('newest', u64), ('wake', u32), ('state', u32),
-                ('changed_ns', i64), ('reserved_changing', u8 * 40)]
+                ('config_sha256', text * 72), ('detections_version', u32), ('reserved', u8 * 28), ('newest', u64),
+                ('wake', u32), ('state', u32), ('changed_ns', i64), ('reserved_changing', u8 * 40)]
 
 
 class Plane(ctypes.Structure):
@@ -240,8 +240,8 @@ class Ring:
 
 def send_detections(to, port, frame, band, found):
     """found: (left, top, right, bottom, score, track, class name), at most 64, as pitviper_memory.h has them."""
-    head = struct.pack('=8sIHHiIII', b'PVDETECT', BYTE_ORDER, 1, 48, frame, band, len(found), 0)
-    body = b''.join(struct.pack('=5fI16s2I', *d[:6], d[6].encode()[:15], 0, 0) for d in found)
+    head = struct.pack('=8sIHHiIII', b'PVDETECT', BYTE_ORDER, 2, 64, frame, band, len(found), 0)
+    body = b''.join(struct.pack('=5fI32s2I', *d[:6], d[6].encode()[:31], 0, 0) for d in found)
     to.sendto(head + body, ('127.0.0.1', port))
 
 

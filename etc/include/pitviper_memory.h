@@ -52,7 +52,7 @@ extern "C" {
 #define PITVIPER_MEMORY_MAGIC      "PVMEMORY"
 #define PITVIPER_MEMORY_BYTE_ORDER 0x01020304u
 #define PITVIPER_MEMORY_VERSION    1
-#define PITVIPER_MEMORY_REVISION   0
+#define PITVIPER_MEMORY_REVISION   1
 #define PITVIPER_MEMORY_FOLDER     "/dev/shm"
 
 enum { pitviper_memory_planes_most = 16, pitviper_memory_slots_most = 1024, pitviper_memory_targets_most = 65536 };
@@ -86,7 +86,8 @@ typedef struct PitviperMemoryHeader {
     char     host[24];             /* 104 site:application:entity, or observer; of a run of several hosts; else empty */
     char     program[24];          /* 128 version of the node */
     char     config_sha256[72];    /* 152 of all settings that the pictures depend on, as in run.json */
-    uint8_t  reserved[32];         /* 224 */
+    uint32_t detections_version;   /* 224 newest version of detections that the node takes; revision 0: 0, and takes 1 */
+    uint8_t  reserved[28];         /* 228 */
     /* What follows changes while the node runs. */
     uint64_t newest;               /* 256 the newest complete frame, 1, 2, 3 ...; 0: none yet */
     uint32_t wake;                 /* 264 changes with each frame and at the end: a futex */
@@ -179,17 +180,19 @@ typedef struct PitviperMemoryTarget {
 } PitviperMemoryTarget;
 
 /* ---- detections: one datagram to 127.0.0.1, port PitviperMemoryHeader.detections_port -------------- */
+/* One answer per band and frame, without detections where nothing was found. Version 1, which nodes still take, had
+ * class_name[16] and so detections of 48 octets. */
 
 #define PITVIPER_DETECTIONS_MAGIC   "PVDETECT"
-#define PITVIPER_DETECTIONS_VERSION 1
+#define PITVIPER_DETECTIONS_VERSION 2
 enum { pitviper_detections_most = 64 };
 
 typedef struct PitviperDetection {
     float    left, top, right, bottom; /*  0 px, within the image; right and bottom beyond it */
     float    score;                /* 16 0 .. 1 */
     uint32_t track;                /* 20 the same number for the same object in later frames; 0: none */
-    char     class_name[16];       /* 24 printable ASCII, then zeros; the last octet is 0 */
-    uint32_t reserved[2];          /* 40 0 */
+    char     class_name[32];       /* 24 printable ASCII, then zeros; the last octet is 0 */
+    uint32_t reserved[2];          /* 56 0 */
 } PitviperDetection;
 
 /* Only the first `count` detections are sent: PITVIPER_DETECTIONS_SIZE(count) octets. */
@@ -197,7 +200,7 @@ typedef struct PitviperDetections {
     char     magic[8];             /*  0 PITVIPER_DETECTIONS_MAGIC, without a 0 */
     uint32_t byte_order;           /*  8 PITVIPER_MEMORY_BYTE_ORDER */
     uint16_t version;              /* 12 PITVIPER_DETECTIONS_VERSION */
-    uint16_t detection_size;       /* 14 of one: 48 */
+    uint16_t detection_size;       /* 14 of one: 64 */
     int32_t  frame;                /* 16 PitviperMemoryRecord.frame of the frame they were found in */
     uint32_t band;                 /* 20 */
     uint32_t count;                /* 24 */
@@ -215,6 +218,7 @@ PITVIPER_HOLDS_(header, sizeof(PitviperMemoryHeader) == 320);
 PITVIPER_AT_(PitviperMemoryHeader, segment_size, 32);
 PITVIPER_AT_(PitviperMemoryHeader, epoch, 88);
 PITVIPER_AT_(PitviperMemoryHeader, config_sha256, 152);
+PITVIPER_AT_(PitviperMemoryHeader, detections_version, 224);
 PITVIPER_AT_(PitviperMemoryHeader, newest, 256);
 PITVIPER_AT_(PitviperMemoryHeader, changed_ns, 272);
 PITVIPER_HOLDS_(plane, sizeof(PitviperMemoryPlane) == 96);
@@ -231,7 +235,7 @@ PITVIPER_HOLDS_(target, sizeof(PitviperMemoryTarget) == 576);
 PITVIPER_AT_(PitviperMemoryTarget, box, 88);
 PITVIPER_AT_(PitviperMemoryTarget, pixels, 216);
 PITVIPER_AT_(PitviperMemoryTarget, band, 320);
-PITVIPER_HOLDS_(detection, sizeof(PitviperDetection) == 48);
+PITVIPER_HOLDS_(detection, sizeof(PitviperDetection) == 64);
 PITVIPER_AT_(PitviperDetections, detection, 32);
 
 /* The sizes of revision 0: none is smaller. */

@@ -34,6 +34,8 @@ typedef struct ProbeTask {
     double         image_px[probes_a_block];   /* displacement of the ground on the image */
     double         sampling[picture_plane_count], detail[picture_plane_count], tables[picture_plane_count];
     double         tables_px;
+    int            first;     /* of its probes, those at hand; of squares: all of the block */
+    float         *square[error_thermal_planes];
 } ProbeTask;
 
 typedef struct Budget {
@@ -44,6 +46,8 @@ typedef struct Budget {
     ProbeOf    *probe, tables_probe[tables_probes + hottest_probes];
     ProbeTask  *task;      /* [blocks + tables_blocks] */
     AirPaths     (*direct)[AIR_BAND_COUNT]; /* [workers] */
+    double       *probe_px;                 /* ErrorBudget's */
+    float        *square[error_thermal_planes];
 } Budget;
 
 double error_budget_kelvin(const PlanckTable *planck, double mean_w_m2_sr, double rms_w_m2_sr)
@@ -214,6 +218,12 @@ bool error_budget_coarser(double turn_enu[3], double *rise_m, const Elevation *e
 
 static const Candidate *candidate_of(const ProbeTask *t, int p) { return &t->candidate[t->probe[p].candidate]; }
 
+/* Squared error of probe p at hand, for which a plane has to be asked. */
+static void take_square(ProbeTask *t, int p, int plane, double square)
+{
+    if (plane == picture_mwir || plane == picture_lwir) t->square[plane - picture_mwir][t->first + p] += (float)square;
+}
+
 /* Change of the pixels' values of a plane with more rays: sampling error, from their own variance where they have as
  * many rays as the picture. */
 static void take_rays(ProbeTask *t, const Job *job, int n, const float *value, int plane)
@@ -232,6 +242,7 @@ static void take_rays(ProbeTask *t, const Job *job, int n, const float *value, i
             square *= square;
         }
         t->sampling[plane] += t->probe[p].stands_for * square;
+        take_square(t, p, plane, square);
     }
 }
 
@@ -244,6 +255,7 @@ static void take_coarse(ProbeTask *t, const float *value, int plane)
         const double moved = t->image_px[p] * t->image_px[p], turned = (double)(value[p] - t->base[plane][p]);
         const double square = turned * turned + (double)c->contrast[plane] * moved / (1 + moved);
         t->detail[plane] += t->probe[p].stands_for * square;
+        take_square(t, p, plane, square);
     }
 }
 
@@ -252,7 +264,9 @@ static void take_full_plants(ProbeTask *t, const float *value, int plane)
 {
     for (int p = 0; p < t->count; p++) {
         const double apart = (double)(value[p] - t->base[plane][p]);
-        if (candidate_of(t, p)->planes >> plane & 1) t->detail[plane] += t->probe[p].stands_for * apart * apart;
+        if (!(candidate_of(t, p)->planes >> plane & 1)) continue;
+        t->detail[plane] += t->probe[p].stands_for * apart * apart;
+        take_square(t, p, plane, apart * apart);
     }
 }
 
@@ -332,12 +346,13 @@ static void probe_task(void *user, int worker, int index)
     const int      count = t->count, piece = hits_capacity / (b->n * b->n);
     for (int p = 0; p < count; p += piece) {
         t->probe = first + p;
+        t->first = p;
         t->count = count - p < piece ? count - p : piece;
         shade_pixels(w, job, t, b->n, listed);
         for (int plane = 0; plane < picture_plane_count; plane++)
             if ((value = block_values(w, job, plane))) take_rays(t, job, b->n, value, plane);
     }
-    t->probe = first, t->count = count;
+    t->probe = first, t->count = count, t->first = 0;
     shade_base(w, job, t, listed);
     coarsen(&w->samples, job, t);
     block_light(w, job);
@@ -370,17 +385,27 @@ static Status plan(Budget *b, Pool *pool, Arena *arena)
     b->probe     = arena_alloc(arena, (size_t)b->probes, sizeof *b->probe);
     b->task      = arena_alloc(arena, (size_t)b->blocks + tables_blocks, sizeof *b->task);
     b->direct    = arena_alloc(arena, (size_t)pool_threads(pool), sizeof *b->direct);
-    return b->candidate && b->probe && b->task && b->direct ? STATUS_OK : STATUS_NO_MEMORY;
+    b->probe_px  = arena_alloc(arena, (size_t)b->probes, sizeof *b->probe_px);
+    bool ok = b->candidate && b->probe && b->task && b->direct && b->probe_px;
+    for (int k = 0; k < error_thermal_planes; k++)
+        ok = (b->square[k] = arena_alloc(arena, (size_t)b->probes, sizeof *b->square[k])) && ok;
+    return ok ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 /* Blocks of re-sampled pixels, then those that check the tables; returns the number of both. */
 static int deal(Budget *b, int probes, int of_tables)
 {
+    for (int i = 0; i < probes; i++) {
+        b->probe_px[i] = b->probe[i].stands_for;
+        for (int k = 0; k < error_thermal_planes; k++)
+            b->square[k][i] = b->candidate[b->probe[i].candidate].planes >> (picture_mwir + k) & 1 ? 0 : NAN;
+    }
     const int a_block = (of_tables + tables_blocks - 1) / tables_blocks;
     int       tasks = 0;
     for (int first = 0; first < probes; first += probes_a_block)
         b->task[tasks++] = (ProbeTask){.probe = b->probe + first, .candidate = b->candidate,
-                                       .count = probes - first < probes_a_block ? probes - first : probes_a_block};
+                                       .count = probes - first < probes_a_block ? probes - first : probes_a_block,
+                                       .square = {b->square[0] + first, b->square[1] + first}};
     for (int first = 0; first < of_tables; first += a_block)
         b->task[tasks++] = (ProbeTask){.of_tables = true, .probe = b->tables_probe + first, .candidate = b->candidate,
                                        .count = of_tables - first < a_block ? of_tables - first : a_block};
@@ -411,6 +436,7 @@ Status error_estimate(const Job *job, Pool *pool, Arena *arena)
     for (int k = 0; k < picture_plane_count; k++) {
         double sampling = job->target_variance[k], detail = 0, tables = 0;
         for (int t = 0; t < tiles; t++) sampling += job->law[t][k];
+        if (k == picture_mwir || k == picture_lwir) out->refined_square[k - picture_mwir] = sampling;
         for (int t = 0; t < tasks; t++) {
             sampling += b.task[t].sampling[k];
             detail += b.task[t].detail[k];
@@ -422,6 +448,8 @@ Status error_estimate(const Job *job, Pool *pool, Arena *arena)
         out->tables[k]          = there ? sqrt(tables_px > 0 ? tables / tables_px : 0) : NAN;
         if (!there) out->mean[k] = NAN;
     }
+    out->probe_px = b.probe_px;
+    for (int k = 0; k < error_thermal_planes; k++) out->probe_square[k] = b.square[k];
     out->ms = 1e3 * (wall_clock_s() - start_s);
     picture->budget = out;
     return STATUS_OK;

@@ -13,12 +13,18 @@ enum { picture_optical, picture_mwir = picture_optical + 3, picture_lwir, pictur
 /* Error estimate of a frame's planes, made by the frame itself: root of the mean squared error over the picture, in
  * the plane's unit, by source. The planes are the same with and without it. How each figure is made and what it
  * leaves out: render/frame/error_budget.h; how accurate the estimate is: tests/sensor/test_error_budget.c. */
+enum { error_thermal_planes = picture_radar - picture_mwir };
 typedef struct ErrorBudget {
     double mean[picture_plane_count];            /* of the plane, estimated from the candidate pixels */
     double sampling[picture_plane_count];        /* rays a pixel, edges, small targets */
     double level_of_detail[picture_plane_count]; /* posts of the ground, simplified plants. Facets of models: sensor/truth/frame_error.h */
     double tables[picture_plane_count];          /* air and shading; radar: 0, it has none */
     int    probes;                               /* re-sampled pixels */
+    /* the thermal planes pixel by pixel: of each probe the pixels that it stands for, and the squared error by sampling and
+     * level of detail; NaN: of a plane that its own samples estimate. Those are the rest, `refined` in all. */
+    const double *probe_px;                      /* [probes] */
+    const float  *probe_square[error_thermal_planes]; /* [probes] mwir, lwir */
+    double        refined_square[error_thermal_planes]; /* sum of theirs */
     double ms;                                   /* wall time */
 } ErrorBudget;
 

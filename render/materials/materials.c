@@ -86,8 +86,19 @@ static Status read_tau(Material *material, const Table *table, int row)
     return STATUS_OK;
 }
 
-/* Appends the rows of one file to those present; a name that an earlier file has is left out. */
-static Status read_rows(Materials *m, const char *path, bool plants)
+/* Whose rows a file holds. A row of the program or of plants whose name an earlier file has is left out; a row of the
+ * user's replaces that row in its place. */
+typedef enum RowsOf { ROWS_PROGRAM, ROWS_PLANTS, ROWS_OWN } RowsOf;
+
+static bool name_repeated(const Table *table, int row, int column)
+{
+    for (int earlier = 0; earlier < row; earlier++)
+        if (strcmp(table_text(table, earlier, column), table_text(table, row, column)) == 0) return true;
+    return false;
+}
+
+/* Appends the rows of one file to those present. */
+static Status read_rows(Materials *m, const char *path, RowsOf of)
 {
     Table table = {0};
     const int before = m->count;
@@ -108,6 +119,9 @@ static Status read_rows(Materials *m, const char *path, bool plants)
         log_error("materials: column missing: file=%s line=%d column=%s", path, table.line[0], wanted);
         goto done;
     }
+    char first_tau[32];
+    snprintf(first_tau, sizeof first_tau, "tau_%s", channel_in(tau_columns[0].place)->name);
+    const bool lets_through = of == ROWS_PLANTS || (of == ROWS_OWN && table_column(&table, first_tau) >= 0);
     if (table.rows > materials_limit - before) {
         log_error("materials: too many rows: file=%s rows=%d limit=%d", path, table.rows, (int)materials_limit);
         goto done;
@@ -122,7 +136,7 @@ static Status read_rows(Materials *m, const char *path, bool plants)
         const char *name = table_text(&table, row, name_column);
         const size_t length = strlen(name);
         const int same = materials_find(m, name);
-        if (length == 0 || length >= sizeof m->material->name || same == 0 || same >= before) {
+        if (length == 0 || length >= sizeof m->material->name || same == 0 || name_repeated(&table, row, name_column)) {
             log_error("materials: name empty, repeated or longer than %zu: file=%s line=%d name=%s",
                       sizeof m->material->name - 1, path, table.line[row + 1], name);
             goto done;
@@ -136,8 +150,9 @@ static Status read_rows(Materials *m, const char *path, bool plants)
             if (got != STATUS_OK) goto done;
             *(float *)((char *)&material + number_columns[i].offset) = (float)value;
         }
-        if (plants && read_tau(&material, &table, row) != STATUS_OK) goto done;
-        if (same < 0) m->material[m->count++] = material; /* else the user's own row replaces it */
+        if (lets_through && read_tau(&material, &table, row) != STATUS_OK) goto done;
+        if (same < 0) m->material[m->count++] = material;
+        else if (of == ROWS_OWN) m->material[same] = material;
     }
     status = STATUS_OK;
 done:
@@ -145,7 +160,8 @@ done:
     return status;
 }
 
-/* The user's own (models.materials), then those of the table. */
+/* Those of the table, each at its place whatever the user has; then the user's own (models.materials), which replace
+ * rows of the table at their places or follow it. */
 static Status read_materials(Materials *m, const char *path)
 {
     const char *own = etc_own("materials.csv");
@@ -156,8 +172,9 @@ static Status read_materials(Materials *m, const char *path)
     m->material[0] = (Material){.name = "none", .conductivity_w_mk = 0.24f, .density_kg_m3 = 1600,
                                 .heat_capacity_j_kgk = 800};
     m->count = 1;
-    if (own) status = read_rows(m, own, false);
-    return status == STATUS_OK ? read_rows(m, path, false) : status;
+    status = read_rows(m, path, ROWS_PROGRAM);
+    m->own_first = m->count;
+    return status == STATUS_OK && own ? read_rows(m, own, ROWS_OWN) : status;
 }
 
 /* Row of the class of this name in a file of one row a class; logged when unknown. */
@@ -242,13 +259,15 @@ static Status resolve_parts(Materials *m, const Catalog *catalog, const char *pa
     const int model_count = catalog_model_count(catalog), burnt = materials_find(m, "burnt");
     m->part    = calloc((size_t)model_count + 1, sizeof *m->part);
     m->damaged = calloc((size_t)model_count + 1, sizeof *m->damaged);
-    if (!m->part || !m->damaged) return STATUS_NO_MEMORY;
+    m->parts   = calloc((size_t)model_count + 1, sizeof *m->parts);
+    if (!m->part || !m->damaged || !m->parts) return STATUS_NO_MEMORY;
     m->model_count = model_count;
     for (int i = 0; i < model_count; i++) {
         const Model *model = catalog_model(catalog, i);
         m->part[i]    = calloc((size_t)model->part_count + 1, sizeof **m->part);
         m->damaged[i] = calloc((size_t)model->part_count + 1, model_damage_states * sizeof **m->damaged);
         if (!m->part[i] || !m->damaged[i]) return STATUS_NO_MEMORY;
+        m->parts[i] = model->part_count;
         for (int p = 0; p < model->part_count; p++) {
             Status status = find_part_material(&m->part[i][p], m, model, p, model->part[p].material, path);
             for (int state = 0; state < model_damage_states && status == STATUS_OK; state++) {
@@ -330,9 +349,58 @@ static Status read_ground_beneath(Materials *m, const char *path)
     return status;
 }
 
+/* Row `was` of the user's own is row map[was - first] now. */
+static void move_row(int *row, const int *map, int first)
+{
+    if (*row >= first) *row = map[*row - first];
+}
+
+/* Puts the user's own rows behind those of plants, or in the place of one of the same name. */
+static Status put_own_behind(Materials *m, const Material *own, int own_count, int first)
+{
+    Material *larger = realloc(m->material, ((size_t)m->count + (size_t)own_count + 1) * sizeof *larger);
+    int      *map = malloc(((size_t)own_count + 1) * sizeof *map);
+    if (larger) m->material = larger;
+    if (!larger || !map) {
+        free(map);
+        return STATUS_NO_MEMORY;
+    }
+    m->own_first = m->count;
+    for (int i = 0; i < own_count; i++) {
+        const int same = materials_find(m, own[i].name);
+        map[i] = same >= 0 ? same : m->count++;
+        m->material[map[i]] = own[i];
+    }
+    for (int s = 0; s < SURFACE_COUNT; s++) move_row(&m->surface[s], map, first);
+    for (int i = 0; i < m->model_count; i++) {
+        for (int p = 0; p < m->parts[i]; p++) move_row(&m->part[i][p], map, first);
+        for (int p = 0; p < m->parts[i] * model_damage_states; p++) move_row(&m->damaged[i][p], map, first);
+    }
+    free(map);
+    return STATUS_OK;
+}
+
+/* Plants between the program's rows and the user's own: no row of the program's moves for the user's. */
+static Status read_plants(Materials *m, const char *path)
+{
+    const int first = m->own_first, own_count = m->count - first;
+    Material *own   = malloc(((size_t)own_count + 1) * sizeof *own);
+    if (!own) return STATUS_NO_MEMORY;
+    memcpy(own, m->material + first, (size_t)own_count * sizeof *own);
+    m->count      = first;
+    Status status = read_rows(m, path, ROWS_PLANTS);
+    if (status == STATUS_OK && m->count > materials_limit - own_count) {
+        log_error("materials: too many rows: file=%s rows=%d limit=%d", path, m->count + own_count, (int)materials_limit);
+        status = STATUS_BAD_VALUE;
+    }
+    if (status == STATUS_OK) status = put_own_behind(m, own, own_count, first);
+    free(own);
+    return status;
+}
+
 Status materials_add_plants(Materials *m, const char *path, const char *ground_path)
 {
-    Status status = read_rows(m, path, true);
+    Status status = read_plants(m, path);
     if (status == STATUS_OK) status = find_plants(m, path);
     return status == STATUS_OK ? read_ground_beneath(m, ground_path) : status;
 }
@@ -353,6 +421,7 @@ void materials_close(Materials *materials)
     }
     free(materials->part);
     free(materials->damaged);
+    free(materials->parts);
     free(materials->material);
     *materials = (Materials){0};
 }

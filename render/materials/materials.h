@@ -29,22 +29,26 @@ typedef struct Material {
     float conductivity_w_mk, density_kg_m3, heat_capacity_j_kgk; /* of the layer below the surface */
 } Material;
 
+/* Rows stand in the order: none, the program's, those of plants, the user's own with new names. The user's own row of
+ * a name that the program has stands at that row's place. */
 typedef struct Materials {
     int       count;
     Material *material;              /* [0] is "none", black */
+    int       own_first;             /* the first with a new name of the user's; count: there is none */
     int       surface[SURFACE_COUNT];/* material of each surface class */
     int       plant[PLANT_KINDS][PLANT_ORGANS]; /* rows of etc/plant_optics.csv; 0: the kind has no such organ */
     int     **part;                  /* [model][part] */
     int     **damaged;               /* [model][part * model_damage_states + damage]; NULL: as undamaged. The
                                       * model's own entry, else `burnt` for destroyed, where there is such a row */
     int       model_count;
+    int      *parts;                 /* [model] parts of it */
     float     ground_rho[optical_channel_count]; /* mean of the land classes: what lights things from below */
 } Materials;
 
 /* surfaces_path: CSV surface, material. Every material a model or surface names must exist: otherwise a
  * logged error and STATUS_BAD_VALUE. catalog may be NULL (no models). */
 Status materials_open(Materials *out, const char *path, const char *surfaces_path, const Catalog *catalog);
-/* Appends the rows of plants (etc/plant_optics.csv) and fills in plant[][]; ground_path (etc/woods.csv): the material of
+/* Adds the rows of plants (etc/plant_optics.csv) before the user's new ones, and fills in plant[][]; ground_path (etc/woods.csv): the material of
  * the ground beneath them replaces that of its class. Once; failures are logged. */
 Status materials_add_plants(Materials *m, const char *path, const char *ground_path);
 void   materials_close(Materials *materials);

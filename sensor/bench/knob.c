@@ -16,6 +16,7 @@
  * no other dominates. A default off the front fails, as does one whose error is above the stated one: there is another
  * setting at no cost. On quick rounds times are not checked: the dominating settings are printed. */
 #include "sensor/bench/bench_private.h"
+#include "pitviper_output.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -106,12 +107,10 @@ static void write_plot(Bench *bench, const BenchTunable *knob, const char *text)
     file_name(name, knob->name);
     const bool fits = (size_t)snprintf(path, sizeof path, "%s/%s", bench->plots, name) < sizeof path;
     errno = ENAMETOOLONG;
-    if (fits) mkdir(bench->plots, 0777); /* if it is absent; if it cannot be created, fopen reports it */
-    FILE *file = fits ? fopen(path, "w") : NULL;
-    bool  ok = file && fputs(text, file) >= 0;
-    ok = file && fclose(file) == 0 && ok;
-    if (ok) return;
-    log_error("bench: cannot write %s: %s; choose another folder with --plots", path, strerror(errno));
+    FILE *file = fits && output_folder(bench->plots) == 0 ? output_begin(path, 0) : NULL;
+    if (file) fputs(text, file);
+    if (file && output_end(file, path)) return;
+    log_error("bench: cannot write %s: %s; choose another folder with --plots", path, output_reason(errno));
     bench->spoilt = true;
 }
 

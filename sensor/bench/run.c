@@ -1,6 +1,8 @@
 /* sensor/bench/run.c: the bench command: the selected suites, the machine, and the results. */
 #include "sensor/bench/bench_private.h"
+#include "pitviper_output.h"
 
+#include <errno.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -220,8 +222,8 @@ int bench_command(int argc, char **argv, BenchNext *next)
         return 2;
     }
     if (!parse(&bench, &out, argc - 1, argv + 1, next)) return 2;
-    if (out.csv && !(bench.csv = fopen(out.csv, "w"))) {
-        log_error("bench: cannot write %s; choose another place with --csv", out.csv);
+    if (out.csv && !(bench.csv = output_file(out.csv, OUTPUT_STREAM))) {
+        log_error("bench: cannot write %s: %s; choose another place with --csv", out.csv, output_reason(errno));
         return 1;
     }
     thread_flush_denormals();

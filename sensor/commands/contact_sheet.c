@@ -1,5 +1,6 @@
 /* sensor/commands/contact_sheet.c: thumbnails of the variants of a sweep, and the page that shows them. */
 #include "sensor/commands/contact_sheet.h"
+#include "pitviper_output.h"
 
 #include "render/frame/render.h"
 #include "sensor/publish/html.h"
@@ -85,7 +86,7 @@ void sheet_add(ContactSheet *sheet, const char *out, const char *folder, int fra
     snprintf(made, sizeof made, "%s/thumbnail.png", below);
     const int first = (int)strcspn(text, "\n");
     fputs("<figure>", sheet->page);
-    if (!make_thumbnail(made, below, frame)) unlink(made);
+    if (!make_thumbnail(made, below, frame)) output_remove(made);
     else if (sheet->shown++ >= sheet_inside)
         fprintf(sheet->page, "<img loading=\"lazy\" src=\"%s/thumbnail.png\" alt=\"%s\">", folder, folder);
     else if (text_read_file(&bytes, &octets, "sweep", made, 1 << 26) == STATUS_OK)

@@ -1,6 +1,7 @@
 /* sensor/commands/exercise.c: writes the datagrams of a scenario to a file, to the network by the clock, or one by
  * one to a folder. */
 #include "sensor/commands/exercise.h"
+#include "pitviper_output.h"
 
 #include "dis/recorder.h"
 #include "dis/udp.h"
@@ -176,6 +177,7 @@ static int parse(Options *o, int argc, char **argv)
         log_error("exercise: --%s is of datagrams that are sent: give --send ADDRESS too, or leave it out", of_sending);
         return 1 + 2;
     }
+    if (o->out && !dis_recorder_name("exercise: -o", o->out)) return 1 + 2;
     o->scenario = argv[optind];
     return !o->send || parse_address(&o->udp, o->send) ? 0 : 1 + 2;
 }
@@ -234,10 +236,10 @@ static bool datagram_file(Run *run, const uint8_t *bytes, size_t octets)
     char path[path_size];
     if (!run->datagrams) return true;
     const int length = snprintf(path, sizeof path, "%s/%04d.pdu", run->datagrams, ++run->files);
-    FILE     *file = length > 0 && length < (int)sizeof path ? fopen(path, "wb") : NULL;
+    FILE     *file = length > 0 && length < (int)sizeof path ? output_file(path, 0) : NULL;
     bool      ok = file && (octets == 0 || fwrite(bytes, octets, 1, file) == 1);
     if (file && fclose(file) != 0) ok = false;
-    if (!ok) log_error("exercise: cannot write %s: %s", path, strerror(errno));
+    if (!ok) log_error("exercise: cannot write %s: %s", path, output_reason(errno));
     return ok;
 }
 
@@ -325,14 +327,15 @@ static Status open_outputs(Run *run, const Options *o, double epoch_unix_s)
 {
     char   comment[300];
     Status status = STATUS_OK;
-    if (o->datagrams && mkdir(o->datagrams, 0777) != 0 && errno != EEXIST) {
-        log_error("exercise: cannot make %s: %s", o->datagrams, strerror(errno));
+    if (o->datagrams && output_folder(o->datagrams) != 0) {
+        log_error("exercise: cannot make %s: %s", o->datagrams, output_reason(errno));
         return STATUS_IO;
     }
     run->datagrams = o->datagrams;
     if (o->send) status = dis_udp_open_sender(&run->udp, &o->udp);
     snprintf(comment, sizeof comment, "pitviper exercise %.200s", o->scenario);
     if (status == STATUS_OK && o->out) status = dis_recorder_open(&run->recorder, o->out, comment);
+    if (status == STATUS_OK && o->out) status = dis_recorder_begin(run->recorder);
     /* whole seconds and the fraction apart: a double of Unix time resolves only 0.2 us */
     run->epoch_ns = (int64_t)floor(epoch_unix_s) * 1000000000 + llround(fmod(epoch_unix_s, 1) * 1e9);
     return status;
@@ -347,8 +350,7 @@ int exercise_command(int argc, char **argv)
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
 
-    Status status = o.out ? overwrite_file("exercise", o.out, o.overwrite) : STATUS_OK;
-    if (status == STATUS_OK) status = read_scenario(&scenario, &o);
+    Status status = read_scenario(&scenario, &o);
     if (status == STATUS_NO_MEMORY) log_error("exercise: out of memory");
     if (status != STATUS_OK) return 1;
     for (int i = 0; i < o.set_count; i++)
@@ -358,6 +360,7 @@ int exercise_command(int argc, char **argv)
         }
     status = scenario_check(&scenario);
     if (status == STATUS_OK) status = cast_create(&cast, &scenario);
+    if (status == STATUS_OK && o.out) status = overwrite_file("exercise", o.out, o.overwrite);
     if (status == STATUS_OK) {
         stop_by_signals();
         const double epoch_unix_s = epoch_of(&scenario, o.send != NULL);

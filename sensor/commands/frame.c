@@ -1,6 +1,7 @@
 /* sensor/commands/frame.c: `pitviper frame FILE`: describes a frame file, renders it again, and reports whether the
  * planes are equal to the bit. */
 #include "sensor/commands/frame.h"
+#include "pitviper_output.h"
 
 #include "sensor/settings/next_option.h"
 #include "sensor/node/overwrite.h"
@@ -146,21 +147,21 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
     memcpy(record.r_ecef_from_cam, file->eye.r_ecef_from_cam, sizeof record.r_ecef_from_cam);
     record.target_count =
         truth_targets(target, &again->picture, &s->world, &s->snapshot, &file->request, &file->eye, noise);
-    record.target = target_records(target, record.target_count, &s->snapshot, s->catalog, arena);
-    if (!record.target) return STATUS_NO_MEMORY;
     if (frame_error(&error, &again->picture, &s->world, &s->snapshot, &file->request, target, record.target_count,
                     s->config.models.sag_m, file->all_on_ground,
                     world_air_k(&s->world, file->unix_s + file->time_s)))
         record.error = &error;
+    record.target = target_records(target, record.target_count, &s->snapshot, s->catalog, arena);
+    if (!record.target) return STATUS_NO_MEMORY;
     if (file->request.budget && radar) {
         radar_error(&of_radar, radar, &s->snapshot);
         record.radar_error = &of_radar;
     }
     if (snprintf(path, sizeof path, "%s/truth.jsonl", out) >= (int)sizeof path) return STATUS_BAD_VALUE;
-    FILE  *to     = fopen(path, "w");
+    FILE  *to     = output_file(path, 0);
     Status status = to ? record_write_frame(to, &record) : STATUS_IO;
     if (to && fclose(to) != 0 && status == STATUS_OK) status = STATUS_IO;
-    if (status == STATUS_IO) log_error("frame: cannot write %s: %s", path, strerror(errno));
+    if (status == STATUS_IO) log_error("frame: cannot write %s: %s", path, output_reason(errno));
     return status;
 }
 
@@ -172,7 +173,8 @@ static Status write_radar(const char *out, const FrameFile *file, const FrameSce
     snprintf(frame.host, sizeof frame.host, "%s", file->host);
     Status status = consume_radar(&consumer, &(PictureFiles){.out = out, .config = &s->config});
     if (status != STATUS_OK) return status;
-    status = consumer->put(consumer, &frame);
+    status = consumer->begin(consumer);
+    if (status == STATUS_OK) status = consumer->put(consumer, &frame);
     const Status closed = consumer->close(consumer);
     return status == STATUS_OK ? closed : status;
 }
@@ -285,10 +287,10 @@ int frame_command(int argc, char **argv)
     scene = arena ? arena_alloc(arena, 1, sizeof *scene) : NULL;
     file  = arena ? arena_alloc(arena, 1, sizeof *file) : NULL;
     Status status = scene && file ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK && o.out) status = overwrite_folder("frame", o.out, o.overwrite);
     if (status == STATUS_OK) status = text_read_file(&bytes, &count, "frame", o.path, most_octets);
     if (status == STATUS_OK) status = frame_file_parse(file, (const uint8_t *)bytes, count, o.path, arena);
     if (status == STATUS_OK) describe(file);
+    if (status == STATUS_OK && o.out) status = overwrite_folder("frame", o.out, o.overwrite);
     if (status == STATUS_OK && o.out) status = image_file_prepare();
     if (status == STATUS_OK) status = pool_create(&pool, o.threads);
     if (status == STATUS_OK) status = frame_scene_open(scene, file, o.forced, "avx2", pool);

@@ -106,6 +106,7 @@ int inspect_command(int argc, char **argv)
         inspect_tsv(&log, options.path, (int)options.exercise, options.full);
     else
         status = inspect_summary(&log, options.path, (int)options.exercise);
+    if (status == STATUS_OK && dis_log_failed(&log)) status = STATUS_IO;
     dis_log_close(&log);
     if (status != STATUS_OK) {
         log_error("inspect: %s: %s", options.path, status_name(status));

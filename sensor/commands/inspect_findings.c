@@ -137,9 +137,9 @@ static Status note_pdu(Findings *f, const DisPdu *pdu, double t_s)
         return note_event(f, (EventRow){t_s, false, pdu->detonation.firing, pdu->detonation.target,
                                         pdu->detonation.munition, pdu->detonation.descriptor.type,
                                         pdu->detonation.result});
-    case dis_pdu_remove_entity: f->removed++; return STATUS_OK;
-    case dis_pdu_start_resume: f->started++; return STATUS_OK;
-    case dis_pdu_stop_freeze: f->stopped++; return STATUS_OK;
+    case dis_pdu_remove_entity: case dis_pdu_remove_entity_r: f->removed++; return STATUS_OK;
+    case dis_pdu_start_resume: case dis_pdu_start_resume_r: f->started++; return STATUS_OK;
+    case dis_pdu_stop_freeze: case dis_pdu_stop_freeze_r: f->stopped++; return STATUS_OK;
     default: return STATUS_OK;
     }
 }
@@ -154,8 +154,8 @@ Status findings_gather(Findings *f, const DisLog *log, int exercise)
     f->first_s = INFINITY;
     f->last_s = -INFINITY;
     for (int i = 0; i < log->count && status == STATUS_OK; i++) {
-        const DisDatagram *d = &log->datagram[i];
-        const uint8_t     *at = d->bytes, *end = d->bytes + d->octets, *pdu;
+        const DisDatagram d = dis_log_datagram(log, i);
+        const uint8_t     *at = d.bytes, *end = d.bytes + d.octets, *pdu;
         DisHeader          header;
         f->counters.datagrams++;
         while (status == STATUS_OK && dis_next_pdu(&header, &pdu, &at, end, &f->counters)) {
@@ -176,7 +176,7 @@ Status findings_gather(Findings *f, const DisLog *log, int exercise)
             row->absolute += dis_timestamp_is_absolute(header.timestamp);
             row->unstamped += header.timestamp == 0;
             row->version[header.version] = true;
-            const double t_s = exercise_clock_pdu_time(clock, &header, pdu, d->capture_s);
+            const double t_s = exercise_clock_pdu_time(clock, &header, pdu, d.capture_s);
             f->first_s = fmin(f->first_s, t_s);
             f->last_s = fmax(f->last_s, t_s);
             const Status refused = dis_decode(&decoded, pdu, header.length);

@@ -66,7 +66,14 @@ static void print_counts(const Findings *f)
     if (!any) printf("  nothing\n");
     for (int why = 0; why < DIS_DROP_COUNT; why++)
         if (f->counters.dropped[why])
-            printf("  %8llu  %s\n", (unsigned long long)f->counters.dropped[why], dis_drop_name((DisDrop)why));
+            printf("  %8llu  %-16s  %s\n", (unsigned long long)f->counters.dropped[why], dis_drop_name((DisDrop)why),
+                   dis_drop_cause((DisDrop)why));
+    if (f->counters.lengths_made || f->counters.padded) printf("\nAccepted all the same\n");
+    if (f->counters.lengths_made)
+        printf("  %8llu  PDUs with a length field of 0, by their type and the datagram's length\n",
+               (unsigned long long)f->counters.lengths_made);
+    if (f->counters.padded)
+        printf("  %8llu  runs of up to 7 zeros behind a PDU, as padding\n", (unsigned long long)f->counters.padded);
 }
 
 static void print_senders(const Findings *f)

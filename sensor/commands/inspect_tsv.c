@@ -85,14 +85,14 @@ void inspect_tsv(const DisLog *log, const char *path, int exercise, bool full)
     uint64_t      undecoded = 0;
     printf("%s%s\n", tsv_header, full ? tsv_full_header : "");
     for (int i = 0; i < log->count; i++) {
-        const DisDatagram *d = &log->datagram[i];
-        const uint8_t     *at = d->bytes, *end = d->bytes + d->octets, *pdu;
+        const DisDatagram d = dis_log_datagram(log, i);
+        const uint8_t     *at = d.bytes, *end = d.bytes + d.octets, *pdu;
         DisHeader          header;
         while (dis_next_pdu(&header, &pdu, &at, end, &counters)) {
             if (header.type != dis_pdu_entity_state) continue;
             if (exercise >= 0 && header.exercise != exercise) continue;
             if (dis_decode(&decoded, pdu, header.length) == STATUS_OK)
-                print_tsv_row(d->packet, &decoded.entity_state, full);
+                print_tsv_row(d.packet, &decoded.entity_state, full);
             else
                 undecoded++;
         }

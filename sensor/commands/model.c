@@ -1,9 +1,12 @@
 /* sensor/commands/model.c: `pitviper model`: list, info, show. */
 #include "sensor/commands/model.h"
+#include "pitviper_output.h"
 
 #include "entities/catalog/model_info.h"
 #include "entities/import/sidecar.h"
 #include "sensor/settings/config.h"
+
+#include <strings.h>
 
 static const char help[] =
     "usage: pitviper model list [-c FILE]\n"
@@ -91,6 +94,7 @@ static int show_command(int argc, char **argv)
     const int    wrong = parse(&o, argc, argv);
     if (wrong) return wrong;
     if (!o.name) return refuse("show", "needs a model: a built-in name, or a file");
+    if (o.out && strcasecmp(output_ending(o.out), ".png") != 0) return refuse(o.out, "the picture's name ends with .png");
     if (take_config(o.config) != STATUS_OK) return 1;
     etc_own_set("catalog.csv", NULL); /* the model is shown whatever its entity types */
     const char *slash = strrchr(o.name, '/'), *last = slash ? slash + 1 : o.name;

@@ -24,7 +24,7 @@ static const char help[] =
     "name ends in .pcap) that `pitviper replay`, `pitviper inspect`, Wireshark and tshark read.\n"
     "\n"
     "  -o, --out LOG      the recording\n"
-    "  --overwrite        replace an existing LOG; without it that is an error\n"
+    "  --overwrite        replace an existing LOG, once something is received; without it that is an error\n"
     "  --address A        receive on this address: a multicast group (joined, IPv4 or IPv6) or an address of this\n"
     "                     machine; default: all IPv4 addresses, and broadcast\n"
     "  --interface NAME   receive on this network interface only, such as eth0; default: all\n"
@@ -87,6 +87,7 @@ static int parse(Options *o, int argc, char **argv)
         fputs(help, stderr);
         return 1 + 2;
     }
+    if (!dis_recorder_name("record: -o", o->out)) return 1 + 2;
     return 0;
 }
 
@@ -170,14 +171,14 @@ int record_command(int argc, char **argv)
 
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
-    if (overwrite_file("record", o.out, o.overwrite) != STATUS_OK) return 1;
     stop_by_signals();
     /* The socket first: if it failed with the file open, an older recording would be lost for nothing. Datagrams
      * that arrive until the file is open are queued. */
     if (dis_udp_open(&r.udp, &o.udp) != STATUS_OK) return 1;
     dis_udp_where(where, &o.udp);
     snprintf(comment, sizeof comment, "pitviper record: %s", where);
-    if (dis_recorder_open(&r.recorder, o.out, comment) != STATUS_OK) {
+    if (overwrite_file("record", o.out, o.overwrite) != STATUS_OK ||
+        dis_recorder_open(&r.recorder, o.out, comment) != STATUS_OK) {
         dis_udp_close(r.udp);
         return 1;
     }
@@ -191,9 +192,11 @@ int record_command(int argc, char **argv)
     const double         spent_s = wall_clock_s() - r.begun_s;
     const DisUdpCounters counters = dis_udp_counters(r.udp);
     dis_udp_close(r.udp);
+    const bool begun = dis_recorder_begun(r.recorder);
     if (dis_recorder_close(r.recorder) != STATUS_OK) status = STATUS_IO;
     log_info("record: %s: %llu datagrams, %llu octets in %.1f s; lost %llu", o.out, (unsigned long long)r.datagrams,
              (unsigned long long)r.octets, spent_s, (unsigned long long)lost(&counters));
+    if (!begun) log_warn("record: nothing came: %s is the earlier recording, as it was", o.out);
     if (r.datagrams == 0)
         log_warn("record: nothing came on %s; --port, --address and --interface say where to listen, `ss -ulpn` and "
                  "`ip address` show what there is", where);

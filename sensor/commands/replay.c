@@ -74,8 +74,22 @@ static Status take_only(double *last, const Options *o, double first)
     return STATUS_OK;
 }
 
+/* The host of a plan, as session_host names it at first. */
+static void host_name(char out[dis_id_text_size], const HostPlan *plan)
+{
+    if (plan->any_munition) strcpy(out, host_munition);
+    else if (dis_entity_id_is_none(plan->host)) strcpy(out, host_observer);
+    else dis_entity_id_text(out, plan->host);
+}
+
+/* Frames to be rendered; single: one, at from_s. */
+typedef struct FrameSpan {
+    double from_s, to_s, first, last; /* exercise time; numbers */
+    bool   single;
+} FrameSpan;
+
 /* The span of the plan and of --from and --to, or, causal, to the last datagram received unless --to is later. */
-static Status replay_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
+static Status find_span(FrameSpan *out, const Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
     const Options *o      = &run->options;
     const Config  *config = &o->config;
@@ -92,37 +106,54 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
     double     last  = floor(to_s * grid->rate_hz + 1e-9) - grid->origin;
     const bool single = to_s >= from_s && !(last >= first); /* shorter than an interval: one frame, at its start */
     if (!(last >= first || single) || last > 999999) {
+        char host[dis_id_text_size];
+        host_name(host, plan);
         log_error("replay: %s between %.3f and %.3f s at %g Hz: the recording goes from %.3f to %.3f s (+0 to +%.3f), "
                   "%s can be "
                   "shown from %.3f s on; widen --from and --to or change --rate%s",
                   last >= first ? "more than a million frames" : "no frame", from_s, to_s, grid->rate_hz, first_s,
-                  last_s, last_s - first_s, session_host(session), plan->start_s,
+                  last_s, last_s - first_s, host, plan->start_s,
                   config->causal ? ", or listen less (exercise.listen_s)" : "");
         return STATUS_BAD_VALUE;
     }
     if (single) last = first;
-    Status    status  = take_only(&last, o, first);
-    int       next    = 0;
-    Pace     *clock   = run->clock;
-    const double begun_s = wall_clock_s();
-    *clock = (Pace){begun_s, single ? from_s : frame_grid_s(grid, first), o->speed};
-    for (double n = first; n <= last && status == STATUS_OK; n++) {
-        const double t_s = single ? from_s : frame_grid_s(grid, n);
+    const Status status = take_only(&last, o, first);
+    *out                = (FrameSpan){from_s, to_s, first, last, single};
+    return status;
+}
+
+static Status check_span(Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid)
+{
+    FrameSpan span;
+    return find_span(&span, run, player, plan, grid);
+}
+
+static Status replay_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
+{
+    const Options *o       = &run->options;
+    FrameSpan      span    = {0};
+    Status         status  = find_span(&span, run, player, plan, grid);
+    int            next    = 0;
+    Pace          *clock   = run->clock;
+    const double   begun_s = wall_clock_s();
+    *clock = (Pace){begun_s, span.single ? span.from_s : frame_grid_s(grid, span.first), o->speed};
+    for (double n = span.first; n <= span.last && status == STATUS_OK; n++) {
+        const double t_s = span.single ? span.from_s : frame_grid_s(grid, n);
         bool         shown;
         if (!wanted(o, &next, n)) continue;
         pace(clock, t_s);
         run->stopped = stop_asked();
         if (run->stopped) break;
         status = session_frame(&shown, session, (int)n, t_s);
-        if (status == STATUS_OK) show_progress(n, first, last, begun_s);
+        if (status == STATUS_OK) show_progress(n, span.first, span.last, begun_s);
     }
     log_status(NULL);
     if (status != STATUS_OK) return status;
     if (session_result(session)->frames == 0 && !run->stopped) {
         if (plan->any_munition)
             log_error("replay: exercise.host: munition: none flew at a frame's time between %.3f and %.3f s; `pitviper "
-                      "inspect %s` lists who was there, --host ID or --host observer shows what there is", from_s, to_s,
-                      o->log);
+                      "inspect %s` lists who was there, --host ID or --host observer shows what there is", span.from_s,
+                      span.to_s, o->log);
         else
             log_error("replay: %s was never there at a frame's time; see `pitviper inspect`, --from, --to and --rate",
                       session_host(session));
@@ -168,12 +199,30 @@ static void take_packet_times(DisLog *log)
     log->retimed = false;
 }
 
+/* Of the log's octets as they are read: it is read once. */
+typedef struct Hash {
+    Sha256 *digest;
+    bool    good;
+} Hash;
+
+static void hash_octets(void *user, const void *octets, size_t count)
+{
+    Hash *hash = user;
+    hash->good = hash->good && sha256_add(hash->digest, octets, count);
+}
+
 static Status open_log(Run *run, DisLog *log)
 {
     const Options *o = &run->options;
     DisLog         heard;
-    Status         status = dis_log_open(log, o->log, o->config.exercise.port);
-    if (status == STATUS_OK) status = sha256_file(run->log_sha256, o->log);
+    Hash           hash = {sha256_begin(), true};
+    Status         status = hash.digest ? dis_log_open_read(log, o->log, o->config.exercise.port, hash_octets, &hash)
+                                        : STATUS_NO_MEMORY;
+    if (hash.digest) {
+        const Status ended = sha256_end(run->log_sha256, hash.digest, hash.good);
+        if (status == STATUS_OK) status = ended;
+    }
+    run->stopped = status != STATUS_OK && stop_asked(); /* while a pipe was waited for */
     if (status != STATUS_OK) return status;
     run->link = &log->counters;
     if (o->config.causal) take_packet_times(log);
@@ -189,6 +238,7 @@ static Status open_log(Run *run, DisLog *log)
     run->view = heard = *log;
     const bool starts = !o->config.causal || opening_of(&run->view, &heard, &run->until_s, log, &o->config);
     status            = run_survey(run, &heard);
+    if (status == STATUS_OK && dis_log_failed(log)) status = STATUS_IO;
     if (status == STATUS_OK && (!starts || run->survey.track_count == 0)) {
         log_error("replay: %s holds no Entity State with a usable position (%llu datagrams heard); "
                   "`pitviper inspect %s` says what it holds, --set exercise.port=N takes another port",
@@ -223,7 +273,10 @@ static Status open_sending(Sending *s, Run *run, const DisLog *log)
                  "the recording");
         return STATUS_OK;
     }
-    for (int i = 0; i < log->count && !opening_starts(&run->first, &log->datagram[i], &o->config);) i++;
+    for (int i = 0; i < log->count; i++) {
+        const DisDatagram datagram = dis_log_datagram(log, i);
+        if (opening_starts(&run->first, &datagram, &o->config)) break;
+    }
     dis_network_to(s->to, &udp);
     const Status status = dis_udp_open_sender(&s->udp, &udp);
     if (status != STATUS_OK) return status;
@@ -251,42 +304,78 @@ static Status close_sending(Sending *s)
     return STATUS_OK;
 }
 
+/* ---- the command ------------------------------------------------------------------------------- */
+
+/* The folders of all hosts, and their videos: the last thing that is asked before the world is set up. */
+static Status open_folders(const Run *run, const DisEntityId host[])
+{
+    const Options *o = &run->options;
+    char           name[run_folder_size];
+    const bool     there  = access(o->out, F_OK) == 0; /* else a video may be meant for it */
+    Status         status = STATUS_OK;
+    if (there && o->host_count <= 1) status = overwrite_video("replay", &o->config, run->bands, NULL, o->overwrite);
+    if (status == STATUS_OK) status = overwrite_folder("replay", o->out, o->overwrite);
+    if (status == STATUS_OK && !there && o->host_count <= 1)
+        status = overwrite_video("replay", &o->config, run->bands, NULL, o->overwrite);
+    for (int i = 0; status == STATUS_OK && o->host_count > 1 && i < o->host_count; i++) {
+        run_folder(name, o, host[i]);
+        status = overwrite_folder("replay", name, o->overwrite);
+        if (status == STATUS_OK)
+            status = overwrite_video("replay", &o->config, run->bands, basename(name), o->overwrite);
+    }
+    return status;
+}
+
+/* Everything that can be known to be wrong, in seconds, before a file is touched. */
+static Status prepare(Run *run, DisLog *log, DisEntityId host[options_hosts_max])
+{
+    const Options *o      = &run->options;
+    Status         status = run_prepare(run);
+    if (status == STATUS_OK) status = video_hosts_check(&o->config, o->host_count);
+    if (status == STATUS_OK) status = open_log(run, log);
+    if (status == STATUS_OK) status = check_hosts(host, run);
+    if (status == STATUS_OK && o->host_count == 0) status = run_check(run, NULL);
+    for (int i = 0; i < o->host_count && status == STATUS_OK; i++) status = run_check(run, &host[i]);
+    return status;
+}
+
+static Status look_at_variant(Run *run)
+{
+    DisLog      log = {0};
+    DisEntityId host[options_hosts_max];
+    run->check          = check_span;
+    const Status status = prepare(run, &log, host);
+    dis_log_close(&log);
+    return status;
+}
+
 int replay_command(int argc, char **argv)
 {
     Pace        clock = {0};
-    Run         run = {.frames = replay_frames, .clock = &clock};
+    Run         run = {.check = check_span, .frames = replay_frames, .clock = &clock};
     Sending     sending = {0};
     DisLog      log = {0};
     DisEntityId host[options_hosts_max];
-    char        name[run_folder_size], log_name[4096];
+    char        log_name[4096];
     const int   stop = options_parse(&run.options, COMMAND_REPLAY, argc, argv);
     if (stop) return stop - 1;
     stop_by_signals();
     if (isfinite(run.options.speed)) run.wall_s = wall_of;
-    if (run.options.sweep) return sweep_replay(&run.options);
+    if (run.options.sweep) return sweep_replay(&run.options, look_at_variant);
 
     snprintf(log_name, sizeof log_name, "%s", run.options.log);
     run.log_name = basename(log_name);
     thread_flush_denormals();
-    Status failed = STATUS_OK, status = overwrite_folder("replay", run.options.out, run.options.overwrite);
-    if (status == STATUS_OK) status = run_prepare(&run);
-    if (status == STATUS_OK && run.options.host_count <= 1)
-        status = overwrite_video("replay", &run.options.config, run.bands, NULL, run.options.overwrite);
-    if (status == STATUS_OK) status = open_log(&run, &log);
-    if (status == STATUS_OK) status = check_hosts(host, &run);
+    Status failed = STATUS_OK, status = prepare(&run, &log, host);
     if (status == STATUS_OK) status = open_sending(&sending, &run, &log);
-    for (int i = 0; status == STATUS_OK && i < run.options.host_count; i++) {
-        run_folder(name, &run.options, host[i]);
-        status = overwrite_folder("replay", name, run.options.overwrite);
-        if (status == STATUS_OK && run.options.host_count > 1)
-            status = overwrite_video("replay", &run.options.config, run.bands, basename(name), run.options.overwrite);
-    }
+    if (status == STATUS_OK) status = open_folders(&run, host);
     if (status == STATUS_OK) video_watch_print(&run.options.config, run.bands);
     if (status == STATUS_OK && run.options.host_count == 0) status = run_host(&run, NULL);
-    if (status == STATUS_OK && run.options.host_count > 1) frame_files_clear(run.options.out);
+    int made = 0;
     for (int i = 0; status == STATUS_OK && !run.stopped && i < run.options.host_count; i++) {
         const Status one = run_host(&run, &host[i]);
         if (one != STATUS_OK) failed = one; /* the others are still rendered */
+        else if (made++ == 0 && run.options.host_count > 1) frame_files_clear(run.options.out); /* a run of one host */
     }
     if (status == STATUS_OK) status = failed;
     const Status sent = close_sending(&sending);
@@ -294,7 +383,9 @@ int replay_command(int argc, char **argv)
     if (status == STATUS_NO_MEMORY)
         log_error("replay: out of memory; smaller pictures (--size), fewer bands (--bands) or more memory");
 
+    const bool unheard = run.stopped && log.count == 0;
     run_close(&run);
     dis_log_close(&log);
-    return status != STATUS_OK ? 1 : run.stopped ? stop_exit_code() : 0;
+    if (status != STATUS_OK && !unheard) return 1;
+    return run.stopped ? stop_exit_code() : 0;
 }

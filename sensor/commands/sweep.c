@@ -1,6 +1,7 @@
 /* sensor/commands/sweep.c: `replay --sweep`: validates every variant, then runs one after another, each in a process
  * of its own. */
 #include "sensor/commands/sweep.h"
+#include "pitviper_output.h"
 
 #include "sensor/commands/contact_sheet.h"
 #include "sensor/publish/frame_files.h"
@@ -197,6 +198,24 @@ static Status prepare(SweepRun *s)
     return status;
 }
 
+/* What would fail in every variant, log, host or span, is told once and before anything is written: where no axis is about it,
+ * the first variant stands for all. */
+static Status look_at_first(const SweepRun *s, SweepLook *look)
+{
+    for (int i = 0; i < s->sweep.axis_count; i++)
+        if (strncmp(s->sweep.axis[i].key, "exercise.", 9) == 0 || strcmp(s->sweep.axis[i].key, "sensor.rate_hz") == 0)
+            return STATUS_OK;
+    Run *run = calloc(1, sizeof *run);
+    if (!run) return STATUS_NO_MEMORY;
+    run->options  = *s->options;
+    Status status = sweep_config(&run->options.config, &s->sweep, &s->options->config, s->variant[0].number);
+    if (status == STATUS_OK) status = look(run);
+    if (status == STATUS_BAD_VALUE || status == STATUS_IO) log_error("sweep: so in every variant; nothing has been run");
+    run_close(run);
+    free(run);
+    return status;
+}
+
 static bool is_run(const MadeRun *run, const SweepRun *s, const Variant *v)
 {
     return strcmp(run->version, PITVIPER_VERSION) == 0 && strcmp(run->config_sha256, v->config_sha256) == 0 &&
@@ -249,15 +268,16 @@ static Status open_products(SweepRun *s)
     Status         status = sha256_file(s->log_sha256, o->log);
     if (status == STATUS_OK) status = check_folders(s);
     if (status == STATUS_OK) status = frame_files_folder(o->out);
+    if (status == STATUS_OK) status = output_hold("sweep", o->out);
     if (status != STATUS_OK) return status;
     const char *slash = strrchr(o->log, '/');
     snprintf(title, sizeof title, "Sweep of %s: %d variants", slash ? slash + 1 : o->log, s->count);
     status = sheet_begin(&s->sheet, o->out, title);
     if (status != STATUS_OK) return status;
     snprintf(path, sizeof path, "%s/manifest.jsonl", o->out);
-    s->manifest = fopen(path, "w");
+    s->manifest = output_file(path, 0);
     if (s->manifest) return coco_merge_open(&s->coco, o->out);
-    log_error("sweep: cannot write %s: %s; choose another folder with --out", path, strerror(errno));
+    log_error("sweep: cannot write %s: %s; choose another folder with --out", path, output_reason(errno));
     return STATUS_IO;
 }
 
@@ -278,14 +298,14 @@ static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const
 
 static Status write_file(const char *path, const char *text, size_t octets)
 {
-    FILE      *file = fopen(path, "w");
-    const bool whole = file && fwrite(text, 1, octets, file) == octets;
-    if (file && fclose(file) == 0 && whole) return STATUS_OK;
-    log_error("sweep: cannot write %s: %s", path, strerror(errno));
+    FILE *file = output_begin(path, 0);
+    if (file) fwrite(text, 1, octets, file);
+    if (file && output_end(file, path)) return STATUS_OK;
+    log_error("sweep: cannot write %s: %s", path, output_reason(errno));
     return STATUS_IO;
 }
 
-/* Passes on a stop by SIGTERM, so that the child ends after its frame; Ctrl-C reaches it from the terminal. */
+/* Passes on a stop as SIGTERM, so that the child ends after its frame; Ctrl-C reaches it from the terminal. */
 static void wait_for(int *state, pid_t child)
 {
     bool told = false;
@@ -307,13 +327,16 @@ static int run_child(const Options *o, const char *folder)
     posix_spawn_file_actions_t files;
     pid_t                      child;
     int                        state = -1;
-    if (posix_spawn_file_actions_init(&files) != 0) return -1;
+    const int                  log   = output_open(said, 0);
+    if (log < 0) log_error("sweep: cannot write %s: %s", said, output_reason(errno));
+    if (log < 0 || posix_spawn_file_actions_init(&files) != 0) return -1;
     const bool ready = posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0) == 0 &&
-                       posix_spawn_file_actions_addopen(&files, 1, said, O_WRONLY | O_CREAT | O_TRUNC, 0666) == 0 &&
-                       posix_spawn_file_actions_adddup2(&files, 1, 2) == 0;
+                       posix_spawn_file_actions_adddup2(&files, log, 1) == 0 &&
+                       posix_spawn_file_actions_adddup2(&files, log, 2) == 0;
     if (ready && posix_spawn(&child, "/proc/self/exe", &files, NULL, (char *const *)argv, environ) == 0)
         wait_for(&state, child);
     posix_spawn_file_actions_destroy(&files);
+    close(log);
     return state != -1 && WIFEXITED(state) ? WEXITSTATUS(state) : -1;
 }
 
@@ -387,7 +410,7 @@ static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, 
         return;
     }
     snprintf(path, sizeof path, "%s/variant.json", folder);
-    unlink(path);
+    output_remove(path);
     snprintf(path, sizeof path, "%s/settings.yaml", folder);
     if (write_settings(path, s->options, v, config) != STATUS_OK) {
         snprintf(outcome->why, sizeof outcome->why, "its settings cannot be written or read back");
@@ -438,7 +461,7 @@ static Status make_or_keep(Outcome *outcome, const SweepRun *s, const Variant *v
 static Status one_variant(SweepRun *s, int place)
 {
     const Variant *v = &s->variant[place];
-    char           folder[path_size], path[path_size + 32], part[path_size + 48];
+    char           folder[path_size], path[path_size + 32];
     Outcome        outcome;
     if (snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name) >= (int)sizeof folder)
         return STATUS_BAD_VALUE;
@@ -458,9 +481,7 @@ static Status one_variant(SweepRun *s, int place)
     }
     if (status == STATUS_OK && strcmp(outcome.status, "made") == 0) {
         snprintf(path, sizeof path, "%s/variant.json", folder);
-        snprintf(part, sizeof part, "%s.part", path);
-        status = write_file(part, text, strlen(text));
-        if (status == STATUS_OK && rename(part, path) != 0) status = STATUS_IO;
+        status = write_file(path, text, strlen(text));
     }
     free(text);
     if (status == STATUS_OK && outcome.has_run && has_coco(folder)) status = coco_merge_add(s->coco, v->name);
@@ -494,11 +515,12 @@ static Status run_all(SweepRun *s)
     return status;
 }
 
-int sweep_replay(const Options *options)
+int sweep_replay(const Options *options, SweepLook *look)
 {
     SweepRun     s      = {.options = options};
     const Status tried  = prepare(&s);
-    const Status status = tried == STATUS_OK ? run_all(&s) : tried;
+    Status       status = tried == STATUS_OK ? look_at_first(&s, look) : tried;
+    if (status == STATUS_OK) status = run_all(&s);
     if (status == STATUS_NO_MEMORY) log_error("sweep: out of memory");
     free(s.variant);
     sweep_close(&s.sweep);

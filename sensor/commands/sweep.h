@@ -22,10 +22,13 @@
 #ifndef SENSOR_COMMANDS_SWEEP_H
 #define SENSOR_COMMANDS_SWEEP_H
 
-#include "sensor/settings/options.h"
+#include "sensor/node/host_run.h"
 
-/* Exit code: 0; 1: a variant failed, or the sweep could not be written; 2: the file or settings of a variant are
- * invalid. */
-int sweep_replay(const Options *options);
+/* What replay knows of a run before its world is set up: log, hosts, span. Logged; the caller calls run_close. */
+typedef Status SweepLook(Run *run);
+
+/* Exit code: 0; 1: a variant failed, or the sweep could not be written, or look refuses what no axis changes; 2: the file or
+ * settings of a variant are invalid. */
+int sweep_replay(const Options *options, SweepLook *look);
 
 #endif

@@ -1,18 +1,22 @@
 /* sensor/commands/terrain.c: `pitviper terrain import`, and the table of the command's actions. */
 #include "sensor/commands/terrain.h"
+#include "pitviper_output.h"
 
+#include "sensor/commands/terrain_again.h"
 #include "sensor/commands/terrain_info.h"
 #include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 #include "sensor/settings/next_option.h"
 #include "terrain/import/terrain_import.h"
 
+#include <errno.h>
 #include <stdlib.h>
 
 static const char help[] =
     "usage: pitviper terrain import SOURCE... -o STORE [options]\n"
     "       pitviper terrain import --surface FILES -o STORE [options]\n"
     "       pitviper terrain info STORE [--out DIR] [--verify]\n"
+    "       pitviper terrain again STORE\n"
     "\n"
     "import: a terrain store, one file that is mapped (terrain.store), from any files that GDAL reads. SOURCE: terrain\n"
     "models, that is bare ground; files, or folders of them. Sheets may overlap, have different postings and coordinate\n"
@@ -36,7 +40,8 @@ static const char help[] =
     "  --spacing M            of the finest posts, 0.06 .. 1000 m (the finest file's)\n"
     "  --horizon KM           half width of the coarse posts around, 1 .. 400 (100)\n"
     "output\n"
-    "  -o, --out STORE        the store; made again from the same sources when one of them changes\n"
+    "  -o, --out STORE        the store; made again from the same sources when one of them changes and\n"
+    "                         all lie in its folder; `terrain again STORE` makes it from any\n"
     "  --overwrite            replace an existing STORE; without it that is an error\n"
     "  --threads N            1 .. 256 (all processors)\n";
 
@@ -178,6 +183,10 @@ static int import_command(int argc, char **argv)
         return code;
     }
     Status status = overwrite_file("terrain import", w->out, w->overwrite);
+    if (status == STATUS_OK && output_check(w->out, 0) != 0) {
+        log_error("terrain import: cannot write %s: %s; choose another name with -o", w->out, output_reason(errno));
+        status = STATUS_IO;
+    }
     if (status == STATUS_OK) status = pool_create(&pool, (int)w->threads);
     double begun_s = wall_clock_s();
     stop_by_signals();
@@ -194,9 +203,11 @@ static int import_command(int argc, char **argv)
 
 int terrain_command(int argc, char **argv)
 {
-    static char called[] = "pitviper terrain import", called_info[] = "pitviper terrain info";
-    const bool  info = argc > 1 && strcmp(argv[1], "info") == 0; /* has a help of its own */
-    for (int i = 1; !info && i < argc && strcmp(argv[i], "--") != 0; i++)
+    static char called[] = "pitviper terrain import", called_info[] = "pitviper terrain info",
+                called_again[] = "pitviper terrain again";
+    const bool  again = argc > 1 && strcmp(argv[1], "again") == 0;
+    const bool  info = argc > 1 && strcmp(argv[1], "info") == 0; /* these have a help of their own */
+    for (int i = 1; !info && !again && i < argc && strcmp(argv[i], "--") != 0; i++)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             fputs(help, stdout);
             return 0;
@@ -213,6 +224,10 @@ int terrain_command(int argc, char **argv)
         argv[1] = called_info;
         return terrain_info_command(argc - 1, argv + 1);
     }
-    text_print(stderr, "pitviper terrain: no such action: %s; there are import and info\n", argv[1]);
+    if (again) {
+        argv[1] = called_again;
+        return terrain_again_command(argc - 1, argv + 1);
+    }
+    text_print(stderr, "pitviper terrain: no such action: %s; there are import, info and again\n", argv[1]);
     return 2;
 }

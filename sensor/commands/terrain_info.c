@@ -1,10 +1,12 @@
 /* sensor/commands/terrain_info.c: `pitviper terrain info`: levels, sections, classes, sources and pictures of a terrain
  * store. */
 #include "sensor/commands/terrain_info.h"
+#include "pitviper_output.h"
 
 #include "sensor/commands/terrain_pictures.h"
 #include "sensor/node/overwrite.h"
 #include "sensor/settings/next_option.h"
+#include "terrain/import/terrain_import.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -100,9 +102,9 @@ static void print_text(const char *name, const char *text)
     if (*text) text_print(stdout, "%s: %s\n", name, text);
 }
 
-static void print_sources(const TerrainStore *store)
+static void print_sources(const TerrainStore *store, const char *path)
 {
-    char which[1024];
+    char which[1024], outside[1024];
     char *texts = strdup(store->sources), *rest = texts, *line;
     while (texts && (line = strsep(&rest, "\n"))) {
         long long octets;
@@ -111,9 +113,15 @@ static void print_sources(const TerrainStore *store)
             text_print(stdout, "source: %s, %lld octets\n", line + at, octets);
     }
     free(texts);
+    const bool foreign = terrain_store_foreign(outside, sizeof outside, path, store->options);
     switch (store_sources(store, which, sizeof which)) {
     case STORE_FRESH: printf("sources: as they were\n"); break;
-    case STORE_CHANGED: text_print(stdout, "sources: %s has CHANGED; a node makes the store again\n", which); break;
+    case STORE_CHANGED:
+        if (foreign)
+            text_print(stdout, "sources: %s has CHANGED; the store is used as it is: %s lies outside its own folder "
+                       "(`pitviper terrain again`)\n", which, outside);
+        else text_print(stdout, "sources: %s has CHANGED; a node makes the store again\n", which);
+        break;
     case STORE_SOURCES_MISSING:
         text_print(stdout, "sources: %s is not here; the store is used as it is\n", which);
         break;
@@ -139,7 +147,7 @@ static void print_info(const TerrainStore *store, const char *path)
     if (store->canopy_cover) printf("canopy cover: cells of %.4g m\n", store->canopy_cover_grid.cell_m);
     printf("crowns: %llu; buildings: %llu\n", (unsigned long long)store->crown_count,
            (unsigned long long)store->building_count);
-    print_sources(store);
+    print_sources(store, path);
 }
 
 /* ---- pictures ------------------------------------------------------------------------------------------ */
@@ -150,8 +158,8 @@ static Status draw(const Wanted *w, const TerrainStore *store)
     if (snprintf(hillshade, sizeof hillshade, "%s/hillshade.png", w->out) >= (int)sizeof hillshade ||
         snprintf(classes, sizeof classes, "%s/classes.png", w->out) >= (int)sizeof classes)
         return STATUS_BAD_VALUE;
-    if (mkdir(w->out, 0777) != 0 && errno != EEXIST) {
-        log_error("terrain info: cannot create %s: %s", w->out, strerror(errno));
+    if (output_folder(w->out) != 0) {
+        log_error("terrain info: cannot create %s: %s", w->out, output_reason(errno));
         return STATUS_IO;
     }
     const bool some = store->surface[0].nx > 0;

@@ -136,6 +136,10 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
         double       value[2];
         if (!order_statistics(value, plane, plane_count, count, share)) return (DetectorLevel){0, 1};
         level = (DetectorLevel){value[0], value[1]};
+        static const double body[2] = {0.1, 0.9};
+        if (config->highlight > 0 && level.high > level.low &&
+            order_statistics(value, plane, plane_count, count, body))
+            level.high = fmax(level.low, fmin(level.high, value[1] + config->highlight * (value[1] - value[0])));
 
         const double middle = 0.5 * (level.low + level.high);
         double       span = (level.high - level.low) * (1 + 2 * config->margin);
@@ -148,10 +152,29 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
     return level;
 }
 
-void detector_level_follow(DetectorLevel *state, DetectorLevel now, double step_s, double time_s)
+void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now, double step_s, double time_s)
 {
-    const double share = time_s > 0 ? -expm1(-fmax(0, step_s) / time_s) : 1;
-    state->low += share * (now.low - state->low);
-    state->high += share * (now.high - state->high);
-    if (share == 1) *state = now;
+    /* spans; of time_s. 1.8 spans are what comes when sky leaves a picture (tests/system/test_level.sh): averaged */
+    static const double lost = 2, near = 0.03, faster = 0.1;
+    const double span = now.high - now.low;
+    double left = fmax(fabs(state->low - now.low), fabs(state->high - now.high)) / span, keep = 1;
+    if (!(time_s > 0) || !isfinite(left)) {
+        *state = now;
+        *quick = false;
+        return;
+    }
+    step_s = fmax(0, step_s);
+    *quick = left > near && (*quick || left > lost);
+    if (left > lost && step_s > 0) {
+        keep = lost / left;
+        left = lost;
+    }
+    if (*quick) { /* as long as it takes, or the whole step */
+        const double quick_s = fmin(step_s, faster * time_s * log(left / near));
+        keep *= exp(-quick_s / (faster * time_s));
+        step_s -= quick_s;
+    }
+    keep *= exp(-step_s / time_s);
+    state->low  = now.low + keep * (state->low - now.low);
+    state->high = now.high + keep * (state->high - now.high);
 }

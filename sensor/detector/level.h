@@ -16,6 +16,9 @@ typedef struct DetectorConfig {
     double percentile_low, percentile_high; /* 0 .. 1 */
     double margin;          /* automatic: added on both sides, in spans */
     double min_span;        /* automatic: never less, in the plane's unit; from 0 up where it would reach below */
+    double highlight;       /* automatic: white is at most the value at 90 % plus this many times the distance from that
+                             * at 10 %, so that fires on a few per cent of the pixels take no grey levels from the rest;
+                             * 0: percentile_high alone */
     double level_low, level_high;           /* manual, in the plane's unit */
     bool   display_gamma;   /* sRGB transfer curve after gain and level: visible light on a screen */
 } DetectorConfig;
@@ -35,8 +38,11 @@ typedef struct DetectorLevel {
  * rounding, lands in the middle of the scale. Planes without a finite value: 0 .. 1. */
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count);
 
-/* An automatic level with a time constant: the state of the last frame approaches `now` by 1 - exp(-step_s / time_s).
- * time_s 0: immediately. */
-void detector_level_follow(DetectorLevel *state, DetectorLevel now, double step_s, double time_s);
+/* An automatic level with a time constant: the state of the last frame approaches `now` by 1 - exp(-step_s / time_s). Where
+ * it is further away than two spans of `now` (low or high, whichever is further), so that the picture would be nearly black
+ * or white, it is put within two spans at once and follows with a tenth of time_s until it is within 0.03 of a span:
+ * within 0.42 time_s. Smaller steps settle to 5 % in 3 time_s. Both are the same at any frame rate. time_s 0: immediately.
+ * quick: state too, false at first: it is catching up. */
+void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now, double step_s, double time_s);
 
 #endif

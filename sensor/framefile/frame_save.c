@@ -1,6 +1,7 @@
 /* sensor/framefile/frame_save.c: collects the inputs of a frame, packs them, renders the frame again from the
  * octets, and writes the file when the planes are equal. */
 #include "sensor/framefile/frame_save.h"
+#include "pitviper_output.h"
 
 #include "sensor/framefile/frame_again.h"
 #include "sensor/framefile/frame_ground.h"
@@ -208,14 +209,10 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *fil
 /* Written next to its final path and renamed: a file is complete or absent. */
 static Status write_file(const char *path, const ByteSink *bytes)
 {
-    char  part[path_size + 8];
-    snprintf(part, sizeof part, "%s.part", path);
-    FILE *to = fopen(part, "wb");
-    const bool put = to && fwrite(bytes->bytes, 1, bytes->count, to) == bytes->count;
-    const bool closed = to && fclose(to) == 0;
-    if (put && closed && rename(part, path) == 0) return STATUS_OK;
-    log_error("frame: cannot write %s: %s", path, strerror(errno));
-    unlink(part);
+    FILE *to = output_begin(path, 0);
+    if (to) fwrite(bytes->bytes, 1, bytes->count, to);
+    if (to && output_end(to, path)) return STATUS_OK;
+    log_error("frame: cannot write %s: %s", path, output_reason(errno));
     return STATUS_IO;
 }
 

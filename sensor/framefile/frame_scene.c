@@ -1,5 +1,6 @@
 /* sensor/framefile/frame_scene.c: the world of a frame file, from its own ground and this installation's tables. */
 #include "sensor/framefile/frame_scene.h"
+#include "pitviper_output.h"
 
 #include "sensor/framefile/frame_ground.h"
 #include "sensor/framefile/frame_tables.h"
@@ -18,7 +19,7 @@ static Status read_settings(Config *config, const FrameFile *file)
     char path[temp_path_size];
     *config = config_default();
     if (!temp_file(path, ".yaml")) return STATUS_IO;
-    FILE      *to = fopen(path, "w");
+    FILE      *to = output_file(path, 0);
     const bool put = to && fputs(file->settings, to) >= 0, closed = to && fclose(to) == 0;
     if (!put || !closed) log_error("frame: cannot write %s", path);
     const Status status = put && closed ? config_read(config, path) : STATUS_IO;

@@ -65,9 +65,10 @@ int choose_exercise(Choices *choices, const DisLog *log, const Config *config)
     int         most = 0, exercises = 0;
     if (config->exercise.exercise != -1) return config->exercise.exercise < 0 ? -1 : config->exercise.exercise;
     for (int i = 0; i < log->count; i++) {
-        const uint8_t *at = log->datagram[i].bytes, *pdu;
-        DisHeader      header;
-        while (dis_next_pdu(&header, &pdu, &at, log->datagram[i].bytes + log->datagram[i].octets, &ignored))
+        const DisDatagram datagram = dis_log_datagram(log, i);
+        const uint8_t    *at = datagram.bytes, *pdu;
+        DisHeader         header;
+        while (dis_next_pdu(&header, &pdu, &at, datagram.bytes + datagram.octets, &ignored))
             heard[header.exercise] += opening_usable(&header, pdu);
     }
     for (int e = 0; e < 256; e++) {

@@ -13,8 +13,11 @@ typedef struct Gathering {
     const LocalFrame *frame;
     const Catalog    *catalog;
     DisEntityId       host, aim;
-    int               voters;
+    int               voters, step; /* step: one report in so many is kept */
 } Gathering;
+
+/* Reports that are kept as evidence; of a longer log every second, third ... one. */
+enum { most_evidence = 1 << 19 };
 
 /* Positions far outside of the landscape are not used. */
 static const double evidence_reach_m = 60000;
@@ -23,8 +26,10 @@ static const double evidence_reach_m = 60000;
 
 void ground_evidence_base(double base_ecef[3], const TrackPoint *point, double below_m)
 {
+    double r[9];
+    track_point_rotation(r, point);
     for (int k = 0; k < 3; k++) /* third column: body z, down */
-        base_ecef[k] = point->p_ecef[k] + below_m * point->r_ecef_from_body[3 * k + 2];
+        base_ecef[k] = point->p_ecef[k] + below_m * r[3 * k + 2];
 }
 
 static const Model *model_of(const Gathering *g, const Track *track, Origin *origin)
@@ -182,12 +187,12 @@ static Status judge_landed(Gathering *g)
 
 /* ---- fixes and lines ---------------------------------------------------------------------- */
 
-static bool add_fix(Gathering *g, const double p_ecef[3], int voter)
+static bool add_fix(Gathering *g, const double p_ecef[3], int voter, bool keep)
 {
     GroundFix fix = {.voter = voter};
     enu_from_ecef(fix.p_enu, g->frame, p_ecef);
     if (!(hypot(fix.p_enu[0], fix.p_enu[1]) < evidence_reach_m)) return false;
-    g->e->fix[g->e->said.fix_count++] = fix;
+    if (keep) g->e->fix[g->e->said.fix_count++] = fix;
     return true;
 }
 
@@ -223,7 +228,7 @@ static void add_voter(Gathering *g, int t, bool landed)
         double            base_ecef[3];
         if (landed ? !*fixed : goes_through_the_air(track, point)) continue;
         ground_evidence_base(base_ecef, point, g->e->below_m[t]);
-        if (!add_fix(g, base_ecef, g->voters + 1)) continue;
+        if (!add_fix(g, base_ecef, g->voters + 1, n % g->step == 0)) continue;
         *fixed = any = true;
         if (last && apart_m(point, last) < step_m) continue;
         add_place(g, base_ecef, false);
@@ -242,10 +247,12 @@ static void add_flight(Gathering *g, int t)
     /* a hit without an entity id: the hit found for the host's own munition */
     if (shot && !target && shot->result == dis_result_entity_impact && dis_entity_id_compare(track->id, g->host) == 0)
         target = survey_track(survey, g->aim);
-    for (int i = 0; i + 1 < track->count; i++)
-        if (!(fixed[i] && fixed[i + 1])) add_line(g, track->point[i].p_ecef, track->point[i + 1].p_ecef);
+    for (int i = 0, next; i + 1 < track->count; i = next) {
+        next = i + g->step < track->count ? i + g->step : track->count - 1;
+        if (!(fixed[i] && fixed[next])) add_line(g, track->point[i].p_ecef, track->point[next].p_ecef);
+    }
     /* a shot that hit had a clear line of sight to its target */
-    for (int i = 0; target && i < track->count; i++) {
+    for (int i = 0; target && i < track->count; i += g->step) {
         TrackPose pose;
         double    centre_ecef[3];
         track_at(&pose, target, track->point[i].t_s);
@@ -269,7 +276,7 @@ static Status add_impacts(Gathering *g)
         const Track *shooter = survey_track(survey, shot->firing);
         int         *mine = &voter[shooter ? shooter - survey->track : survey->track_count];
         g->e->impacts++;
-        if (!add_fix(g, shot->p_burst_ecef, *mine ? *mine : g->voters + 1)) continue;
+        if (!add_fix(g, shot->p_burst_ecef, *mine ? *mine : g->voters + 1, true)) continue;
         if (!*mine) *mine = ++g->voters;
         if (sea && height_m(shot->p_burst_ecef) > g->e->said.sea_h_m + wave_m) add_place(g, shot->p_burst_ecef, false);
     }
@@ -342,10 +349,12 @@ static Status find_sea(Gathering *g)
             const TrackPoint *point = &track->point[n];
             if (last && apart_m(point, last) < 0.25 * model->length_m) continue;
             last = point;
+            double r[9];
+            track_point_rotation(r, point);
             for (int end = -1; end <= 1; end++) {
                 double p_ecef[3];
                 for (int k = 0; k < 3; k++)
-                    p_ecef[k] = point->p_ecef[k] + 0.5 * end * model->length_m * point->r_ecef_from_body[3 * k];
+                    p_ecef[k] = point->p_ecef[k] + 0.5 * end * model->length_m * r[3 * k];
                 add_place(g, p_ecef, true);
             }
         }
@@ -410,9 +419,11 @@ static Status make_room(Gathering *g)
         e->first[t] = points;
         points += (size_t)g->survey->track[t].count;
     }
+    g->step = 1 + (int)(points / most_evidence);
     e->fixed = calloc(points + 1, sizeof *e->fixed);
-    e->fix = calloc(points + shots + 1, sizeof *e->fix);
-    e->line = calloc(2 * points + tracks + 1, sizeof *e->line);
+    const size_t kept = points / (size_t)g->step + tracks;
+    e->fix = calloc(kept + shots + 1, sizeof *e->fix);
+    e->line = calloc(2 * kept + tracks + 1, sizeof *e->line);
     e->place = calloc(3 * points + shots + 1, sizeof *e->place);
     return e->fixed && e->fix && e->line && e->place ? STATUS_OK : STATUS_NO_MEMORY;
 }

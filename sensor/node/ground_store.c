@@ -18,8 +18,15 @@ static Status made_again(TerrainStore *store, const char *path, const char *why)
         log_error("terrain.store: %s cannot be used: %s; make it again with `pitviper terrain import`", path, why);
         return STATUS_BAD_VALUE;
     }
+    char outside[1024];
+    if (terrain_store_foreign(outside, sizeof outside, path, options)) {
+        log_error("terrain.store: %s cannot be used: %s; it was made of %s, outside its own folder: where you trust that, "
+                  "`pitviper terrain again %s` makes it again", path, why, outside, path);
+        free(options);
+        return STATUS_BAD_VALUE;
+    }
     log_print("ground: %s cannot be used: %s; it is made again with the options that it was made with\n", path, why);
-    Status status = terrain_store_rebuild(path, options);
+    Status status = terrain_store_rebuild(path, options, false);
     free(options);
     if (status == STATUS_OK) return store_open(store, path);
     log_error("terrain.store: %s cannot be used: %s, nor made again; run `pitviper terrain import` with sources that "
@@ -27,10 +34,16 @@ static Status made_again(TerrainStore *store, const char *path, const char *why)
     return status;
 }
 
+static const char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 /* Opens the store; made again before where its sources have changed. */
 static Status open_fresh(TerrainStore *store, Choices *choices, const char *path)
 {
-    char        which[1024];
+    char        which[1024], outside[1024];
     const char *why;
     Status      status = store_open_why(store, &why, path);
     if (status == STATUS_BAD_VALUE || status == STATUS_UNSUPPORTED) return made_again(store, path, why);
@@ -45,8 +58,13 @@ static Status open_fresh(TerrainStore *store, Choices *choices, const char *path
         return STATUS_OK;
     case STORE_CHANGED: break;
     }
+    if (terrain_store_foreign(outside, sizeof outside, path, store->options)) {
+        choice_add(choices, "ground: the terrain store is used as it is: %.50s has changed, but %.50s lies outside the store's "
+                   "own folder (`pitviper terrain again`)", name_of(which), name_of(outside));
+        return STATUS_OK;
+    }
     log_print("ground: %s has changed since %s was made of it (%s); it is made again\n", which, path, store->made);
-    status = terrain_store_rebuild(path, store->options);
+    status = terrain_store_rebuild(path, store->options, false);
     store_close(store);
     return status == STATUS_OK ? store_open(store, path) : status;
 }

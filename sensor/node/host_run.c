@@ -5,9 +5,11 @@
 #include "sensor/world/frame_world.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/publish/image_file.h"
+#include "sensor/publish/memory/consume_memory.h"
 #include "sensor/publish/video/consume_video.h"
 #include "sensor/quality/quality.h"
 #include "sensor/settings/band_choice.h"
+#include "sensor/settings/plane_choice.h"
 #include "sensor/node/shape_choice.h"
 #include "sensor/node/woods_choice.h"
 #include "terrain/elevation/gdal_library.h"
@@ -42,6 +44,13 @@ Status run_prepare(Run *run)
     if (!run->options.config.publish.truth)
         choice_add(&run->choices, "truth: no truth.jsonl and no hashes of frames (publish.truth)");
     if (!bands_choose(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
+    unsigned planes = planes_none;
+    plane_choice_parse(&planes, run->options.config.publish.planes);
+    if (planes != planes_all && planes >> PLANE_EMISSIVITY & 1 && !(run->bands & (1u << BAND_MWIR | 1u << BAND_LWIR))) {
+        log_error("%s: publish.planes: emissivity is of thermal bands, and none is rendered; add mwir or lwir to sensor.bands",
+                  options_command(&run->options));
+        return STATUS_BAD_VALUE;
+    }
     Status status = config_own_tables(&run->options.config);
     if (status != STATUS_OK) return status;
     status = quality_choose(&run->options.config, &run->choices, run->bands);
@@ -71,8 +80,11 @@ Status run_survey(Run *run, const DisLog *heard)
     const DisCounters *counters = &run->survey.counters;
     for (int i = 0; i < DIS_DROP_COUNT; i++)
         if (counters->dropped[i])
-            log_warn("%s: dropped: %s=%llu", options_command(o), dis_drop_name((DisDrop)i),
-                     (unsigned long long)counters->dropped[i]);
+            log_warn("%s: dropped: %s=%llu: %s", options_command(o), dis_drop_name((DisDrop)i),
+                     (unsigned long long)counters->dropped[i], dis_drop_cause((DisDrop)i));
+    if (counters->lengths_made)
+        log_warn("%s: %llu PDUs have a length field of 0, which their sender should set: taken by their type and the "
+                 "datagram's length", options_command(o), (unsigned long long)counters->lengths_made);
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     status = catalog_open(&run->catalog, path, o->config.models.sag_m);
     if (status == STATUS_OK) status = tables_used(&run->tables, &o->config, path);
@@ -116,7 +128,8 @@ static Status write_run(const Run *run, const char *out, const char *host, const
                         const SessionResult *result, const DisCounters *heard, const WoodsChoice *woods,
                         const char *state)
 {
-    char        path[path_size + 16], settings[config_text_size];
+    char        path[path_size + 16], settings[config_text_size], ring[memory_name_size];
+    const Config *config = &run->options.config;
     const char *choice[choices_capacity], *hosts[session_hosts_kept];
     const char *table[tables_used_max], *table_sha256[tables_used_max];
     double      stage_ms[session_stages][3];
@@ -140,6 +153,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
         log_detail("%s: %s: %.3g ms a frame (median; 95 %%: %.3g; most: %.3g)", options_command(&run->options),
                    session_stage_name[i], stage_ms[i][0], stage_ms[i][1], stage_ms[i][2]);
     snprintf(path, sizeof path, "%s/run.json", out);
+    memory_name(ring, config, run->options.host_count > 1 ? host : NULL);
     const DisLogCounters *link = run->link;
     const WoodsRecord     plants = {.woods = &woods->woods, .paths = woods->config.path_count,
                                     .entities = woods->entities, .in_trunks = woods->in_trunks};
@@ -165,7 +179,10 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .effects = result->effects, .render = result->counters, .stage_count = session_stages,
               .stage = session_stage_name,
               .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL,
-              .woods = woods->on ? &plants : NULL};
+              .woods = woods->on ? &plants : NULL,
+              .memory = *config->publish.memory ? ring : NULL, .detections_port = config->publish.detections_port,
+              .answers = config->publish.detections_port ? &result->answers : NULL,
+              .materials = &run->world.materials};
     const Status status = record_write_run(path, &record);
     free(hash);
     return status;
@@ -207,6 +224,46 @@ static void report_air_temp(Choices *choices, const Config *config, const Atmosp
                    "where this ground lies (weather.air_temp_k)", here_k - 273.15, high_k - 273.15, ground_m);
 }
 
+static Status choose_who(HostPlan *plan, Choices *choices, Run *run, const DisEntityId *host)
+{
+    const Config *config = &run->options.config;
+    return host ? plan_host(plan, choices, &run->survey, config, *host) : choose_host(plan, choices, &run->survey, config);
+}
+
+/* Causal: nothing is rendered of the time before the choices; the end is open. */
+static void open_span(HostPlan *plan, const Run *run, const Player *player)
+{
+    if (!run->options.config.causal) return;
+    plan->start_s = player_time_s(player, run->until_s);
+    plan->end_s   = INFINITY;
+}
+
+static FrameGrid grid_of(const HostPlan *plan)
+{
+    return (FrameGrid){ceil(plan->start_s * plan->rate_hz - 1e-9), plan->rate_hz};
+}
+
+Status run_check(Run *run, const DisEntityId *host)
+{
+    HostPlan plan    = {0};
+    Player  *player  = NULL;
+    Choices *choices = malloc(sizeof *choices); /* made again by run_host, in its order */
+    if (!choices) return STATUS_NO_MEMORY;
+    *choices      = run->choices;
+    Status status = choose_who(&plan, choices, run, host);
+    if (status == STATUS_OK) status = player_create(&player, run->exercise, run->options.config.causal);
+    if (status == STATUS_OK && run->options.config.causal) status = player_add_log(player, &run->view);
+    if (status == STATUS_OK) {
+        open_span(&plan, run, player);
+        choose_rate(&plan, choices, &run->options.config);
+        const FrameGrid grid = grid_of(&plan);
+        status               = run->check ? run->check(run, player, &plan, &grid) : STATUS_OK;
+    }
+    player_destroy(player);
+    free(choices);
+    return status;
+}
+
 /* The world, with its messages. */
 static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, GroundContact *contact, WoodsChoice *woods,
                      Choices *choices, Run *run, const DisEntityId *host)
@@ -214,8 +271,7 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     const Options *o     = &run->options;
     World         *world = &run->world;
     LocalFrame     frame;
-    Status         status = host ? plan_host(plan, choices, &run->survey, &o->config, *host)
-                                 : choose_host(plan, choices, &run->survey, &o->config);
+    Status         status = choose_who(plan, choices, run, host);
     if (status == STATUS_OK) status = choose_frame(&frame, &run->survey, plan);
     if (status == STATUS_OK && *o->config.terrain.store) {
         const LocalFrame aim = frame;
@@ -291,11 +347,7 @@ Status run_host(Run *run, const DisEntityId *host)
     if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.causal);
     if (status == STATUS_OK) status = player_add_log(player, &run->view);
     if (status != STATUS_OK) goto done;
-    if (o->config.causal) { /* nothing is rendered of the time before the choices; the end is open */
-        plan.start_s = player_time_s(player, run->until_s);
-        plan.end_s   = INFINITY;
-    }
-
+    open_span(&plan, run, player);
     run_folder(out, o, plan.host);
     const DisOf dis = {.config = &o->config, .bands = run->bands, .version = run->first.version,
                        .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
@@ -309,10 +361,12 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .note = run->note, .notes = run->view.notes,
                                   .clock = run->clock, .save_count = o->save_count, .save = o->save,
                                   .several = o->host_count > 1, .isa = o->isa, .woods = woods.on ? &woods.config : NULL};
-    const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
+    const FrameGrid     grid = grid_of(&plan);
     status = session_open(&session, &shared, &plan, player, out);
     if (status != STATUS_OK) goto done;
     status = run->frames(run, session, player, &plan, &grid);
+    if (status == STATUS_OK) status = player_status(player);
+    if (status == STATUS_OK && dis_log_failed(&run->view)) status = STATUS_IO;
     snprintf(host_text, sizeof host_text, "%s", session_host(session));
     const Status closed = session_close(session, &result);
     if (status == STATUS_OK) status = closed;
@@ -320,7 +374,7 @@ Status run_host(Run *run, const DisEntityId *host)
         run->live->files_failed   = (uint64_t)result.files_failed;
         run->live->files_left_out = (uint64_t)result.files_left_out;
     }
-    if (result.frames > 0 || run->live || run->stopped) {
+    if (result.frames > 0 || (result.begun && (run->live || run->stopped))) {
         const char  *state   = status != STATUS_OK ? "failed" : run->stopped ? "stopped" : "complete";
         const Status written = conclude(run, out, host_text, &choices, &result,
                                         o->config.causal ? player_counters(player) : &run->survey.counters, &woods, state);

@@ -35,6 +35,8 @@ struct Run {
     Choices   choices;           /* shared by all hosts */
     Sensors   sensors;
     TablesUsed tables;           /* in run.json */
+    /* Whether there are frames to be rendered, before the world is set up; may be NULL. */
+    Status  (*check)(Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid);
     /* Renders the frames. */
     Status  (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
     void    (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
@@ -49,6 +51,8 @@ struct Run {
 Status run_prepare(Run *run);
 /* Exercise and survey from the received datagrams; catalog and pool. */
 Status run_survey(Run *run, const DisLog *heard);
+/* Host, aim and span of a host as run_host has them: what is wrong with them is logged, in a second. */
+Status run_check(Run *run, const DisEntityId *host);
 /* One host: its own ground and frame, its own folder when there are several. host: NULL: as configured, or chosen. */
 Status run_host(Run *run, const DisEntityId *host);
 void   run_close(Run *run);

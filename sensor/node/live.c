@@ -1,5 +1,6 @@
 /* sensor/node/live.c: `pitviper run`: receives, makes the choices, then renders frame after frame by the clock. */
 #include "sensor/node/live.h"
+#include "pitviper_output.h"
 
 #include "dis/steady_clock.h"
 #include "sensor/publish/frame_files.h"
@@ -18,6 +19,7 @@
 #include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <strings.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -333,7 +335,6 @@ static Status open_network(Live *l)
 {
     Config      *config = &l->run.options.config;
     DisUdpConfig udp;
-    char         comment[dis_udp_where_size + 40];
     if (config->exercise.port == dis_port_any) {
         log_error("run: exercise.port: 0 is any port, for a recording; a node listens on one, 1 .. 65535");
         return STATUS_BAD_VALUE;
@@ -341,14 +342,25 @@ static Status open_network(Live *l)
     udp = dis_network(config);
     dis_udp_where(l->where, &udp);
     dis_network_to(l->to, &udp);
-    Status status = dis_udp_open(&l->udp, &udp);
+    return dis_udp_open(&l->udp, &udp);
+}
+
+/* Its folder, videos and recording: everything else is known to be right. */
+static Status open_files(Live *l)
+{
+    const Options *o      = &l->run.options;
+    const Config  *config = &o->config;
+    char           comment[dis_udp_where_size + 40];
+    Status         status = STATUS_OK;
+    if (*config->record.path) status = overwrite_file("run", config->record.path, o->overwrite);
+    if (status == STATUS_OK) status = overwrite_folder("run", o->out, o->overwrite);
+    if (status == STATUS_OK) status = overwrite_video("run", config, l->run.bands, NULL, o->overwrite);
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
-    const size_t length = strlen(config->record.path);
-    if (strcmp(config->radar.preset, "none") != 0 && length > 5 && strcmp(config->record.path + length - 5, ".pcap") == 0)
+    if (strcmp(config->radar.preset, "none") != 0 && strcasecmp(output_ending(config->record.path), ".pcap") == 0)
         log_warn("run: %s has no room for which frames are without radar (pcap): a replay has it in all; name it .pcapng",
                  config->record.path);
-    return live_recording_open(&l->recording, config->record.path, comment, l->udp, udp.port);
+    return live_recording_open(&l->recording, config->record.path, comment, l->udp, dis_network(config).port);
 }
 
 /* The time of a frame on this machine, measured once: the only clock that a choice of quality depends on. Reported
@@ -415,15 +427,11 @@ static Status run_node(Live *l)
 {
     bool   heard;
     const Options *o = &l->run.options;
-    Status status = overwrite_folder("run", o->out, o->overwrite);
-    if (status == STATUS_OK && *o->config.record.path)
-        status = overwrite_file("run", o->config.record.path, o->overwrite);
-    if (status == STATUS_OK) status = measure_machine(l);
+    Status status = measure_machine(l);
     if (status == STATUS_OK) status = run_prepare(&l->run);
-    if (status == STATUS_OK) status = overwrite_video("run", &o->config, l->run.bands, NULL, o->overwrite);
-    /* now, not hours later when the first entity is received */
-    if (status == STATUS_OK) status = frame_files_folder(l->run.options.out);
     if (status == STATUS_OK) status = open_network(l);
+    /* now, not hours later when the first entity is received; the socket first: an older recording must not be lost for nothing */
+    if (status == STATUS_OK) status = open_files(l);
     if (status != STATUS_OK) return status;
     l->begun_s = l->shown_s = wall_clock_s();
     health_begin(&l->health, l->begun_s);

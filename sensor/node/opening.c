@@ -18,8 +18,10 @@ bool opening_own(const DisDatagram *datagram, const Config *config)
 int opening_drop_own(DisLog *log, const Config *config)
 {
     int kept = 0;
-    for (int i = 0; i < log->count; i++)
-        if (!opening_own(&log->datagram[i], config)) log->datagram[kept++] = log->datagram[i];
+    for (int i = 0; i < log->count; i++) {
+        const DisDatagram datagram = dis_log_datagram(log, i);
+        if (!opening_own(&datagram, config)) log->datagram[kept++] = log->datagram[i];
+    }
     const int own = log->count - kept;
     log->count    = kept;
     return own;
@@ -55,7 +57,10 @@ double opening_until_s(const DisDatagram *starts, const Config *config)
 bool opening_of(DisLog *view, DisLog *heard, double *until_s, const DisLog *log, const Config *config)
 {
     int starts = 0, end;
-    while (starts < log->count && !opening_starts(NULL, &log->datagram[starts], config)) starts++;
+    for (; starts < log->count; starts++) {
+        const DisDatagram datagram = dis_log_datagram(log, starts);
+        if (opening_starts(NULL, &datagram, config)) break;
+    }
     if (starts == log->count) return false;
     *until_s = opening_until_s(&log->datagram[starts], config);
     for (end = starts; end < log->count && log->datagram[end].capture_s <= *until_s;) end++;

@@ -4,26 +4,39 @@
 #include "dis/datagram.h"
 #include "dis/enumerations.h"
 #include "dis/exercise_clock.h"
+#include "dis/log_file.h"
 
 #include <stdlib.h>
 
-enum { shots_kept = 1024, munitions_kept = 256 };
+enum { shots_kept = 1024, munitions_kept = 256, read_ahead = 65536 /* events */ };
+
+typedef enum Where { IN_LOG, ON_DISK, KEPT } Where;
 
 typedef struct Event {
     double         counts_s, t_s; /* time from which it counts; its own exercise time */
     uint32_t       order;
     uint16_t       length;
-    uint8_t        type;
-    bool           kept;
+    uint8_t        type, where;
     union {
-        const uint8_t *octets;
-        size_t         at; /* in the stored octets */
+        const uint8_t *octets; /* in the log */
+        uint64_t       at;     /* on disk, or in the stored octets */
     };
 } Event;
+
+/* How far datagrams have been heard, in the order of arrival. */
+typedef struct Hearing {
+    ExerciseClock *clock;
+    double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
+} Hearing;
+
+/* A munition unheard for this long is no host to go to. */
+static const double munition_silent_s = 4;
 
 /* Received ids of one kind: a ring of the latest. */
 typedef struct Munitions {
     DisEntityId id[munitions_kept];
+    double      heard_s[munitions_kept]; /* of the latest report in flight */
+    bool        spent[munitions_kept];   /* it detonated */
     uint64_t    count;
 } Munitions;
 
@@ -33,14 +46,23 @@ typedef struct Aimed {
 
 struct Player {
     bool           causal, sorted;
-    int            exercise, count, next, capacity;
+    int            exercise, count, next, capacity; /* events next .. count - 1 are to be fed */
     uint32_t       order;
     Event         *event;
     uint8_t       *octets; /* of the octets stored until they are fed */
     size_t         octets_used, octets_capacity;
-    ExerciseClock *clock;
-    double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
+    Hearing        heard;           /* of what was added */
+    /* A log was added as a whole, and is read again as far as it is fed: by stamp so far ahead that what comes later in
+     * the file counts later, too. */
+    const DisLog  *log;             /* NULL: none */
+    int            log_next;        /* next datagram */
+    Hearing        reading;
+    double         late_s;          /* no PDU is stamped earlier than this before one ahead of it in the file */
+    double         read_s;          /* the latest stamp read; causal: the latest arrival */
+    int            ahead;           /* events that are read before some are fed */
+    Status         status;
     double         fed_s;           /* counts_s of the newest event fed */
+    double         now_s;           /* until which it was fed */
     DisCounters    counters;
     DisPdu         pdu;                          /* the PDU being fed */
     Aimed          aimed[shots_kept];            /* rings: the latest */
@@ -55,10 +77,12 @@ Status player_create(Player **out, int exercise, bool causal)
     if (!player) return STATUS_NO_MEMORY;
     player->exercise = exercise;
     player->causal   = causal;
-    player->tie_s    = NAN;
-    player->latest_s = -INFINITY;
+    player->heard    = player->reading = (Hearing){NULL, NAN, -INFINITY};
+    player->ahead    = read_ahead;
+    player->read_s   = -INFINITY;
     player->fed_s    = -INFINITY;
-    const Status status = exercise_clock_create(&player->clock);
+    player->now_s    = -INFINITY;
+    const Status status = exercise_clock_create(&player->heard.clock);
     if (status == STATUS_OK) *out = player;
     else player_destroy(player);
     return status;
@@ -67,7 +91,8 @@ Status player_create(Player **out, int exercise, bool causal)
 void player_destroy(Player *player)
 {
     if (!player) return;
-    exercise_clock_destroy(player->clock);
+    exercise_clock_destroy(player->heard.clock);
+    exercise_clock_destroy(player->reading.clock);
     free(player->octets);
     free(player->event);
     free(player);
@@ -107,7 +132,7 @@ static Status keep_octets(size_t *at, Player *player, const uint8_t *pdu, size_t
 /* Counts stamps that are not a clock; of a live sender it is reported once, of a log by the survey. */
 static void note_anomalies(Player *player, bool say)
 {
-    const ExerciseClockAnomalies *doubts = exercise_clock_anomalies(player->clock);
+    const ExerciseClockAnomalies *doubts = exercise_clock_anomalies(player->heard.clock);
     char                       text[exercise_clock_anomaly_text_size];
     player->counters.stamps_doubted = doubts->by_arrival;
     for (; player->anomalies_reported < doubts->count; player->anomalies_reported++) {
@@ -117,40 +142,86 @@ static void note_anomalies(Player *player, bool say)
     }
 }
 
-Status player_add(Player *player, const DisDatagram *datagram, bool keep)
+static Status store(Player *player, Event *event, const DisDatagram *datagram, const uint8_t *pdu)
+{
+    Status         status = STATUS_OK;
+    const uint64_t within = (uint64_t)(pdu - datagram->bytes);
+    event->order = player->order++;
+    if (event->where == KEPT) {
+        size_t at = 0;
+        status    = keep_octets(&at, player, pdu, event->length);
+        event->at = at;
+    } else if (event->where == ON_DISK) {
+        event->at += within;
+    } else {
+        event->octets = pdu;
+    }
+    return status == STATUS_OK ? add_event(player, event) : status;
+}
+
+/* The PDUs of a datagram. place: of what it is stored as, type and octets being filled in; NULL: it is only counted. */
+static Status hear(Player *player, Hearing *h, const DisDatagram *datagram, const Event *place, DisCounters *counters)
 {
     const uint8_t *at = datagram->bytes, *pdu;
-    Event          event = {.kept = keep};
     DisHeader      header;
-    player->counters.datagrams++;
-    while (dis_next_pdu(&header, &pdu, &at, datagram->bytes + datagram->octets, &player->counters)) {
+    counters->datagrams++;
+    while (dis_next_pdu(&header, &pdu, &at, datagram->bytes + datagram->octets, counters)) {
         if (player->exercise >= 0 && header.exercise != player->exercise) {
-            player->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
+            counters->dropped[DIS_DROP_OTHER_EXERCISE]++;
             continue;
         }
-        event.t_s = exercise_clock_pdu_time(player->clock, &header, pdu, datagram->capture_s);
-        if (isnan(event.t_s)) continue;
-        note_anomalies(player, keep);
-        if (isnan(player->tie_s)) player->tie_s = event.t_s - datagram->capture_s;
-        player->latest_s = fmax(player->latest_s, datagram->capture_s + player->tie_s);
-        event.counts_s   = player->causal ? player->latest_s : event.t_s;
-        event.order      = player->order++;
-        event.length     = header.length;
-        event.type       = header.type;
-        Status status    = STATUS_OK;
-        if (keep) status = keep_octets(&event.at, player, pdu, header.length);
-        else event.octets = pdu;
-        if (status == STATUS_OK) status = add_event(player, &event);
+        const double t_s = exercise_clock_pdu_time(h->clock, &header, pdu, datagram->capture_s);
+        if (isnan(t_s)) continue;
+        if (h == &player->heard) note_anomalies(player, place != NULL);
+        if (isnan(h->tie_s)) h->tie_s = t_s - datagram->capture_s;
+        h->latest_s = fmax(h->latest_s, datagram->capture_s + h->tie_s);
+        const double counts_s = player->causal ? h->latest_s : t_s;
+        if (!(counts_s >= player->read_s - player->late_s)) player->late_s = player->read_s - counts_s;
+        player->read_s = fmax(player->read_s, counts_s);
+        if (!place) continue;
+        Event event = *place;
+        event.t_s = t_s, event.counts_s = counts_s, event.length = header.length, event.type = header.type;
+        const Status status = store(player, &event, datagram, pdu);
         if (status != STATUS_OK) return status;
     }
     return STATUS_OK;
 }
 
+Status player_add(Player *player, const DisDatagram *datagram, bool keep)
+{
+    const Event place = {.where = keep ? KEPT : IN_LOG};
+    return hear(player, &player->heard, datagram, &place, &player->counters);
+}
+
+/* One pass for the counters, the end, and how late a PDU may be; they are stored when they are fed. */
 Status player_add_log(Player *player, const DisLog *log)
 {
-    Status status = STATUS_OK;
-    for (int i = 0; i < log->count && status == STATUS_OK; i++) status = player_add(player, &log->datagram[i], false);
+    Status status = exercise_clock_create(&player->reading.clock);
+    for (int i = 0; i < log->count && status == STATUS_OK; i++) {
+        const DisDatagram datagram = dis_log_datagram(log, i);
+        status = hear(player, &player->heard, &datagram, NULL, &player->counters);
+    }
+    player->log    = log;
+    player->late_s += 1e-6; /* what rounding leaves of it */
+    player->read_s = -INFINITY;
     return status;
+}
+
+/* Datagrams of the log until every PDU that counts at or before t_s has been read, or some more events are there. Returns
+ * the time up to which all that count have been read. */
+static double read_log(Player *player, double t_s)
+{
+    DisCounters    ignored = {0};
+    const DisLog  *log = player->log;
+    while (log && player->status == STATUS_OK && player->log_next < log->count && player->count - player->next < player->ahead &&
+           !(player->read_s - player->late_s > t_s)) {
+        const DisDatagram *entry = &log->datagram[player->log_next];
+        const bool         disk = entry->packet & dis_datagram_on_disk;
+        const DisDatagram  datagram = dis_log_datagram(log, player->log_next++);
+        const Event        place = {.where = disk ? ON_DISK : IN_LOG, .at = disk ? entry->at : 0};
+        player->status = hear(player, &player->reading, &datagram, &place, &ignored);
+    }
+    return log && player->log_next < log->count ? player->read_s - player->late_s : INFINITY;
 }
 
 /* ---- output ------------------------------------------------------------------------------------- */
@@ -168,11 +239,12 @@ static void note_fire(Player *player, const DisFire *fire)
     player->aimed[player->shots++ % shots_kept] = (Aimed){fire->munition, fire->target};
 }
 
-static bool munition_known(const Munitions *m, DisEntityId id)
+/* Its place in the ring; -1: none. */
+static int munition_index(const Munitions *m, DisEntityId id)
 {
-    for (uint64_t i = 0; i < m->count && i < munitions_kept; i++)
-        if (dis_entity_id_compare(m->id[i], id) == 0) return true;
-    return false;
+    for (int i = 0; (uint64_t)i < m->count && i < munitions_kept; i++)
+        if (dis_entity_id_compare(m->id[i], id) == 0) return i;
+    return -1;
 }
 
 static bool moves(const float velocity_mps[3])
@@ -183,20 +255,36 @@ static bool moves(const float velocity_mps[3])
 }
 
 /* Guided ones from their first report on; others from the first in which they move. */
-static void note_munition(Player *player, const DisEntityState *state)
+static void note_munition(Player *player, const DisEntityState *state, double t_s)
 {
     const bool guided = state->type.category == dis_munition_guided;
     if (state->type.kind != dis_kind_munition || state->type.category == dis_munition_fixed) return;
     if (!guided && !moves(state->velocity_mps)) return;
     Munitions *m = guided ? &player->guided : &player->unguided;
-    if (!munition_known(m, state->id)) m->id[m->count++ % munitions_kept] = state->id;
+    const int known = munition_index(m, state->id), i = known >= 0 ? known : (int)(m->count++ % munitions_kept);
+    /* heard again after a silence, the id is another munition's */
+    if (known < 0 || t_s - m->heard_s[i] > munition_silent_s) m->spent[i] = false;
+    m->id[i]      = state->id;
+    m->heard_s[i] = t_s;
+}
+
+static void note_detonation(Player *player, const DisDetonation *burst)
+{
+    Munitions *const kind[] = {&player->guided, &player->unguided};
+    for (int k = 0; k < 2 && !dis_entity_id_is_none(burst->munition); k++) {
+        const int i = munition_index(kind[k], burst->munition);
+        if (i >= 0) kind[k]->spent[i] = true;
+    }
 }
 
 /* Decoded here, once: until then a PDU is stored as octets. */
 static void feed_event(Player *player, EntityTable *table, const Event *event)
 {
-    const uint8_t *octets = event->kept ? player->octets + event->at : event->octets;
+    const uint8_t *octets = event->where == KEPT      ? player->octets + event->at
+                            : event->where == ON_DISK ? dis_log_file_octets(player->log->file, event->at, event->length)
+                                                      : event->octets;
     DisPdu        *pdu    = &player->pdu;
+    if (!octets) return; /* the log says so */
     const Status   status = dis_decode(pdu, octets, event->length);
     if (status != STATUS_OK) {
         if (isfinite(event->t_s)) dis_count_refused(&player->counters, event->type, status);
@@ -204,36 +292,55 @@ static void feed_event(Player *player, EntityTable *table, const Event *event)
     }
     entity_table_pdu(table, pdu, event->t_s, &player->counters);
     if (pdu->type == dis_pdu_fire) note_fire(player, &pdu->fire);
-    if (pdu->type == dis_pdu_entity_state) note_munition(player, &pdu->entity_state);
+    if (pdu->type == dis_pdu_entity_state) note_munition(player, &pdu->entity_state, event->counts_s);
+    if (pdu->type == dis_pdu_detonation) note_detonation(player, &pdu->detonation);
 }
 
-void player_feed(Player *player, EntityTable *table, double t_s)
+static void feed_until(Player *player, EntityTable *table, double t_s)
 {
-    if (!player->sorted && !player->causal && player->count > 1)
-        qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
+    const size_t left = (size_t)(player->count - player->next);
+    if (!player->sorted && !player->causal && left > 1)
+        qsort(player->event + player->next, left, sizeof *player->event, compare_events);
     player->sorted = true; /* arrivals are ordered already */
+    player->now_s  = fmax(player->now_s, t_s);
     for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++) {
         feed_event(player, table, &player->event[player->next]);
         player->fed_s = player->event[player->next].counts_s;
     }
-    if (player->causal && player->next == player->count) { /* of a live node only datagrams not yet fed take memory */
+    if (player->next == player->count) { /* only what is not fed yet takes memory */
         player->next = player->count = 0;
         player->octets_used          = 0;
+    } else if (player->log && player->next > player->count / 2) {
+        memmove(player->event, player->event + player->next, (size_t)(player->count - player->next) * sizeof *player->event);
+        player->count -= player->next;
+        player->next = 0;
+    }
+}
+
+void player_feed(Player *player, EntityTable *table, double t_s)
+{
+    for (bool more = true; more;) {
+        const double all_s = read_log(player, t_s);
+        more = !(all_s > t_s) && player->status == STATUS_OK;
+        const int had = player->count - player->next;
+        feed_until(player, table, fmin(t_s, all_s));
+        /* clocks that differ by more than what may be read ahead: the room grows */
+        if (more && had == player->count - player->next && player->ahead < 1 << 29) player->ahead *= 2;
     }
 }
 
 /* ---- queries ----------------------------------------------------------------------------------- */
 
-double player_time_s(const Player *player, double capture_s) { return capture_s + player->tie_s; }
-double player_last_s(const Player *player) { return player->latest_s; }
+double player_time_s(const Player *player, double capture_s) { return capture_s + player->heard.tie_s; }
+double player_last_s(const Player *player) { return player->heard.latest_s; }
 double player_fed_s(const Player *player) { return player->fed_s; }
 
 double player_arrival_s(const Player *player, double t_s)
 {
-    double capture_s = t_s - player->tie_s;
+    double capture_s = t_s - player->heard.tie_s;
     /* the difference is rounded; the sum decides */
-    while (capture_s + player->tie_s > t_s) capture_s = nextafter(capture_s, -INFINITY);
-    for (double next_s; (next_s = nextafter(capture_s, INFINITY)) + player->tie_s <= t_s;) capture_s = next_s;
+    while (capture_s + player->heard.tie_s > t_s) capture_s = nextafter(capture_s, -INFINITY);
+    for (double next_s; (next_s = nextafter(capture_s, INFINITY)) + player->heard.tie_s <= t_s;) capture_s = next_s;
     return capture_s;
 }
 
@@ -254,12 +361,20 @@ static bool is_there(const EntityTable *table, DisEntityId id)
     return entity_table_alive(table, entity_table_find(table, id));
 }
 
-static bool first_there(DisEntityId *id, const Munitions *m, const EntityTable *table)
+bool player_spent(const Player *player, DisEntityId munition)
+{
+    const int guided = munition_index(&player->guided, munition), other = munition_index(&player->unguided, munition);
+    return (guided >= 0 && player->guided.spent[guided]) || (other >= 0 && player->unguided.spent[other]);
+}
+
+/* The one received first of those in the table that fly still. */
+static bool first_there(DisEntityId *id, const Munitions *m, const EntityTable *table, double now_s)
 {
     const uint64_t kept = m->count < munitions_kept ? m->count : munitions_kept;
     for (uint64_t i = m->count - kept; i < m->count; i++) {
-        if (!is_there(table, m->id[i % munitions_kept])) continue;
-        *id = m->id[i % munitions_kept];
+        const uint64_t k = i % munitions_kept;
+        if (m->spent[k] || now_s - m->heard_s[k] > munition_silent_s || !is_there(table, m->id[k])) continue;
+        *id = m->id[k];
         return true;
     }
     return false;
@@ -272,9 +387,12 @@ bool player_munition(DisEntityId *munition, bool *guided, const Player *player, 
                        entity_table_type(&type, table, entity_table_find(table, *munition));
     /* by its type, not by whether it is among the latest: a salvo must not move the sensor to another host */
     *guided = there && type.kind == dis_kind_munition && type.category == dis_munition_guided;
-    if (*guided) return true;
-    if (first_there(munition, &player->guided, table)) return *guided = true;
-    return there || first_there(munition, &player->unguided, table);
+    const bool spent = there && player_spent(player, *munition);
+    if (*guided && !spent) return true;
+    if (first_there(munition, &player->guided, table, player->now_s)) return *guided = true;
+    if (there && (!spent || player->guided.count > 0)) return true;
+    if (player->guided.count > 0) return false; /* its own burst, not a shell's flight, ends what a guided one shows */
+    return first_there(munition, &player->unguided, table, player->now_s) || there;
 }
 
 static uint64_t beyond(uint64_t count, uint64_t kept) { return count > kept ? count - kept : 0; }
@@ -286,3 +404,4 @@ void player_forgotten(uint64_t *shots, uint64_t *munitions, const Player *player
 }
 
 const DisCounters *player_counters(const Player *player) { return &player->counters; }
+Status player_status(const Player *player) { return player->status; }

@@ -18,7 +18,8 @@ void   player_destroy(Player *player);
 
 /* Next datagram in order of arrival. keep: its octets are copied, else they must outlive the player. */
 Status player_add(Player *player, const DisDatagram *datagram, bool keep);
-/* All datagrams of a log, which must outlive the player. */
+/* All datagrams of a log, which must outlive the player and is read again as it is fed: a PDU takes 32 octets from where the
+ * log is read to until it is fed. */
 Status player_add_log(Player *player, const DisLog *log);
 
 /* Feeds everything that counts at or before t_s and was not fed before. Timed-out entities are removed by the
@@ -37,16 +38,21 @@ enum { munition_still_mps = 1 }; /* an unguided munition slower than this is at 
 
 /* Target of the latest Fire fed that names this munition. */
 bool   player_target(DisEntityId *target, const Player *player, DisEntityId munition);
+/* Whether a Detonation named it, and no report came after a silence since. */
+bool   player_spent(const Player *player, DisEntityId munition);
 /* The munition that is the host now, of those fed. munition: in and out (0:0:0: none so far). A guided one
- * (SISO-REF-010, category 1) that is in the table stays; else the guided one received first of those in the table;
- * else the present one, while it is in the table; else the one received first that is neither guided nor fixed and
- * has moved. Fixed ones (category 3: mines) are never the host. False, and nothing changed: there is none. Of each
- * kind the latest 256 are stored. */
+ * (SISO-REF-010, category 1) that is in the table and has not detonated stays; else the guided one received first of
+ * those in the table; else the present one, while it is in the table; else, unless a guided one has flown, the one
+ * received first that is neither guided nor fixed and moves. None becomes the host that was not heard within 4 s or has
+ * detonated. Fixed ones (category 3: mines) are never the host. False, and nothing changed: there is none. Of each kind
+ * the latest 256 are stored. */
 bool   player_munition(DisEntityId *munition, bool *guided, const Player *player, const EntityTable *table);
 
 /* Fire PDUs and munitions dropped for newer ones, since only the latest are stored. */
 void   player_forgotten(uint64_t *shots, uint64_t *munitions, const Player *player);
 
+/* STATUS_NO_MEMORY: there was no room for what was to be fed. */
+Status player_status(const Player *player);
 const DisCounters *player_counters(const Player *player); /* all PDUs added, and those of them that the table
                                                            * rejected */
 

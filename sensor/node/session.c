@@ -130,13 +130,13 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
     frame_expose(&noise, s->chain, &seen->picture, shared->config);
     r->target_count = truth_targets(target, &seen->picture, shared->world, &seen->snapshot, &f->request, &eye->state,
                                     &noise);
-    r->target       = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
-    if (!r->target) return STATUS_NO_MEMORY;
     if (s->wants & WANT_ERROR &&
         frame_error(&f->error, &seen->picture, shared->world, &seen->snapshot, &f->request, target, r->target_count,
                     shared->config->models.sag_m, shared->contact == GROUND_CONTACT_ALL,
                     world_air_k(shared->world, f->unix_s)))
         r->error = &f->error;
+    r->target       = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
+    if (!r->target) return STATUS_NO_MEMORY;
     if (s->wants & WANT_ERROR && f->request.budget && f->radar) {
         radar_error(&f->radar_error, f->radar, &seen->snapshot);
         r->radar_error = &f->radar_error;
@@ -220,7 +220,8 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     f->times.render_s   = posed_s;
     f->times.rendered_s = f->provenance.rendered_s;
     *shown = true;
-    return save_frame(s, f, &eye);
+    status = session_begin_files(s);
+    return status == STATUS_OK ? save_frame(s, f, &eye) : status;
 }
 
 /* ---- the loop ------------------------------------------------------------------------------- */
@@ -330,6 +331,7 @@ static Status open_session(Session *s)
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
                     const char *folder)
 {
+    char     earlier[frame_path_size];
     Session *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
     s->shared = shared;
@@ -339,7 +341,9 @@ Status session_open(Session **out, const SessionShared *shared, const HostPlan *
     Status status = STATUS_OK;
     if (snprintf(s->out, sizeof s->out, "%s", folder) >= (int)sizeof s->out) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = open_session(s);
-    if (status == STATUS_OK) *out = s;
+    if (status == STATUS_OK && !frame_files_earlier(earlier, s->out)) status = session_begin_files(s);
+    s->opened = status == STATUS_OK;
+    if (s->opened) *out = s;
     else session_close(s, NULL);
     return status;
 }
@@ -480,12 +484,13 @@ Status session_close(Session *s, SessionResult *result)
 {
     report_vehicles(s);
     Status status = consumers_close(&s->consumers); /* the last frames are published before */
-    detections_close(s->detections);
+    detections_close(s->detections, &s->result.answers);
     geoid_close(&s->geoid);
     if (status == STATUS_OK) status = s->listed;
-    if (s->table && *s->shared->config->heat.marks && status == STATUS_OK)
+    /* of a session that could not be opened nothing is written over what it could not read */
+    if (s->opened && *s->shared->config->heat.marks && status == STATUS_OK)
         status = entity_table_marks_save(s->table, s->shared->unix_s, s->shared->config->heat.marks);
-    if (s->vehicles && *s->shared->config->heat.vehicles && status == STATUS_OK)
+    if (s->opened && s->vehicles && *s->shared->config->heat.vehicles && status == STATUS_OK)
         status = vehicle_heat_keep(world_vehicles_heat(s->vehicles), s->shared->config->heat.vehicles);
     s->result.frames         = s->published;
     s->result.files_failed   = s->written.failed + s->lines_failed;

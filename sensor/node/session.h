@@ -8,6 +8,7 @@
 #include "sensor/node/player.h"
 #include "sensor/publish/consume_dis.h"
 #include "sensor/settings/sensors.h"
+#include "sensor/publish/answer_counters.h"
 #include "sensor/publish/plane_hash.h"
 #include "sensor/publish/records.h"
 
@@ -46,6 +47,7 @@ extern const char *const session_stage_name[session_stages];
 
 /* Lists hold the first session_frames_kept frames; a live node may render more. */
 typedef struct SessionResult {
+    bool    begun;                    /* it has files: what an earlier run left is gone */
     int     frames;
     int     listed;
     int     buried;                   /* frames with the sensor below the ground */
@@ -54,6 +56,7 @@ typedef struct SessionResult {
     int     host_count;               /* the first session_hosts_kept hosts, in order */
     char    host[session_hosts_kept][dis_id_text_size];
     int     radar_left_out;           /* frames without radar, for want of signatures */
+    AnswerCounters answers;           /* of a recogniser; when closed */
     int     files_failed, files_left_out; /* live: frames without files, for disk errors, for time; when closed */
     int   (*number);                  /* [listed] */
     char  (*hash)[sha256_text_size];  /* [listed] */
@@ -67,7 +70,8 @@ typedef struct SessionResult {
 
 typedef struct Session Session;
 
-/* Prepares the folder `out` (frames, profiles, truth.jsonl). The player and shared must outlive the session. */
+/* Its files are made at once where `out` has no products of an earlier run; those stay until the first frame takes their
+ * place. The player and shared must outlive the session. */
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
                     const char *folder);
 /* Processes everything up to t_s, then renders the frame. t_s must not decrease. shown: false when the host is

@@ -136,15 +136,17 @@ static Status add_call(Consumers *list, const SessionShared *shared)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
-/* A recogniser's detections, for those who publish them. */
+/* A recogniser's detections: answers.jsonl, and metadata. */
 static Status add_detections(Consumers *list, Session *s)
 {
     const Config *config   = s->shared->config;
     Consumer     *consumer = NULL;
     if (!config->publish.detections_port) return STATUS_OK;
-    Status status = detections_open(&s->detections, config->publish.detections_port, s->shared->bands,
-                                    config->sensor.width_px, config->sensor.height_px);
-    if (status == STATUS_OK) status = consume_detections(&consumer, s->detections);
+    Status status = detections_open(&s->detections, &(DetectionsOf){.port = config->publish.detections_port,
+                                                                    .bands = s->shared->bands,
+                                                                    .width = config->sensor.width_px,
+                                                                    .height = config->sensor.height_px});
+    if (status == STATUS_OK) status = consume_detections(&consumer, s->detections, s->out);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -277,6 +279,28 @@ static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
     return status;
 }
 
+/* Those of an earlier run, where they lie in its folder: of bands that are not in this one too. */
+static void clear_videos(const Session *s)
+{
+    const char  *folder = s->shared->config->publish.video;
+    const size_t length = strlen(s->out);
+    char         earlier[frame_path_size];
+    if (video_kind(folder) == VIDEO_FOLDER && strncmp(folder, s->out, length) == 0 && folder[length] == '/' &&
+        frame_files_earlier(earlier, s->out))
+        frame_files_clear_videos(folder);
+}
+
+Status session_begin_files(Session *s)
+{
+    const Config  *config = s->shared->config;
+    const unsigned kept   = s->shared->bands | (frame_files_truth(config) ? frame_truth : 0);
+    if (s->result.begun) return STATUS_OK;
+    s->result.begun = true;
+    clear_videos(s);
+    Status status = frame_files_prepare(s->out, config->publish.files ? kept : 0, s->raw);
+    return status == STATUS_OK ? consumers_begin(&s->consumers) : status;
+}
+
 Status session_consumers(Session *s, FrameDone *done)
 {
     const SessionShared *shared = s->shared;
@@ -284,9 +308,8 @@ Status session_consumers(Session *s, FrameDone *done)
     unsigned             raw    = 0;
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
-    const unsigned kept   = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
-    Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
-    if (status == STATUS_OK && shared->wall_s) status = latency_create(&s->latency);
+    s->raw        = raw;
+    Status status = shared->wall_s ? latency_create(&s->latency) : STATUS_OK;
     if (status == STATUS_OK) status = add_detections(&s->consumers, s); /* before a frame can be answered */
     if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);

@@ -187,9 +187,13 @@ static void report_limit(Session *s, double t_s)
         log_info("host %s: %s is within reach of its gimbal from %.2f s on", s->host_text, aim, t_s);
 }
 
+/* A seeker that has burst follows nothing: its direction stays as it was. */
+static bool past_impact(const Session *s) { return s->plan.munition && player_spent(s->player, s->plan.host); }
+
 static void step_gimbal(Session *s, double t_s)
 {
     Mounted at;
+    if (past_impact(s)) return;
     s->aim_known |= aim_pose(s->p_aim_ecef, s, t_s); /* gone: the last position is kept */
     if (!mounted(&at, s, t_s)) return;
     turn_gimbal(&s->seeker, s, &at, s->p_aim_ecef);
@@ -210,7 +214,7 @@ static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
     v3_sub(lever[1], next.p_ecef, next.host.p_ecef);
     for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] += (lever[1][k] - lever[0][k]) / step_s;
     if (!aim_pose(p_aim_ecef, s, t_s + step_s)) memcpy(p_aim_ecef, s->p_aim_ecef, sizeof p_aim_ecef);
-    turn_gimbal(&seeker, s, &next, p_aim_ecef);
+    if (!past_impact(s)) turn_gimbal(&seeker, s, &next, p_aim_ecef);
     enu_axes(r_enu_from_mount, s, &next);
     seeker_camera(r_next, &seeker, r_enu_from_mount);
     turn_rate(eye->w_cam_rps, eye->view.r_enu_from_cam, r_next, step_s);

@@ -20,6 +20,7 @@ struct Session {
     HostPlan             plan;          /* host and aim are filled in when they are received */
     char                 out[4096];
     char                 host_text[dis_id_text_size];
+    bool                 opened;        /* all of it */
     EntityTable         *table;
     Player              *player;        /* the caller's */
     GivenHeat           *given;         /* of vehicles; NULL: none */
@@ -45,6 +46,7 @@ struct Session {
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
                                              * targets */
     Consumers            consumers;
+    unsigned             raw;           /* bands of whose raw counts there are files */
     Detections          *detections;    /* received; NULL: none */
     Geoid                geoid;         /* for metadata; n_m NULL: none */
     unsigned             wants;         /* of all consumers */
@@ -82,6 +84,8 @@ bool session_host_is_there(const Session *s);
 /* Position and direction of the sensor at t_s. The host's pose is written into the snapshot. False: the host is
  * absent. */
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
+/* Makes the folders and files of its products, once, in place of those of an earlier run. */
+Status session_begin_files(Session *s);
 /* The consumers of this session's frames, from the configuration; and a pool for as many frames as they need. done:
  * each frame that all consumers have received. */
 Status session_consumers(Session *s, FrameDone *done);

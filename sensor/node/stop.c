@@ -1,6 +1,8 @@
 /* sensor/node/stop.c: records the signals that request a stop. */
 #include "sensor/node/stop.h"
 
+#include "pitviper_file.h"
+
 #include <signal.h>
 #include <stdatomic.h>
 #include <stddef.h>
@@ -13,13 +15,30 @@ static void ask(int number)
     atomic_compare_exchange_strong(&asked, &none, number);
 }
 
+/* What is handled or ignored already stays so. */
+static void handle(int number, void (*handler)(int), bool always)
+{
+    struct sigaction before, action = {.sa_handler = handler, .sa_flags = handler == SIG_IGN ? 0 : (int)SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    if (always || (sigaction(number, NULL, &before) == 0 && before.sa_handler == SIG_DFL))
+        sigaction(number, &action, NULL);
+}
+
 void stop_by_signals(void)
 {
-    struct sigaction before, action = {.sa_handler = ask, .sa_flags = (int)SA_RESETHAND};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
+    static const int others[] = {SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU, SIGALRM, SIGVTALRM, SIGPROF, SIGPOLL, SIGPWR};
+    handle(SIGINT, ask, true);
+    handle(SIGTERM, ask, true);
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) handle(others[i], ask, false);
+    for (int number = SIGRTMIN; number <= SIGRTMAX; number++) handle(number, ask, false);
+    stop_outlive_readers();
+    file_stop_when(stop_asked);
+}
+
+void stop_outlive_readers(void)
+{
+    handle(SIGPIPE, SIG_IGN, false);
+    handle(SIGXFSZ, SIG_IGN, false);
 }
 
 bool stop_asked(void) { return atomic_load(&asked) != 0; }

@@ -3,16 +3,19 @@
  *
  *     images       one per frame and band; file_name relative to the folder of coco.json; id 4 frame + number of the
  *                  band among optical, mwir, lwir, radar, from 1 on
- *     annotations  one per image and target with at least one pixel in the truth plane `entity`; id from 1 on.
- *                  segmentation: those pixels, compressed run lengths (sensor/publish/coco_mask.h); bbox [x, y, w, h]:
- *                  their box, the first pixel is 0; area: their number. iscrowd and ignore 1: fewer than
- *                  publish.coco_min_pixels, or a smaller share visible than publish.coco_min_visible: neither found nor
- *                  missed counts. plane_value: value of those pixels in the truth plane, as in truth.jsonl. pixels:
- *                  area with parts of pixels; entity, type, model, range_m, aspect_deg, visible_fraction as there
+ *     annotations  one per image and target of which something is visible; id from 1 on. iscrowd and ignore 0: a
+ *                  target to be found. segmentation: its pixels in the truth plane `entity`, compressed run lengths
+ *                  (sensor/publish/coco_mask.h); bbox [x, y, w, h]: their box, the first pixel is 0; area: their
+ *                  number. iscrowd and ignore 1: an ignore region, in which a detection of the class is neither right
+ *                  nor wrong: the target is below a limit in this image (CocoLimits), or fills no pixel by more than
+ *                  half. segmentation, bbox, area: the whole box of the pixels that show any part of it, since a
+ *                  detection counts as within by the share of its own area. ignored_as: the first of `no_mask`,
+ *                  `small`, `hidden`, `faint` that holds. plane_value: its value in the truth plane; pixels: area with
+ *                  parts of pixels; snr and contrast: of the image's band; bbox_amodal: of all of it, hidden parts and
+ *                  what lies outside the image too; the others as in truth.jsonl
  *     categories   all of sensor/publish/target_class.h, whatever is visible: sets can be joined
  *
- * A target that is hidden, or fills no pixel by more than half, has no mask and is in truth.jsonl only. Written
- * frame by frame to coco.json.part, and renamed when complete; memory does not grow with the number of frames. */
+ * A target that is hidden is in truth.jsonl only. Written frame by frame to coco.json.part, and renamed when complete; memory does not grow with the number of frames. */
 #ifndef SENSOR_PUBLISH_COCO_H
 #define SENSOR_PUBLISH_COCO_H
 
@@ -20,15 +23,19 @@
 
 typedef struct Coco Coco;
 
-/* Below these an annotation is marked to be ignored. */
+/* Below these a target is no annotation but an ignore region. A share that is unknown fits no limit; an snr that is
+ * (TargetBand) is of a target without surroundings or an image without noise, and fits any. */
 typedef struct CocoLimits {
     int    min_pixels;  /* 1 or more: of the mask */
     double min_visible; /* 0 .. 1: of the target's area on the image */
+    double min_snr;     /* 0 or more: of its snr without the sign, in the image's band */
 } CocoLimits;
 
 /* ending: of the images named, "png" or "exr". */
 Status coco_open(Coco **out, const char *folder, const char *ending, CocoLimits limits, const char *config_sha256,
                  long long seed);
+/* Opens FOLDER/coco.json, before the first frame. */
+Status coco_begin(Coco *coco);
 /* entity: truth plane of the frame, [height][width], snapshot index + 1. STATUS_IO, logged. */
 Status coco_frame(Coco *coco, const FrameRecord *record, const uint32_t *entity);
 /* Joins the parts and renames the file; after a failure, or when this one fails (STATUS_IO, logged), there is none.

@@ -1,25 +1,24 @@
 /* sensor/publish/coco_file.c: writes coco.json part by part, and renames it when it is complete. */
 #include "sensor/publish/coco_file.h"
+#include "pitviper_output.h"
 
 #include "sensor/publish/target_class.h"
 
 #include <errno.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 static Status fail(CocoFile *c)
 {
-    if (!c->failed) log_error("coco: cannot write %s: %s", c->path, strerror(errno));
+    if (!c->failed) log_error("coco: cannot write %s: %s", c->path, output_reason(errno));
     c->failed = true;
     return STATUS_IO;
 }
 
 static void drop(CocoFile *c)
 {
+    if (c->waiting) output_remove(c->waiting_path);
     if (c->waiting) fclose(c->waiting);
-    if (c->file) fclose(c->file);
-    unlink(c->waiting_path);
-    unlink(c->part);
+    if (c->file) output_abandon(c->file, c->path);
     c->file = c->waiting = NULL;
 }
 
@@ -27,10 +26,9 @@ Status coco_file_open(CocoFile *c, const char *folder)
 {
     *c = (CocoFile){0};
     snprintf(c->path, sizeof c->path, "%s/coco.json", folder);
-    snprintf(c->part, sizeof c->part, "%s/coco.json.part", folder);
     snprintf(c->waiting_path, sizeof c->waiting_path, "%s/coco.json.annotations.part", folder);
-    c->file    = fopen(c->part, "w");
-    c->waiting = c->file ? fopen(c->waiting_path, "w+") : NULL;
+    c->file    = output_begin(c->path, 0);
+    c->waiting = c->file ? output_file(c->waiting_path, OUTPUT_READ) : NULL;
     if (c->file && c->waiting) {
         fputs("{\"images\":[", c->file);
         return STATUS_OK;
@@ -77,9 +75,10 @@ Status coco_file_close(CocoFile *c, json_t *info, bool whole)
         errno = 0;
         join(c, info);
         if (ferror(c->file) || ferror(c->waiting)) fail(c);
-        const bool closed = fclose(c->file) == 0;
-        c->file           = NULL;
-        if (!closed || (!c->failed && rename(c->part, c->path) != 0)) fail(c);
+        if (!c->failed) {
+            if (!output_end(c->file, c->path)) fail(c);
+            c->file = NULL;
+        }
     }
     json_decref(info);
     drop(c);

@@ -11,7 +11,7 @@
 enum { coco_path_size = 4200 };
 
 typedef struct CocoFile {
-    char      path[coco_path_size], part[coco_path_size], waiting_path[coco_path_size];
+    char      path[coco_path_size], waiting_path[coco_path_size];
     FILE     *file, *waiting;
     long long images, annotations; /* objects written; the next ids, which begin with 1, are one more */
     bool      failed;

@@ -72,3 +72,20 @@ void mask_text(char *text, const uint32_t *plane, uint32_t value, int width, int
     }
     *t.at = 0;
 }
+
+void mask_box_text(char *text, int width, int height, const MaskExtent *extent)
+{
+    const int *box = extent->box, columns = box[2] - box[0], rows = box[3] - box[1];
+    const bool whole = rows == height; /* its columns follow each other without a gap */
+    RunText    t = {.at = text};
+    long long  end = (long long)box[0] * height + box[1];
+    put_run(&t, end);
+    for (int x = 0; x < (whole ? 1 : columns); x++) {
+        const long long run = whole ? (long long)columns * height : rows;
+        if (x > 0) put_run(&t, height - rows);
+        put_run(&t, run);
+        end += run + (x > 0 ? height - rows : 0);
+    }
+    if ((long long)width * height > end) put_run(&t, (long long)width * height - end);
+    *t.at = 0;
+}

@@ -23,5 +23,7 @@ enum { mask_run_characters = 7 };
 size_t mask_text_size(const MaskExtent *extent);
 /* The pixels of this value. text: mask_text_size characters. */
 void   mask_text(char *text, const uint32_t *plane, uint32_t value, int width, int height, const MaskExtent *extent);
+/* All pixels of the extent's box, which is not empty and lies within the image. */
+void   mask_box_text(char *text, int width, int height, const MaskExtent *extent);
 
 #endif

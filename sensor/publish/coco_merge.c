@@ -1,7 +1,9 @@
 /* sensor/publish/coco_merge.c: joins the coco.json of a sweep's variants, with new ids. */
 #include "sensor/publish/coco_merge.h"
+#include "pitviper_output.h"
 
 #include "sensor/publish/coco_file.h"
+#include "sensor/publish/json_read.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -75,13 +77,12 @@ static Status add_annotations(CocoMerge *m, const NewId *id, size_t ids, json_t 
 Status coco_merge_add(CocoMerge *m, const char *name)
 {
     char         path[2 * coco_path_size];
-    json_error_t error;
     Status       status = STATUS_OK;
     snprintf(path, sizeof path, "%s/%s/coco.json", m->folder, name);
     if (!m->open) status = coco_file_open(&m->file, m->folder);
     if (status != STATUS_OK) return status;
     m->open = true;
-    json_t      *whole = json_load_file(path, 0, &error), *images = json_object_get(whole, "images");
+    json_t      *whole = json_read_file(path), *images = json_object_get(whole, "images");
     const size_t count = json_array_size(images);
     NewId       *id    = calloc(count + 1, sizeof *id);
     if (!json_is_array(images)) status = refuse(path);
@@ -110,7 +111,7 @@ Status coco_merge_close(CocoMerge *m, bool whole)
     snprintf(path, sizeof path, "%s/truth.jsonl", m->folder); /* next to it: coco.json is that run's own */
     if ((!m->open || !whole || status != STATUS_OK) && access(path, F_OK) != 0) {
         snprintf(path, sizeof path, "%s/coco.json", m->folder);
-        unlink(path);
+        output_remove(path);
     }
     free(m);
     return status;

@@ -3,7 +3,6 @@
 
 #include "sensor/publish/image_file.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -22,7 +21,7 @@ static Status write_band(Latest *l, const Frame *frame, int band)
     const FrameDisplay *d     = &frame->display[band];
     const Picture      *p     = &frame->seen.picture;
     const size_t        count = (size_t)p->width * (size_t)p->height, octets = count * (size_t)d->planes;
-    char                path[frame_path_size + 32], part[frame_path_size + 32];
+    char                path[frame_path_size + 32];
     if (d->planes == 0) return STATUS_OK;
     if (octets > l->capacity) {
         uint8_t *larger = realloc(l->shown, octets);
@@ -31,16 +30,8 @@ static Status write_band(Latest *l, const Frame *frame, int band)
         l->capacity = octets;
     }
     snprintf(path, sizeof path, "%s/%s.png", l->folder, band_name((Band)band));
-    snprintf(part, sizeof part, "%s/%s.part.png", l->folder, band_name((Band)band));
     frame_display_quantise(l->shown, d, count, 8);
-    const Status status = image_write_png(part, l->shown, p->width, p->height, d->planes, 8);
-    if (status != STATUS_OK) {
-        remove(part);
-        return status;
-    }
-    if (rename(part, path) == 0) return STATUS_OK;
-    log_error("latest: cannot write %s: %s", path, strerror(errno));
-    return STATUS_IO;
+    return image_write_png(path, l->shown, p->width, p->height, d->planes, 8);
 }
 
 static Status put(Consumer *consumer, Frame *frame)
@@ -61,16 +52,15 @@ static Status close_latest(Consumer *consumer)
     return STATUS_OK;
 }
 
+static Status begin(Consumer *consumer) { return frame_files_folder(((Latest *)consumer)->folder); }
+
 Status consume_latest(Consumer **out, const char *folder, bool patient)
 {
     Latest *l = calloc(1, sizeof *l);
     if (!l) return STATUS_NO_MEMORY;
-    *l = (Latest){.consumer = {WANT_DISPLAY, put, NULL, close_latest, "latest"}, .patient = patient,
+    *l = (Latest){.consumer = {WANT_DISPLAY, put, NULL, close_latest, "latest", begin}, .patient = patient,
                   .retry = {.what = "latest pictures"}};
-    Status status = snprintf(l->folder, sizeof l->folder, "%s/latest", folder) < (int)sizeof l->folder ? STATUS_OK
-                                                                                                    : STATUS_BAD_VALUE;
-    if (status == STATUS_OK) status = frame_files_folder(l->folder);
-    if (status == STATUS_OK) *out = &l->consumer;
-    else close_latest(&l->consumer);
-    return status;
+    snprintf(l->folder, sizeof l->folder, "%.*s/latest", frame_path_size - frame_path_room, folder);
+    *out = &l->consumer;
+    return STATUS_OK;
 }

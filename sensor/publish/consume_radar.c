@@ -140,16 +140,19 @@ static Status close_files(Consumer *consumer)
     return STATUS_OK;
 }
 
+static Status begin(Consumer *consumer)
+{
+    const RadarFiles *to = (const RadarFiles *)consumer;
+    char              path[frame_path_size];
+    return snprintf(path, sizeof path, "%s/radar", to->of.out) < (int)sizeof path ? frame_files_folder(path) : STATUS_BAD_VALUE;
+}
+
 Status consume_radar(Consumer **out, const PictureFiles *made_of)
 {
-    char        path[frame_path_size];
     RadarFiles *to = calloc(1, sizeof *to);
     if (!to) return STATUS_NO_MEMORY;
-    *to = (RadarFiles){.consumer = {0, put, NULL, close_files, "radar_files"}, .of = *made_of, .retry = {.what = "files of the radar"}};
+    *to = (RadarFiles){.consumer = {0, put, NULL, close_files, "radar_files", begin}, .of = *made_of, .retry = {.what = "files of the radar"}};
     if (made_of->config->radar.scan_deg > 0) to->consumer.wants |= WANT_PLANES; /* what each pixel shows */
-    Status status = snprintf(path, sizeof path, "%s/radar", made_of->out) < (int)sizeof path ? STATUS_OK : STATUS_BAD_VALUE;
-    if (status == STATUS_OK) status = frame_files_folder(path);
-    if (status == STATUS_OK) *out = &to->consumer;
-    else free(to);
-    return status;
+    *out = &to->consumer;
+    return STATUS_OK;
 }

@@ -3,6 +3,7 @@
  * Where a latency ledger is kept, a line waits as text until all consumers are done with its frame, or two further
  * frames were put: at most three are held. */
 #include "sensor/publish/consumers.h"
+#include "pitviper_output.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -16,6 +17,7 @@ typedef struct HeldLine {
 
 typedef struct TruthLines {
     Consumer consumer;
+    char     path[frame_path_size];
     FILE    *file;
     bool     patient;
     RetryBackoff patience;
@@ -85,22 +87,23 @@ static Status close_lines(Consumer *consumer)
     return status;
 }
 
+static Status begin(Consumer *consumer)
+{
+    TruthLines *t = (TruthLines *)consumer;
+    t->file       = output_file(t->path, 0);
+    if (t->file) return STATUS_OK;
+    log_error("session: cannot write %s: %s; choose another place with --out", t->path, output_reason(errno));
+    return STATUS_IO;
+}
+
 Status consume_truth_lines(Consumer **out, const char *folder, bool patient, int *failed)
 {
-    char        path[frame_path_size];
     TruthLines *t = calloc(1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;
     *t = (TruthLines){.consumer = {WANT_TARGETS | WANT_ERROR | WANT_SHA256 | WANT_LATENCY, put, NULL, close_lines,
-                                  "truth_lines"},
+                                  "truth_lines", begin},
                       .patient = patient, .patience = {.what = "lines in truth.jsonl"}, .failed = failed};
-    const bool fits = snprintf(path, sizeof path, "%s/truth.jsonl", folder) < (int)sizeof path;
-    if (!fits) errno = ENAMETOOLONG;
-    t->file = fits ? fopen(path, "w") : NULL;
-    if (t->file) {
-        *out = &t->consumer;
-        return STATUS_OK;
-    }
-    log_error("session: cannot write %s: %s; choose another place with --out", path, strerror(errno));
-    free(t);
-    return STATUS_IO;
+    snprintf(t->path, sizeof t->path, "%.*s/truth.jsonl", frame_path_size - frame_path_room, folder);
+    *out = &t->consumer;
+    return STATUS_OK;
 }

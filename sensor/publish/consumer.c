@@ -19,6 +19,14 @@ unsigned consumers_wants(const Consumers *list)
     return wants;
 }
 
+Status consumers_begin(const Consumers *list)
+{
+    Status status = STATUS_OK;
+    for (int i = 0; i < list->count && status == STATUS_OK; i++)
+        if (list->consumer[i]->begin) status = list->consumer[i]->begin(list->consumer[i]);
+    return status;
+}
+
 Status consumers_put(const Consumers *list, Frame *frame)
 {
     Status status = STATUS_OK;

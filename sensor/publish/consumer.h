@@ -31,6 +31,9 @@ struct Consumer {
     /* Finishes its products and frees the consumer. */
     Status (*close)(Consumer *consumer);
     const char *name; /* in the latency ledger; NULL: not in it */
+    /* Makes its folders and files, once and before the first frame: only then may the products of an earlier run go. NULL:
+     * there are none. Any result but STATUS_OK, logged, ends the run. */
+    Status (*begin)(Consumer *consumer);
 };
 
 enum { consumers_max = 16 };
@@ -43,6 +46,8 @@ typedef struct Consumers {
 /* Takes the consumer over, also when the list is full (STATUS_BAD_VALUE). NULL: nothing. */
 Status   consumers_add(Consumers *list, Consumer *consumer);
 unsigned consumers_wants(const Consumers *list);
+/* Of each that has a begin; the first failure ends it. */
+Status   consumers_begin(const Consumers *list);
 /* The frame to each in turn; the first failure ends it. */
 Status   consumers_put(const Consumers *list, Frame *frame);
 /* The frame was rendered and is put to none of them. */

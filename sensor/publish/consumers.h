@@ -1,6 +1,6 @@
 /* sensor/publish/consumers.h: all consumers, each in a file of its own.
  *
- * Their arguments must outlive them. Folders and files that they write are empty at the start. */
+ * Their arguments must outlive them. Folders and files that they write are made by their begin. */
 #ifndef SENSOR_PUBLISH_CONSUMERS_H
 #define SENSOR_PUBLISH_CONSUMERS_H
 

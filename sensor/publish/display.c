@@ -37,6 +37,10 @@ static double optical_sigma(const Picture *picture, const Config *config)
     return config->detector.noise * config->detector.noise_optical * mean_radiance(picture, BAND_OPTICAL);
 }
 
+/* What a camera without a sensor's data sheet resolves in the dark, W/(m2 sr): a twentieth of the least span of its
+ * display, and of grey surfaces below some 0.2 lux; ordinary colour cameras end at 0.1 to 0.5 lux. */
+static const double optical_least_span = 1e-3, optical_dark_sigma = 5e-5;
+
 void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config)
 {
     const float *plane[3];
@@ -44,7 +48,7 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
                           .netd_lwir_k = config->detector.noise * config->detector.netd_lwir_k};
     for (int b = 0; b < BAND_COUNT; b++)
         if (chain[b] && band_radiance(plane, picture, b)) chain_expose(chain[b], plane);
-    noise->optical_w_m2_sr = optical_sigma(picture, config);
+    noise->optical_w_m2_sr = fmax(optical_sigma(picture, config), optical_dark_sigma);
     if (chain[BAND_OPTICAL])
         noise->optical_w_m2_sr = chain_sigma(chain[BAND_OPTICAL], 0, mean_radiance(picture, BAND_OPTICAL));
     for (int b = BAND_MWIR; b <= BAND_LWIR; b++) {
@@ -70,7 +74,7 @@ static DetectorConfig detector_of(const DisplaysOf *of, int band)
     d.auto_level         = strcmp(c->detector.level, "auto") == 0;
     if (band == BAND_OPTICAL) {
         d.display_gamma = true;
-        if (!chain) d.min_span = 1e-3; /* W/(m2 sr): grey surfaces below some 4 lux; a night is displayed dark */
+        if (!chain) d.min_span = optical_least_span; /* grey surfaces below some 4 lux; a night is displayed dark */
         d.noise_sigma   = optical_sigma(of->noise_of ? of->noise_of : of->picture, c);
         d.level_low     = 0;
         d.level_high    = c->detector.optical_high_w_m2_sr;
@@ -80,6 +84,7 @@ static DetectorConfig detector_of(const DisplaysOf *of, int band)
         preset_band(&low_m, &high_m, (Band)band, OPTICAL_PAN, -1);
         const double at_300_k = planck_band(low_m, high_m, 300, &slope);
         d.noise_sigma = c->detector.noise * slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
+        d.highlight   = 1.5; /* with fires on 5 % of the pixels normal noise keeps 0.56 of its contrast */
         d.min_span    = 2 * slope; /* never stretch less than 2 K over the display */
         d.level_low   = planck_band(low_m, high_m, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
         d.level_high  = planck_band(low_m, high_m, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);
@@ -151,7 +156,7 @@ static void detect(FrameDisplay *out, float *const memory[3], const DisplaysOf *
 static DetectorLevel follow_level(FrameLevel *state, DetectorLevel now, double time_s, double agc_s)
 {
     if (!state->known) state->level = now;
-    detector_level_follow(&state->level, now, time_s - state->time_s, agc_s);
+    detector_level_follow(&state->level, &state->quick, now, time_s - state->time_s, agc_s);
     state->known  = true;
     state->time_s = time_s;
     return state->level;

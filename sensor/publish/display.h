@@ -22,7 +22,7 @@ typedef struct FrameDisplay {
 
 /* An automatic level with a time constant; starts with the first frame. */
 typedef struct FrameLevel {
-    bool          known;
+    bool          known, quick; /* quick: detector_level_follow */
     double        time_s;
     DetectorLevel level;
 } FrameLevel;

@@ -1,7 +1,9 @@
 /* sensor/publish/frame_files.c: the files of one frame, one task per file. */
 #include "sensor/publish/frame_files.h"
+#include "pitviper_output.h"
 
 #include "sensor/settings/plane_choice.h"
+#include "sensor/publish/emissivity.h"
 #include "sensor/publish/image_file.h"
 
 #include <errno.h>
@@ -62,6 +64,29 @@ static int group_planes(FrameArray out[frame_max_planes], const FrameFiles *fram
         if (wanted) out[n++] = all[i];
     }
     return n;
+}
+
+/* Planes of truth that are made for the file. */
+typedef struct MadePlanes {
+    int    count;
+    char   name[BAND_COUNT][frame_plane_name_size];
+    float *values[BAND_COUNT];
+} MadePlanes;
+
+/* An emissivity for each thermal band. STATUS_NO_MEMORY. */
+static Status make_planes(MadePlanes *made, const FrameFiles *frame, unsigned kept)
+{
+    const Picture *picture = frame->picture;
+    made->count = 0;
+    for (int b = BAND_MWIR; b <= BAND_LWIR; b++) {
+        if (!(kept >> PLANE_EMISSIVITY & 1) || !(frame->request->bands >> b & 1) || !picture->material) continue;
+        float *values = malloc((size_t)picture->width * (size_t)picture->height * sizeof *values);
+        if (!values) return STATUS_NO_MEMORY;
+        emissivity_plane(values, (Band)b, picture, &frame->world->materials);
+        snprintf(made->name[made->count], sizeof made->name[0], "emissivity_%s", band_name((Band)b));
+        made->values[made->count++] = values;
+    }
+    return STATUS_OK;
 }
 
 void frame_date(char out[32], double unix_s)
@@ -147,24 +172,31 @@ static Status write_exr(const FrameFiles *frame, int band)
     const char    *group = band < BAND_COUNT ? band_name((Band)band) : "truth";
     FrameArray     from[frame_max_planes];
     Plane          plane[frame_max_planes];
+    MadePlanes     made = {0};
     ImageAttribute attribute[16];
     char          *ids = NULL, *names = NULL, *parts = NULL, *surfaces = NULL;
     int            n      = 0;
-    const int      planes = group_planes(from, frame, group, planes_of(frame->config));
-    if (planes == 0 || !frame_path(path, frame, "frames", group, "exr")) return STATUS_BAD_VALUE;
+    const bool     truth = band == BAND_COUNT;
+    int            planes = group_planes(from, frame, group, planes_of(frame->config));
+    Status         status = truth ? make_planes(&made, frame, planes_of(frame->config)) : STATUS_OK;
+    if (status == STATUS_OK && (planes + made.count == 0 || !frame_path(path, frame, "frames", group, "exr")))
+        status = STATUS_BAD_VALUE;
+    if (status != STATUS_OK) goto done;
 
     for (int i = 0; i < planes; i++)
         plane[i] = (Plane){from[i].name, from[i].type, frame->picture->width, frame->picture->height, from[i].values};
+    for (int i = 0; i < made.count; i++)
+        plane[planes++] = plane_f32(made.name[i], frame->picture->width, frame->picture->height, made.values[i]);
     attribute[n++] = image_string("band", group);
-    if (from->kind == PLANE_RADIANCE) attribute[n++] = image_string("unit", from->unit);
-    if (from->model) attribute[n++] = image_string("model", from->model);
-    if (from->wavelengths_um) attribute[n++] = image_string("wavelengths_um", from->wavelengths_um);
+    if (!truth) attribute[n++] = image_string("unit", from->unit);
+    if (!truth && from->model) attribute[n++] = image_string("model", from->model);
+    if (!truth && from->wavelengths_um) attribute[n++] = image_string("wavelengths_um", from->wavelengths_um);
     attribute[n++] = image_int("frame", frame->frame);
     attribute[n++] = image_double("time_s", frame->time_s);
     attribute[n++] = image_string("host", frame->host);
     attribute[n++] = image_int("seed", (int)frame->config->seed);
     attribute[n++] = image_string("config_sha256", frame->config_sha256);
-    if (from->kind == PLANE_TRUTH) {
+    if (truth) {
         ids            = entity_ids(frame->snapshot);
         names          = material_names(&frame->world->materials);
         attribute[n++] = image_string("entity_ids", ids ? ids : "");
@@ -175,8 +207,9 @@ static Status write_exr(const FrameFiles *frame, int band)
         if (surfaces) attribute[n++] = image_string("surface_names", surfaces);
     }
     frame_date(date, frame->unix_s);
-    const Status status =
-        image_write_exr_as(path, exr_compression((Band)band), plane, planes, date, attribute, n);
+    status = image_write_exr_as(path, exr_compression((Band)band), plane, planes, date, attribute, n);
+done:
+    for (int i = 0; i < made.count; i++) free(made.values[i]);
     free(ids);
     free(names);
     free(parts);
@@ -188,9 +221,9 @@ static Status write_profile(const FrameFiles *frame, int band)
 {
     char path[frame_path_size];
     if (!frame_path(path, frame, "profiles", band_name((Band)band), "csv")) return STATUS_BAD_VALUE;
-    FILE *file = fopen(path, "w");
+    FILE *file = output_file(path, 0);
     if (!file) {
-        log_error("replay: cannot write %s: %s", path, strerror(errno));
+        log_error("replay: cannot write %s: %s", path, output_reason(errno));
         return STATUS_IO;
     }
     fprintf(file, "# range profile, unit relative, model pseudo-radar; a bin is %.9g m, its middle is given\n"

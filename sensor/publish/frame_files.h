@@ -25,17 +25,21 @@ enum { detector_bands = ((1 << BAND_COUNT) - 1) & ~(1 << BAND_RADAR) };
 
 /* OUT must leave frame_path_room characters for the paths below it; a longer one is refused, logged.
  *     folder            creates OUT, or logs why not; its content stays
+ *     check             whether anything in OUT keeps a run from writing its products: a link, a file where a folder
+ *                       belongs, permissions; logged. Changes nothing
  *     earlier           whether OUT holds a product of an earlier run that would be lost, and its path
- *     clear             removes the products of an earlier run from OUT (recognised by its truth.jsonl or run.json),
- *                       nothing else
+ *     clear             removes the products of an earlier run from OUT, of all bands; nothing else
+ *     clear_videos      the same of a folder of videos of bands
  *     prepare           clear, and creates OUT and the folders below it for these bands, and for raw counts of those
  *                       in raw; a clear message when the place cannot be written. No bands: OUT alone. bands: with
  *                       frame_truth, truth too
  *     prepare_displays  only for the products of frame_files_write_displays; clears nothing */
 enum { frame_path_size = 4096, frame_path_room = 64, frame_truth = 1 << BAND_COUNT };
 Status frame_files_folder(const char *out);
+Status frame_files_check(const char *out);
 bool   frame_files_earlier(char found[frame_path_size], const char *out);
 void   frame_files_clear(const char *out);
+void   frame_files_clear_videos(const char *folder);
 Status frame_files_prepare(const char *out, unsigned bands, unsigned raw);
 Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned raw);
 /* Folders below OUT for each frame's other images (sensor/publish/pairs.h). */

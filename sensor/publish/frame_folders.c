@@ -2,11 +2,13 @@
  * cleared of them. */
 #include "sensor/publish/frame_files.h"
 
-#include <dirent.h>
+#include "pitviper_channels.h"
+#include "pitviper_output.h"
+
 #include <errno.h>
 #include <stdio.h>
+#include <strings.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 enum { path_size = frame_path_size };
 
@@ -14,7 +16,6 @@ static bool too_long(const char *out) { return strlen(out) + frame_path_room >= 
 
 Status frame_files_folder(const char *path)
 {
-    char part[path_size];
     if (!*path) {
         log_error("out: the folder for the products has no name; choose one with --out");
         return STATUS_BAD_VALUE;
@@ -24,26 +25,9 @@ Status frame_files_folder(const char *path)
                   strlen(path), path_size - frame_path_room - 1);
         return STATUS_BAD_VALUE;
     }
-    strcpy(part, path);
-    for (char *at = part + 1;; at++) {
-        if (*at != '/' && *at) continue;
-        const char kept = *at;
-        *at             = 0;
-        if (mkdir(part, 0777) != 0 && errno != EEXIST) {
-            log_error("out: cannot make the folder %s: %s; choose another place with --out", part, strerror(errno));
-            return STATUS_IO;
-        }
-        *at = kept;
-        if (!kept) break;
-    }
-    struct stat there;
-    if (stat(path, &there) == 0 && !S_ISDIR(there.st_mode)) errno = ENOTDIR;
-    else errno = 0;
-    if (errno || access(path, W_OK | X_OK) != 0) {
-        log_error("out: cannot write in %s: %s; choose another place with --out", path, strerror(errno));
-        return STATUS_IO;
-    }
-    return STATUS_OK;
+    if (output_folder(path) == 0) return STATUS_OK;
+    log_error("out: cannot write in %s: %s; choose another place with --out", path, output_reason(errno));
+    return STATUS_IO;
 }
 
 /* NNNNNN.exr, .png, .csv: the files of frame_files_write, and those of radar_scan_files, and nothing else. */
@@ -68,30 +52,61 @@ static bool is_frame_file(const char *name)
            sscanf(name, "frame_%*6d.pvf%n", &end) == 0 && end > 0;
 }
 
-/* Removes the files for which ours(name) holds. */
-static void clear_folder(const char *folder, bool (*ours)(const char *name))
+/* The name of a band of any run: another may have had a channel that is not among this one's. */
+static bool is_band(const char *name, size_t length)
 {
-    DIR *directory = opendir(folder);
-    if (!directory) return;
-    char path[path_size + 300];
-    for (struct dirent *entry; (entry = readdir(directory));)
-        if (ours(entry->d_name)) {
-            snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-            unlink(path);
-        }
-    closedir(directory);
+    static const char *const others[] = {"optical", "radar"};
+    for (int i = 0; i < 2; i++)
+        if (strlen(others[i]) == length && memcmp(name, others[i], length) == 0) return true;
+    return channel_named(name, length) != NULL;
 }
 
-/* Folder of band b; BAND_COUNT: truth; BAND_COUNT + 1: range profiles; raw_folder + b: raw counts; radar_folder:
- * consume_radar's. */
-enum { raw_folder = BAND_COUNT + 2, radar_folder = raw_folder + BAND_COUNT, folder_count };
+static bool is_of_band(const char *name, const char *const *ending, int endings)
+{
+    const size_t stem = strcspn(name, ".");
+    bool         ends = false;
+    for (int i = 0; i < endings; i++) ends |= strcasecmp(name + stem, ending[i]) == 0;
+    return ends && is_band(name, stem);
+}
+
+static bool is_latest(const char *name) { return is_of_band(name, (const char *const[]){".png", ".png.part"}, 2); }
+static bool is_klv(const char *name) { return is_of_band(name, (const char *const[]){".klv"}, 1); }
+static bool is_video(const char *name) { return is_of_band(name, (const char *const[]){".ts", ".mp4", ".mkv"}, 3); }
+static bool is_below(const char *name) { return strcmp(name, "truth") == 0 || is_band(name, strlen(name)); }
+
+/* Calls found for each name in a folder for which ours(name) holds, until it returns false. */
+static void each_in(const char *folder, bool (*ours)(const char *name), bool (*found)(void *user, const char *path),
+                    void *user)
+{
+    DIR *directory = output_list(folder);
+    char path[path_size + 300];
+    for (struct dirent *entry; directory && (entry = readdir(directory));) {
+        if (!ours(entry->d_name)) continue;
+        if (snprintf(path, sizeof path, "%s/%s", folder, entry->d_name) >= (int)sizeof path) continue;
+        if (!found(user, path)) break;
+    }
+    if (directory) closedir(directory);
+}
+
+static bool remove_it(void *user, const char *path)
+{
+    (void)user;
+    output_remove(path);
+    return true;
+}
+
+static bool remove_frames(void *user, const char *folder)
+{
+    each_in(folder, is_frame_name, remove_it, user);
+    output_remove(folder); /* only if it is empty otherwise */
+    return true;
+}
+
+/* Folder of band b; BAND_COUNT: truth; BAND_COUNT + 1: range profiles; raw_folder + b: raw counts. */
+enum { raw_folder = BAND_COUNT + 2, folder_count = raw_folder + BAND_COUNT };
 
 static void product_folder(char path[path_size], const char *out, int b)
 {
-    if (b == radar_folder) {
-        snprintf(path, path_size, "%s/radar", out);
-        return;
-    }
     if (b >= raw_folder) {
         snprintf(path, path_size, "%s/raw/%s", out, band_name((Band)(b - raw_folder)));
         return;
@@ -100,46 +115,39 @@ static void product_folder(char path[path_size], const char *out, int b)
              b < BAND_COUNT ? band_name((Band)b) : b == BAND_COUNT ? "truth" : "radar");
 }
 
-const char *const pair_folder[pair_folders] = {"pairs/clean", "pairs/background", "pairs/background_clean"};
+/* Those with a folder for each band; and the one of consume_radar, with files. */
+static const char *const parents[] = {"frames", "profiles", "raw"}, radar_folder[] = "radar";
 
-/* BAND.png and BAND.part.png of consume_latest. */
-static bool is_latest(const char *name)
-{
-    const size_t stem = strcspn(name, ".");
-    bool         band = false;
-    for (int b = 0; b < BAND_COUNT; b++)
-        band |= strlen(band_name((Band)b)) == stem && strncmp(name, band_name((Band)b), stem) == 0;
-    return band && (strcmp(name + stem, ".png") == 0 || strcmp(name + stem, ".part.png") == 0);
-}
+const char *const pair_folder[pair_folders] = {"pairs/clean", "pairs/background", "pairs/background_clean"};
 
 static void clear_products(const char *out)
 {
-    static const char *const parents[] = {"frames", "profiles", "raw"};
     char path[path_size];
     snprintf(path, sizeof path, "%s/latest", out);
-    clear_folder(path, is_latest);
-    rmdir(path);
-    for (int b = 0; b < folder_count; b++) {
-        product_folder(path, out, b);
-        clear_folder(path, is_frame_name);
-        rmdir(path); /* only if it is empty otherwise */
-    }
+    each_in(path, is_latest, remove_it, NULL);
+    output_remove(path); /* a folder: only if it is empty otherwise */
     for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/%s", out, parents[i]);
-        rmdir(path);
+        each_in(path, is_below, remove_frames, NULL);
+        output_remove(path);
     }
+    snprintf(path, sizeof path, "%s/%s", out, radar_folder);
+    remove_frames(NULL, path);
 }
 
-/* The first image or table of a frame in a folder. */
-static bool first_frame(char path[path_size], const char *folder)
+static bool first_file(void *found, const char *path)
 {
-    DIR *directory = opendir(folder);
-    bool found = false;
-    for (struct dirent *entry; directory && !found && (entry = readdir(directory));)
-        if (is_frame_name(entry->d_name)) found = snprintf(path, path_size, "%s/%s", folder, entry->d_name) < path_size;
-    if (directory) closedir(directory);
-    return found;
+    return snprintf(found, path_size, "%s", path) >= path_size;
 }
+
+/* The first image or table of a frame in a folder: found is empty before. */
+static bool first_frame(void *found, const char *folder)
+{
+    each_in(folder, is_frame_name, first_file, found);
+    return !*(const char *)found;
+}
+
+static bool is_there(const char *path, struct stat *about) { return lstat(path, about) == 0; }
 
 bool frame_files_earlier(char found[frame_path_size], const char *out)
 {
@@ -147,41 +155,83 @@ bool frame_files_earlier(char found[frame_path_size], const char *out)
     struct stat about;
     if (too_long(out)) return false; /* no run was ever started there */
     snprintf(truth, sizeof truth, "%s/truth.jsonl", out);
-    const bool begun = stat(truth, &about) == 0; /* a run without a line did not reach its first frame */
+    const bool begun = is_there(truth, &about); /* a run without a line did not reach its first frame */
     if (begun && about.st_size > 0) return snprintf(found, frame_path_size, "%s", truth) > 0;
     snprintf(path, sizeof path, "%s/run.json", out);
-    if (!begun && access(path, F_OK) == 0) return snprintf(found, frame_path_size, "%s", path) > 0;
-    for (int b = 0; b < folder_count; b++) {
-        product_folder(path, out, b);
-        if (first_frame(found, path)) return true;
+    if (!begun && is_there(path, &about)) return snprintf(found, frame_path_size, "%s", path) > 0;
+    *found = 0;
+    for (int i = 0; i < 3 && !*found; i++) {
+        snprintf(path, sizeof path, "%s/%s", out, parents[i]);
+        each_in(path, is_below, first_frame, found);
     }
-    return false;
+    snprintf(path, sizeof path, "%s/%s", out, radar_folder);
+    return *found || !first_frame(found, path);
 }
+
+/* A run leaves truth.jsonl from its first moment on, and run.json at its end. */
+static const char *const marks[] = {"run.json", "truth.jsonl"};
 
 void frame_files_clear(const char *out)
 {
-    /* a run leaves truth.jsonl from its first moment, run.json at its end */
-    static const char *const marks[] = {"run.json", "truth.jsonl"}, *const beside[] = {
-        "pairs", "pairs.jsonl", "coco.json", "optical.klv", "mwir.klv", "lwir.klv", "radar.klv"};
+    static const char *const beside[] = {"pairs", "pairs.jsonl", "coco.json", "answers.jsonl"};
     char path[path_size];
-    bool earlier = false;
+    bool earlier = !too_long(out) && frame_files_earlier(path, out);
     if (too_long(out)) return;
     for (int i = 0; i < 2; i++) {
         snprintf(path, sizeof path, "%s/%s", out, marks[i]);
-        earlier = unlink(path) == 0 || earlier;
+        earlier = output_remove(path) == 0 || earlier;
     }
     if (!earlier) return;
     clear_products(out);
-    clear_folder(out, is_frame_file);
+    each_in(out, is_frame_file, remove_it, NULL);
+    each_in(out, is_klv, remove_it, NULL);
     for (int i = 0; i < pair_folders; i++) {
         snprintf(path, sizeof path, "%s/%s", out, pair_folder[i]);
         clear_products(path);
-        rmdir(path);
+        output_remove(path);
     }
     for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
         snprintf(path, sizeof path, "%s/%s", out, beside[i]);
-        remove(path); /* a folder: only if it is empty otherwise */
+        output_remove(path);
     }
+}
+
+void frame_files_clear_videos(const char *folder) { each_in(folder, is_video, remove_it, NULL); }
+
+/* Logged: what is there cannot be written. */
+static bool blocked(const char *out, const char *name, unsigned how)
+{
+    char path[path_size + 64];
+    snprintf(path, sizeof path, "%s/%s", out, name);
+    if (output_check(path, how) == 0) return false;
+    log_error("out: cannot write %s: %s; choose another place with --out", path, output_reason(errno));
+    return true;
+}
+
+Status frame_files_check(const char *out)
+{
+    static const char *const files[] = {"run.json", "truth.jsonl", "coco.json", "pairs.jsonl", "answers.jsonl"},
+                      *const folders[] = {"frames", "profiles", "raw", "radar", "latest", "pairs"};
+    bool bad = too_long(out);
+    char path[path_size], name[64];
+    for (size_t i = 0; i < sizeof files / sizeof *files && !bad; i++) bad = blocked(out, files[i], 0);
+    for (size_t i = 0; i < sizeof folders / sizeof *folders && !bad; i++) bad = blocked(out, folders[i], OUTPUT_FOLDER);
+    for (int b = 0; b < folder_count && !bad; b++) {
+        product_folder(path, out, b);
+        bad = blocked(out, path + strlen(out) + 1, OUTPUT_FOLDER);
+    }
+    for (int i = 0; i < pair_folders && !bad; i++) {
+        bad = blocked(out, pair_folder[i], OUTPUT_FOLDER);
+        for (int b = 0; b < folder_count && !bad; b++) {
+            product_folder(path, pair_folder[i], b);
+            bad = blocked(out, path, OUTPUT_FOLDER);
+        }
+    }
+    for (int b = 0; b < BAND_COUNT && !bad; b++) {
+        snprintf(name, sizeof name, "%s.klv", band_name((Band)b));
+        bad = blocked(out, name, 0);
+    }
+    return bad ? STATUS_IO : STATUS_OK;
 }
 
 Status frame_files_prepare(const char *out, unsigned bands, unsigned raw)

@@ -70,6 +70,9 @@ static Status put(Consumer *consumer, Frame *frame)
     return STATUS_OK;
 }
 
+/* In the rendering thread: nothing has been put. */
+static Status begin(Consumer *consumer) { return consumers_begin(&((FrameQueue *)consumer)->list); }
+
 static Status close_queue(Consumer *consumer)
 {
     FrameQueue *q = (FrameQueue *)consumer;
@@ -100,7 +103,7 @@ Status frame_queue_open(Consumer **out, Consumers *list, QueueRule rule, QueueCo
     q->list     = *list;
     q->rule     = rule;
     q->result   = counters;
-    q->consumer = (Consumer){consumers_wants(list), put, NULL, close_queue, NULL};
+    q->consumer = (Consumer){consumers_wants(list), put, NULL, close_queue, NULL, begin};
     list->count = 0;
     pthread_mutex_init(&q->lock, NULL);
     pthread_cond_init(&q->work, NULL);

@@ -1,11 +1,10 @@
 /* sensor/publish/html.c: reports as one HTML file: its style, its embedded images. */
 #include "sensor/publish/html.h"
+#include "pitviper_output.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <stdarg.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 static const char style[] =
     ":root{color-scheme:light dark;--line:#8884;--good:#2a7d3f;--bad:#c0392b}\n"
@@ -20,10 +19,9 @@ static const char style[] =
 
 FILE *html_begin(const char *path, const char *title)
 {
-    char  part[PATH_MAX];
-    FILE *page = (size_t)snprintf(part, sizeof part, "%s.part", path) < sizeof part ? fopen(part, "w") : NULL;
+    FILE *page = output_begin(path, OUTPUT_STREAM);
     if (!page) {
-        log_error("report: cannot write %s: %s; choose another place", path, strerror(errno));
+        log_error("report: cannot write %s: %s; choose another place", path, output_reason(errno));
         return NULL;
     }
     fputs("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
@@ -83,12 +81,8 @@ void html_image(FILE *page, const char *type, const void *bytes, size_t count, c
 
 Status html_end(FILE *page, const char *path)
 {
-    char part[PATH_MAX];
     fputs("</body></html>\n", page);
-    snprintf(part, sizeof part, "%s.part", path);
-    const bool spoilt = ferror(page);
-    if (fclose(page) == 0 && !spoilt && rename(part, path) == 0) return STATUS_OK;
-    log_error("report: cannot write %s: %s", path, strerror(errno));
-    unlink(part);
+    if (output_end(page, path)) return STATUS_OK;
+    log_error("report: cannot write %s: %s", path, output_reason(errno));
     return STATUS_IO;
 }

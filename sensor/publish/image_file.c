@@ -1,6 +1,7 @@
 /* sensor/publish/image_file.c: image files: loads the module that uses OpenImageIO when the first file asks for it. */
 #include "sensor/publish/image_file_private.h"
 
+#include "pitviper_file.h"
 #include "pitviper_library.h"
 
 #include <pthread.h>
@@ -46,36 +47,45 @@ Status image_write_png(const char *path, const void *values, int width, int heig
     return status != STATUS_OK ? status : image_module_write_png(path, values, width, height, channels, bits);
 }
 
+/* OpenImageIO opens by name, whatever it is. */
+static Status prepare_to_read(const char *path)
+{
+    char why[file_why_size];
+    if (file_is_regular(why, path)) return image_file_prepare();
+    log_error("image: cannot read %s: %s", path, why);
+    return STATUS_IO;
+}
+
 Status image_info(ImageInfo *out, const char *path)
 {
-    const Status status = image_file_prepare();
+    const Status status = prepare_to_read(path);
     return status != STATUS_OK ? status : image_module_info(out, path);
 }
 
 Status image_read_f32(float *out, const char *path, const char *channel)
 {
-    const Status status = image_file_prepare();
+    const Status status = prepare_to_read(path);
     return status != STATUS_OK ? status : image_module_read_f32(out, path, channel);
 }
 
 Status image_read_u32(uint32_t *out, const char *path, const char *channel)
 {
-    const Status status = image_file_prepare();
+    const Status status = prepare_to_read(path);
     return status != STATUS_OK ? status : image_module_read_u32(out, path, channel);
 }
 
 Status image_read_png(void *out, const char *path)
 {
-    const Status status = image_file_prepare();
+    const Status status = prepare_to_read(path);
     return status != STATUS_OK ? status : image_module_read_png(out, path);
 }
 
 bool image_read_string(char *out, size_t out_size, const char *path, const char *attribute)
 {
-    return image_file_prepare() == STATUS_OK && image_module_read_string(out, out_size, path, attribute);
+    return prepare_to_read(path) == STATUS_OK && image_module_read_string(out, out_size, path, attribute);
 }
 
 bool image_read_number(double *out, const char *path, const char *attribute)
 {
-    return image_file_prepare() == STATUS_OK && image_module_read_number(out, path, attribute);
+    return prepare_to_read(path) == STATUS_OK && image_module_read_number(out, path, attribute);
 }

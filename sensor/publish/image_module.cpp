@@ -1,5 +1,6 @@
 /* sensor/publish/image_module.cpp: image files, through OpenImageIO: a module, which image_file.c loads. */
 #include "sensor/publish/image_file_private.h"
+#include "pitviper_output.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -10,7 +11,6 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 using OIIO::ImageInput;
@@ -47,18 +47,16 @@ static Status refuse(Status status, const char *what, const char *path, const ch
     return status;
 }
 
-/* PATH.part, which is renamed to PATH when complete, and is removed otherwise. The library writes into it chunk by
- * chunk; errno at the first failure is kept, as the library reports only that it failed. */
+/* A file of output_begin. The library writes into it chunk by chunk; errno at the first failure is kept, as the library
+ * reports only that it failed. */
 class PartFile final : public OIIO::Filesystem::IOFile {
 public:
-    PartFile(std::string part, FILE *file) : IOFile(file, Write), part_(std::move(part)), file_(file) {}
+    PartFile(const char *path, FILE *file) : IOFile(file, Write), path_(path), file_(file) {}
     PartFile(const PartFile &) = delete;
     PartFile &operator=(const PartFile &) = delete;
     ~PartFile() override
     {
-        if (!file_) return;
-        fclose(file_);
-        unlink(part_.c_str());
+        if (file_) output_abandon(file_, path_);
     }
 
     size_t write(const void *bytes, size_t count) override
@@ -78,15 +76,13 @@ public:
     }
 
     /* A full disk may be detected only here. */
-    bool finish(const char *path)
+    bool finish()
     {
         errno = 0;
-        bool ok = !ferror(file_);
-        if (fclose(file_) != 0) ok = false;
-        file_ = nullptr;
-        if (ok && rename(part_.c_str(), path) == 0) return true;
+        FILE *file = file_;
+        file_      = nullptr;
+        if (output_end(file, path_)) return true;
         keep_reason();
-        unlink(part_.c_str());
         return false;
     }
 
@@ -98,7 +94,7 @@ private:
         if (reason_ == 0) reason_ = errno;
     }
 
-    std::string part_;
+    const char *path_;
     FILE       *file_;
     int         reason_ = 0;
 };
@@ -107,18 +103,17 @@ private:
 template <typename WriteRows>
 static Status write_file(const char *path, const char *format, const ImageSpec &spec, WriteRows write_rows)
 {
-    const std::string part = std::string(path) + ".part";
-    FILE             *open = fopen(part.c_str(), "wb");
-    if (!open) return refuse(errno == ENOMEM ? STATUS_NO_MEMORY : STATUS_IO, "write", path, strerror(errno));
+    FILE *open = output_begin(path, 0);
+    if (!open) return refuse(errno == ENOMEM ? STATUS_NO_MEMORY : STATUS_IO, "write", path, output_reason(errno));
 
-    PartFile          file(part, open);
+    PartFile          file(path, open);
     const std::string name = std::string("out.") + format;
     auto              out  = ImageOutput::create(format);
     if (!out) return refuse(STATUS_UNSUPPORTED, "write", path, "OpenImageIO without this format");
     bool ok = out->set_ioproxy(&file) && out->open(name, spec) && write_rows(out.get()) && out->close();
     const std::string said = ok ? "short write" : out->geterror();
     out.reset(); /* it may write until then */
-    if (ok && file.finish(path)) return STATUS_OK;
+    if (ok && file.finish()) return STATUS_OK;
     return refuse(STATUS_IO, "write", path, file.reason() ? strerror(file.reason()) : said.c_str());
 }
 

@@ -1,5 +1,6 @@
 /* sensor/publish/pairs.c: the consumer that writes each frame with and without its target, with and without noise. */
 #include "sensor/publish/pairs.h"
+#include "pitviper_output.h"
 
 #include "sensor/publish/pair_record.h"
 
@@ -125,8 +126,10 @@ static Status put(Consumer *consumer, Frame *frame)
 
 /* ---- opened ----------------------------------------------------------------------------------- */
 
-static Status open_members(Pairs *p, const PairsOf *of)
+static Status begin(Consumer *consumer)
 {
+    Pairs         *p  = (Pairs *)consumer;
+    const PairsOf *of = &p->of;
     const unsigned kept   = of->bands | (frame_files_truth(of->config) ? frame_truth : 0);
     Status         status = STATUS_OK;
     char           path[path_size];
@@ -142,9 +145,9 @@ static Status open_members(Pairs *p, const PairsOf *of)
     if (status != STATUS_OK) return status;
     snprintf(path, sizeof path, "%.*s/pairs.jsonl", path_size - 32, of->out); /* the longer paths of the folders are
                                                                                * valid */
-    p->index = fopen(path, "w");
+    p->index = output_file(path, 0);
     if (p->index) return STATUS_OK;
-    log_error("pairs: cannot write %s: %s; choose another place with --out", path, strerror(errno));
+    log_error("pairs: cannot write %s: %s; choose another place with --out", path, output_reason(errno));
     return STATUS_IO;
 }
 
@@ -157,7 +160,7 @@ Status consume_pairs(Consumer **out, const PairsOf *of)
         return STATUS_NO_MEMORY;
     }
     p->consumer = (Consumer){WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY, put, NULL,
-                             close_pairs, "pairs"};
+                             close_pairs, "pairs", begin};
     p->of       = *of;
     p->all      = strcmp(of->config->publish.pairs, "all") == 0;
     p->noiseless = *of->config;
@@ -165,8 +168,6 @@ Status consume_pairs(Consumer **out, const PairsOf *of)
     p->member[CLEAN].chains            = of->clean;
     p->member[BACKGROUND].chains       = of->background;
     p->member[BACKGROUND_CLEAN].chains = of->background_clean;
-    const Status status = open_members(p, of);
-    if (status == STATUS_OK) *out = &p->consumer;
-    else close_pairs(&p->consumer);
-    return status;
+    *out = &p->consumer;
+    return STATUS_OK;
 }

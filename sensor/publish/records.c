@@ -1,5 +1,6 @@
 /* sensor/publish/records.c: truth.jsonl and run.json, line by line. */
 #include "sensor/publish/records.h"
+#include "pitviper_output.h"
 
 #include "sensor/publish/json_write.h"
 #include "sensor/publish/radar_record.h"
@@ -100,6 +101,8 @@ static json_t *bands_json(const TargetRecord *t)
         set_number(band, "veil_transmittance", v->veil_transmittance);
         set_number(band, "intensity_w_sr", v->intensity_w_sr);
         set_number(band, "intensity_error_w_sr", v->intensity_error_w_sr);
+        set_number(band, "error_rms_k", v->error_rms_k);
+        set_number(band, "error_median_k", v->error_median_k);
         if (json_object_size(band) > 0)
             json_object_set_new(bands, band_name((Band)b), band);
         else
@@ -108,15 +111,10 @@ static json_t *bands_json(const TargetRecord *t)
     return bands;
 }
 
-static const char *occluder_name(TargetOccluder occluder)
-{
-    return occluder == OCCLUDER_GROUND ? "ground" : occluder == OCCLUDER_TREES ? "trees" : "entity";
-}
-
 static json_t *target_json(const TargetRecord *t)
 {
     json_t *target = json_object();
-    char    type[dis_type_text_size];
+    char    type[dis_type_text_size], occluder_id[dis_id_text_size];
 
     set_id(target, "entity", t->id);
     set_text(target, "marking", t->marking, strnlen(t->marking, 11));
@@ -142,10 +140,8 @@ static json_t *target_json(const TargetRecord *t)
         json_object_set_new(target, "box_px", box);
     }
     json_object_set_new(target, "amodal_box_px", numbers(t->amodal_box, 4));
-    if (!dis_entity_id_is_none(t->occluder_id))
-        set_id(target, "occluded_by", t->occluder_id);
-    else if (t->occluder != OCCLUDER_NONE)
-        json_object_set_new(target, "occluded_by", json_string(occluder_name(t->occluder)));
+    const char *occluder = target_occluder_text(occluder_id, t);
+    if (occluder) json_object_set_new(target, "occluded_by", json_string(occluder));
     set_number(target, "dt_k", t->dt_k);
     if (t->patches > 0) {
         json_t *patches = json_array();
@@ -155,13 +151,13 @@ static json_t *target_json(const TargetRecord *t)
     }
     set_number(target, "age_s", t->age_s);
     set_number(target, "position_error_m", t->position_error_m);
+    set_number(target, "error_px", t->error_px);
     json_object_set_new(target, "bands", bands_json(t));
     return target;
 }
 
 /* By source: as a share, and the same in a unit. */
-static void set_error(json_t *error, const char *of, const double share[error_sources],
-                      const double same[error_sources], const char *unit)
+static json_t *error_by_source(const double share[error_sources], const double same[error_sources], const char *unit)
 {
     static const char *const name[error_sources] = {"sampling", "level_of_detail", "table",
                                                     "heat",     "dead_reckoning",  "total"};
@@ -172,18 +168,28 @@ static void set_error(json_t *error, const char *of, const double share[error_so
         set_number(band, name[s], share[s]);
         set_number(band, key, same[s]);
     }
+    return band;
+}
+
+static void set_if_known(json_t *error, const char *of, json_t *band)
+{
     if (json_object_size(band) > 0) json_object_set_new(error, of, band);
     else json_decref(band);
 }
 
-/* rms over the image as a share of the band's mean; _k: the same in kelvin about that mean. Of the radar over its map;
- * _db: of an entity's cross section. */
+/* rms over the image as a share of the band's mean; _k: the same in kelvin about that mean. The mean of the pseudo-radar
+ * is that of a few mirrors, and no measure. Of the radar over its map; _db: of an entity's cross section. */
 static json_t *error_json(const FrameRecord *r)
 {
-    json_t *error = json_object();
-    for (int b = 0; b < BAND_COUNT && r->error; b++)
-        set_error(error, band_name((Band)b), r->error->share[b], r->error->kelvin[b], "k");
-    if (r->radar_error) set_error(error, "range_doppler", r->radar_error->share, r->radar_error->db, "db");
+    const FrameError *e = r->error;
+    json_t           *error = json_object();
+    for (int b = 0; b < BAND_RADAR && e; b++) {
+        json_t *band = error_by_source(e->share[b], e->kelvin[b], "k");
+        set_number(band, "median_k", e->median_k[b]);
+        set_number(band, "beyond_1k", e->beyond_1k[b]);
+        set_if_known(error, band_name((Band)b), band);
+    }
+    if (r->radar_error) set_if_known(error, "range_doppler", error_by_source(r->radar_error->share, r->radar_error->db, "db"));
     return error;
 }
 
@@ -295,6 +301,23 @@ static json_t *live_json(const LiveCounters *c)
     return live;
 }
 
+static json_t *answers_json(const AnswerCounters *c)
+{
+    json_t  *answers = json_object(), *refused = json_object();
+    uint64_t received = 0;
+    for (int i = 0; i < DETECTIONS_REASONS; i++) received += c->datagrams[i];
+    set_count(answers, "datagrams", received + c->lost_kernel);
+    set_count(answers, "taken", c->datagrams[DETECTIONS_GOOD] + c->datagrams[DETECTIONS_LATE]);
+    set_count(answers, "late", c->datagrams[DETECTIONS_LATE]);
+    for (int i = 0; i < DETECTIONS_REASONS; i++)
+        if (i != DETECTIONS_GOOD && i != DETECTIONS_LATE) set_if_any(refused, detections_reason_name[i], c->datagrams[i]);
+    json_object_set_new(answers, "refused", refused);
+    set_count(answers, "lost_kernel", c->lost_kernel);
+    set_count(answers, "lines", c->lines);
+    set_if_any(answers, "lines_failed", c->lines_failed);
+    return answers;
+}
+
 static json_t *counters_json(const RunRecord *r)
 {
     json_t *counters = json_object(), *pdus = json_object(), *dropped = json_object(), *skipped = json_object();
@@ -309,12 +332,18 @@ static json_t *counters_json(const RunRecord *r)
             set_count(pdus, type, r->dis->pdus[i]);
         }
     json_object_set_new(counters, "pdus", pdus);
-    for (int i = 0; i < DIS_DROP_COUNT; i++) set_count(dropped, dis_drop_name((DisDrop)i), r->dis->dropped[i]);
+    for (int i = 0; i < DIS_DROP_COUNT; i++) {
+        if (i == DIS_DROP_LENGTH_ZERO) set_if_any(dropped, dis_drop_name((DisDrop)i), r->dis->dropped[i]);
+        else set_count(dropped, dis_drop_name((DisDrop)i), r->dis->dropped[i]);
+    }
     json_object_set_new(counters, "dropped", dropped);
+    set_if_any(counters, "lengths_made", r->dis->lengths_made);
+    set_if_any(counters, "padded", r->dis->padded);
     set_count(counters, "stamps_doubted", r->dis->stamps_doubted);
     set_count(counters, "packets_without_datagram", r->link_dropped);
     set_count(counters, "own", r->own);
     if (r->live) json_object_set_new(counters, "live", live_json(r->live));
+    if (r->answers) json_object_set_new(counters, "answers", answers_json(r->answers));
     json_object_set_new(counters, "frames_at_gimbal_limit", json_integer(r->at_limit));
     set_if_any(counters, "frames_without_radar", (uint64_t)r->radar_left_out);
     set_count(entities, "created", r->entities_created);
@@ -432,7 +461,6 @@ static json_t *woods_json(const WoodsRecord *r)
 Status record_write_run(const char *path, const RunRecord *r)
 {
     json_t *run = json_object(), *timings = json_object();
-    char    part[4096];
 
     json_object_set_new(run, "pitviper", json_string(PITVIPER_VERSION));
     json_object_set_new(run, "status", json_string(r->status));
@@ -446,6 +474,8 @@ Status record_write_run(const char *path, const RunRecord *r)
     json_object_set_new(run, "threads", json_integer(r->threads));
     json_object_set_new(run, "isa", json_string(r->isa));
     json_object_set_new(run, "libraries", libraries_json());
+    if (r->memory) json_object_set_new(run, "memory", json_string(r->memory));
+    if (r->detections_port) json_object_set_new(run, "detections_port", json_integer(r->detections_port));
     json_object_set_new(run, "hosts", texts(r->host, r->host_count));
     json_object_set_new(run, "choices", texts(r->choice, r->choice_count));
     json_object_set_new(run, "frames", json_integer(r->frames));
@@ -454,6 +484,12 @@ Status record_write_run(const char *path, const RunRecord *r)
     for (int i = 0; i < r->listed; i++) json_array_append_new(number, json_integer(r->frame_number[i]));
     json_object_set_new(run, "frame_number", number);
     if (r->woods) json_object_set_new(run, "woods", woods_json(r->woods));
+    if (r->materials && r->materials->count > 1) {
+        json_t *names = json_array();
+        for (int i = 1; i < r->materials->count; i++)
+            json_array_append_new(names, json_string(r->materials->material[i].name));
+        json_object_set_new(run, "materials", names);
+    }
     json_object_set_new(run, "counters", counters_json(r));
     for (int i = 0; i < r->stage_count; i++) {
         json_t *stage = json_object();
@@ -465,12 +501,11 @@ Status record_write_run(const char *path, const RunRecord *r)
     json_object_set_new(run, "timings_ms", timings);
     if (r->latency) json_object_set_new(run, "latency_ms", latency_json(r->latency));
 
-    snprintf(part, sizeof part, "%s.part", path);
-    const bool ok = json_dump_file(run, part, JSON_INDENT(1)) == 0 && rename(part, path) == 0;
+    FILE      *file = output_begin(path, 0);
+    const bool put = file && json_dumpf(run, file, JSON_INDENT(1)) == 0;
     json_decref(run);
-    if (!ok) {
-        log_error("records: cannot write %s: %s", path, strerror(errno));
-        unlink(part);
-    }
-    return ok ? STATUS_OK : STATUS_IO;
+    if (put && output_end(file, path)) return STATUS_OK;
+    if (file && !put) output_abandon(file, path);
+    log_error("records: cannot write %s: %s", path, output_reason(errno));
+    return STATUS_IO;
 }

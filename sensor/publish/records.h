@@ -9,6 +9,7 @@
 
 #include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
+#include "sensor/publish/answer_counters.h"
 #include "sensor/radar/radar_frame.h"
 #include "sensor/truth/footprint.h"
 #include "sensor/publish/target_record.h"
@@ -16,6 +17,7 @@
 #include "sensor/truth/radar_error.h"
 #include "terrain/earth/sun.h"
 #include "terrain/woods/woods.h"
+#include "render/materials/materials.h"
 
 #include <stdio.h>
 
@@ -93,7 +95,11 @@ typedef struct RunRecord {
     const char *const *stage;
     double (*stage_ms)[3];            /* median, p95, max */
     const LatencySummary *latency;    /* NULL: no ledger was kept */
+    const char *memory;               /* name of the ring of frames; NULL: none */
+    int         detections_port;      /* 0: none */
+    const AnswerCounters *answers;    /* received there; NULL: none */
     const WoodsRecord *woods;         /* NULL: no plants */
+    const Materials   *materials;     /* of the material planes; NULL: not given */
 } RunRecord;
 
 /* The complete file, atomically. */

@@ -21,7 +21,7 @@ static TargetRecord record_of(const Target *t, const Snapshot *snapshot, const C
                  .range_m = t->range_m, .closing_mps = t->closing_mps,
                  .aspect_rad = t->aspect_rad, .depression_rad = t->depression_rad, .los_az_rad = t->los_az_rad,
                  .los_el_rad = t->los_el_rad, .occluder = occluder_of(t), .age_s = entity->age_s,
-                 .position_error_m = entity->position_error_m, .dt_k = NAN};
+                 .position_error_m = entity->position_error_m, .error_px = t->error_px, .dt_k = NAN};
     if (entity->first_patch >= 0) {
         r.dt_k    = (double)entity->dt_k;
         r.patches = entity->patches;
@@ -45,6 +45,18 @@ TargetRecord *target_records(const Target *target, int count, const Snapshot *sn
     TargetRecord *record = arena_alloc(arena, (size_t)count + 1, sizeof *record);
     for (int i = 0; record && i < count; i++) record[i] = record_of(&target[i], snapshot, catalog);
     return record;
+}
+
+const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord *t)
+{
+    if (!dis_entity_id_is_none(t->occluder_id)) {
+        dis_entity_id_text(text, t->occluder_id);
+        return text;
+    }
+    return t->occluder == OCCLUDER_NONE     ? NULL
+           : t->occluder == OCCLUDER_GROUND ? "ground"
+           : t->occluder == OCCLUDER_TREES  ? "trees"
+                                            : "entity";
 }
 
 void box_coco(int out[4], const int box[4])

@@ -19,11 +19,11 @@
  * one value, but may show several entities: it counts for `box` when any sample in it shows the target, and for the
  * mask when its own ray does, or, of a small target, when the target fills more than half of it. So COCO's box lies
  * within `box` and is smaller by the rows and columns of pixels that the target only fills in part: none or one on a
- * side of a compact target, more where it ends in a thin part (an antenna, a barrel); of a target that fills no pixel
- * by more than half there is no annotation at all.
+ * side of a compact target, more where it ends in a thin part (an antenna, a barrel). Of an ignore region - a target that
+ * fills no pixel by more than half, or is below a limit - it is `box` itself.
  *
  * amodal_box: of the target's vertices, image coordinates, not clipped and not rounded: the first pixel extends from
- * 0 to 1. Only truth.jsonl and shared memory have it.
+ * 0 to 1. Only truth.jsonl, coco.json (bbox_amodal: x, y, width, height) and shared memory have it.
  *
  * Other numbers: truth.jsonl has 15 digits, angles in degrees, and omits NaN; coco.json the same; Data PDUs have f32,
  * angles in radians, and NaN; ST 0903 has the integers of its tags, stated where they are written.
@@ -64,12 +64,16 @@ typedef struct TargetRecord {
     int           patches;                 /* 0: their temperatures are not known */
     const float  *patch_k;                 /* the snapshot's [patches] */
     double        age_s, position_error_m; /* of the report that it was extrapolated from; estimate */
+    double        error_px;                /* rms displacement on the image */
     TargetBand    band[BAND_COUNT];
 } TargetRecord;
 
 /* In the order of target. NULL: no memory. */
 TargetRecord *target_records(const Target *target, int count, const Snapshot *snapshot, const Catalog *catalog,
                              Arena *arena);
+
+/* What hides most of it: the id of an entity, `ground`, `trees`, `entity`; NULL: nothing. */
+const char *target_occluder_text(char text[dis_id_text_size], const TargetRecord *target);
 
 /* ---- a box in other forms ---- */
 

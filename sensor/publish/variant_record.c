@@ -1,6 +1,8 @@
 /* sensor/publish/variant_record.c: manifest.jsonl and variant.json of a sweep. */
 #include "sensor/publish/variant_record.h"
 
+#include "sensor/publish/json_read.h"
+
 #include <jansson.h>
 #include <stdlib.h>
 
@@ -14,7 +16,7 @@ static void take_text(char *out, size_t size, const json_t *object, const char *
 
 bool made_run_read(MadeRun *out, const char *path)
 {
-    json_t *run = json_load_file(path, 0, NULL);
+    json_t *run = json_read_file(path);
     *out = (MadeRun){0};
     if (!json_is_object(run)) {
         json_decref(run);

@@ -1,5 +1,6 @@
 /* sensor/quality/quality.c: the table of settings, the selection from it, and its application to the configuration. */
 #include "sensor/quality/quality.h"
+#include "pitviper_output.h"
 
 #include <errno.h>
 
@@ -63,7 +64,7 @@ Status quality_open(QualityTable *out, const char *path)
 
 Status quality_write(const char *path, const QualityTable *table, const char *comment)
 {
-    FILE *file = fopen(path, "w");
+    FILE *file = output_begin(path, OUTPUT_STREAM);
     bool  ok = file != NULL;
     ok = ok && fprintf(file, "# %s\n", comment) > 0;
     for (int c = 0; ok && c < column_count; c++)
@@ -73,8 +74,9 @@ Status quality_write(const char *path, const QualityTable *table, const char *co
         ok = fprintf(file, "%d,%d,%d,%.3g,%.3g,%.3g,%.3g,%.3g,%.4g\n", r->samples, r->edge_samples, r->target_samples,
                      r->percent[0], r->percent[1], r->percent[2], r->kelvin[1], r->kelvin[2], r->ms_megapixel) > 0;
     }
-    if (file) ok = fclose(file) == 0 && ok;
-    if (!ok) log_error("quality: cannot write %s: %s", path, strerror(errno));
+    if (file && ok) ok = output_end(file, path);
+    else if (file) output_abandon(file, path);
+    if (!ok) log_error("quality: cannot write %s: %s", path, output_reason(errno));
     return ok ? STATUS_OK : STATUS_IO;
 }
 

@@ -1,5 +1,8 @@
 /* sensor/radar/signature_library.c: see signature_library.h. */
 #include "sensor/radar/signature_library.h"
+#include "pitviper_output.h"
+
+#include "pitviper_file.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -193,15 +196,15 @@ static void refused(SignatureLibrary *l, const char *path)
 /* The whole file; NULL: not there, or not of a length that one can have. */
 static uint8_t *read_whole(size_t *count, const char *path)
 {
-    struct stat about;
-    FILE       *file = fopen(path, "rbe");
-    if (!file) return NULL;
-    uint8_t   *octets = NULL;
-    const off_t most = head_octets + hash_octets + (off_t)most_centres * (off_t)sizeof(SignatureCentre);
-    if (fstat(fileno(file), &about) == 0 && S_ISREG(about.st_mode) && about.st_size >= 0 && about.st_size <= most)
-        octets = malloc((size_t)about.st_size + 1);
-    if (octets) *count = fread(octets, 1, (size_t)about.st_size, file);
-    fclose(file);
+    static const uint64_t most = head_octets + hash_octets + (uint64_t)most_centres * sizeof(SignatureCentre);
+    char      why[file_why_size];
+    uint64_t  there = 0;
+    const int file = file_open(why, &there, path, FILE_FROM_DISK);
+    if (file < 0) return NULL;
+    uint8_t   *octets = there <= most ? malloc((size_t)there + 1) : NULL;
+    const long got = octets ? file_read(file, octets, (size_t)there) : 0;
+    *count = got > 0 ? (size_t)got : 0;
+    close(file);
     return octets;
 }
 
@@ -241,12 +244,12 @@ static bool write_whole(const char *path, const uint8_t *octets, size_t count)
 {
     char part[4200];
     snprintf(part, sizeof part, "%s.%ld.part", path, (long)getpid());
-    FILE *file = fopen(part, "wbe");
+    FILE *file = output_file(part, 0);
     if (!file) return false;
     const bool whole = fwrite(octets, 1, count, file) == count;
-    if (fclose(file) == 0 && whole && rename(part, path) == 0) return true;
+    if (fclose(file) == 0 && whole && output_rename(part, path) == 0) return true;
     const int why = errno;
-    unlink(part);
+    output_remove(part);
     errno = why;
     return false;
 }
@@ -270,7 +273,7 @@ static void keep(void *user, const Signature *signature, const SignatureKey *key
     pthread_mutex_unlock(&l->lock);
     if (!written && first)
         log_warn("radar: cannot write %s: %s; signatures are made, and not kept in radar.library", path,
-                 made ? strerror(why) : "out of memory");
+                 made ? output_reason(why) : "out of memory");
 }
 
 bool signature_library_has(SignatureLibrary *l, const SignatureKey *key)

@@ -1,4 +1,4 @@
-/* sensor/reference/labels.c: products for training a recogniser: pairs.jsonl and coco.json. */
+/* sensor/reference/labels.c: products for training and judging a recogniser: pairs.jsonl, coco.json, answers.jsonl. */
 #include "sensor/reference/reference.h"
 
 #include "sensor/reference/words.h"
@@ -53,18 +53,24 @@ static const ReferenceField coco_fields[] = {
     {"images[].frame", "integer", "", "from 0", "", "number of the frame"},
     {"images[].time_s", "number", "s", "exercise time", "", "instant of the frame"},
     {"images[].variant", "string", "", "", "except in the coco.json of a sweep", "the variant's folder"},
-    {"annotations", "list of objects", "", "", "", "one per target and image with at least one mask pixel"},
+    {"annotations", "list of objects", "", "", "", "one per image and target of which something is visible"},
     {"annotations[].id", "integer", "", "from 1", "", "number of the annotation"},
     {"annotations[].image_id", "integer", "", "", "", "of images[].id"},
     {"annotations[].category_id", "integer", "", "", "", "of categories[].id"},
     {"annotations[].bbox", "list of 4 integers", "px", "image: left, top, width, height; from 0", "",
-     "bounding box of the mask"},
+     "bounding box of the mask; of an ignore region the box of all pixels that show any part of the target"},
+    {"annotations[].bbox_amodal", "list of 4 numbers", "px", "image: left, top, width, height", "",
+     "box of all its vertices, hidden or not, not cropped by the image"},
     {"annotations[].area", "integer", "px", "", "", "number of mask pixels"},
     {"annotations[].pixels", "number", "px", "", "", "visible area with fractions of pixels: pixels of truth.jsonl"},
     {"annotations[].iscrowd", "integer", "", "", "",
-     "1: below publish.coco_min_pixels or publish.coco_min_visible, to be ignored in the evaluation; else 0"},
+     "1: an ignore region, in which a detection of this category is neither right nor wrong; 0: a target to be found"},
     {"annotations[].ignore", "integer", "", "", "", "as iscrowd"},
-    {"annotations[].segmentation", "object", "", "", "", "the mask: pixels mostly covered by the target"},
+    {"annotations[].ignored_as", "string", "", "", "of a target to be found",
+     "why, the first that holds: `no_mask`, it fills no pixel by more than half; `small`, below publish.coco_min_pixels; "
+     "`hidden`, below publish.coco_min_visible; `faint`, below publish.coco_min_snr"},
+    {"annotations[].segmentation", "object", "", "", "",
+     "the mask: pixels mostly covered by the target; of an ignore region all of bbox"},
     {"annotations[].segmentation.size", "list of 2 integers", "px", "rows, columns", "", "size of the image"},
     {"annotations[].segmentation.counts", "string", "", "column by column, the first run is off", "",
      "lengths of runs, off and on in turn, compressed as pycocotools does"},
@@ -76,6 +82,12 @@ static const ReferenceField coco_fields[] = {
     {"annotations[].range_m", "number", "m", "", "", "as in truth.jsonl"},
     {"annotations[].aspect_deg", "number", "deg", "", "", "as in truth.jsonl"},
     {"annotations[].visible_fraction", "number", "", "", "as in truth.jsonl", "as in truth.jsonl"},
+    {"annotations[].foliage_fraction", "number", "", "", "as in truth.jsonl", "as in truth.jsonl"},
+    {"annotations[].occluded_by", "string", "", "", "as in truth.jsonl", "as in truth.jsonl"},
+    {"annotations[].snr", "number", "", "", "as in truth.jsonl", "bands.BAND.snr of truth.jsonl, in the image's band"},
+    {"annotations[].contrast", "number", "K, apparent, in mwir and lwir; else ratio", "", "as in truth.jsonl",
+     "bands.BAND.contrast_k of truth.jsonl in mwir and lwir, bands.BAND.contrast in optical and radar"},
+    {"annotations[].contrast_k", "number", "K, apparent", "", "as in truth.jsonl", "bands.BAND.contrast_k of truth.jsonl"},
     {"categories", "list of objects", "", "", "", "a fixed table, the same for every log and version"},
     {"categories[].id", "integer", "", "from 1", "", "number of the category"},
     {"categories[].name", "string", "", "", "", "tank, apc, truck ...: class of truth.jsonl"},
@@ -89,13 +101,14 @@ static const ReferenceField coco_fields[] = {
     {"info.seed", "integer", "", "", "in that of a sweep", "of all random numbers"},
     {"info.min_pixels", "integer", "px", "", "in that of a sweep", "publish.coco_min_pixels"},
     {"info.min_visible", "number", "", "0 .. 1", "in that of a sweep", "publish.coco_min_visible"},
+    {"info.min_snr", "number", "", "", "in that of a sweep", "publish.coco_min_snr"},
     {"info.variants", "integer", "", "", "except in that of a sweep", "number of variants joined"},
 };
 
 const Reference reference_coco = {
     .topic = "coco",
     .file  = "coco.json",
-    .title = "boxes and masks of all targets in COCO format",
+    .title = "boxes and masks of all targets, and ignore regions, in COCO format",
     .about = "With --coco; written at the end of the run. A sweep has one per variant, and one of all variants in its "
              "own folder.",
     .field = REFERENCE_FIELDS(coco_fields),
@@ -110,4 +123,37 @@ const Reference reference_coco = {
         "    left, top, width, height = a['bbox']\n"
         "    print(image[a['image_id']]['file_name'], name[a['category_id']], (left, top, width, height), a['area'])\n"
         "# with pycocotools: COCO('coco.json').annToMask(a) is the mask, [row][column]\n",
+};
+
+static const ReferenceField answer_fields[] = {
+    {"frame", "integer", "", "from 0", "", "number of the frame that was answered"},
+    {"band", "string", "", "", "", "BAND that was answered"},
+    {"time_s", "number", "s", "exercise time", "", "instant of that frame"},
+    {"answer", "integer", "", "from 1", "", "number of the detection among those of the answer; 0: it found nothing"},
+    {"of", "integer", "", "", "", "detections of the answer: so many lines belong together"},
+    {"class", "string", "", "", "when nothing was found", "the recogniser's own word, at most 31 characters"},
+    {"box_px", "list of 4 numbers", "px", "image: left, top, right, bottom; from 0, the last two beyond it",
+     "when nothing was found", "bounding box"},
+    {"score", "number", "", "0 .. 1", "when nothing was found", "confidence"},
+    {"track", "integer", "", "", "when the recogniser gave none", "the same number for the same object in later frames"},
+    {"latency_ms", "number", "ms", "", "", "from the end of the frame's rendering until the answer was received"},
+    {"late", "boolean", "", "", "", "a newer frame of the band was answered before: not in metadata"},
+};
+
+const Reference reference_answers = {
+    .topic = "answers",
+    .file  = "answers.jsonl",
+    .title = "the answers of a recogniser: a line of JSON per detection",
+    .about = "With publish.detections_port (etc/reference/memory.md). One answer counts for a frame and band, the first; "
+             "repeated ones,\n"
+             "and all that are refused, are counted in run.json: counters.answers.",
+    .field = REFERENCE_FIELDS(answer_fields),
+    .word  = REFERENCE_FIELDS(words),
+    .python =
+        "import json\n"
+        "for line in open('answers.jsonl'):\n"
+        "    answer = json.loads(line)\n"
+        "    if answer['of'] == 0:               # nothing was found\n"
+        "        continue\n"
+        "    print(answer['frame'], answer['band'], answer['class'], answer['box_px'], answer['score'], answer['latency_ms'])\n",
 };

@@ -29,6 +29,10 @@ static const ReferenceField exr_fields[] = {
     {"channel truth/cover", "uint", "", "from 1, into surface_names; 0: no ground", "with terrain.woods off",
      "surface class of the ground"},
     {"channel truth/temp_k", "float", "K", "", "", "temperature of the surface; NaN: sky"},
+    {"channel truth/emissivity_mwir", "float", "", "0 .. 1", "without mwir",
+     "1 - reflectance - transmittance of the material, hemispherical: its row of etc/materials.csv, of plants etc/plant_optics.csv; "
+     "NaN: sky"},
+    {"channel truth/emissivity_lwir", "float", "", "0 .. 1", "without lwir", "the same"},
     {"channel truth/nx", "float", "", "ENU at the terrain origin, east", "", "unit normal of the surface"},
     {"channel truth/ny", "float", "", "ENU at the terrain origin, north", "", "the same"},
     {"channel truth/nz", "float", "", "ENU at the terrain origin, up", "", "the same"},

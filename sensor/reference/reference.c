@@ -4,7 +4,7 @@
 static const Reference *const topics[] = {
     &reference_products, &reference_truth, &reference_run, &reference_exr, &reference_png, &reference_raw,
     &reference_profile, &reference_radar, &reference_radar_map, &reference_radar_scan, &reference_radar_azimuths,
-    &reference_pairs, &reference_coco, &reference_manifest, &reference_sheet, &reference_data_pdu,
+    &reference_pairs, &reference_coco, &reference_answers, &reference_manifest, &reference_sheet, &reference_data_pdu,
     &reference_stream_pdu, &reference_radar_pdu, &reference_pdus, &reference_regress,
 };
 enum { topic_count = sizeof topics / sizeof *topics, columns = 112 };

@@ -20,6 +20,8 @@ static const ReferenceField fields[] = {
     {"channel frame/lwir.Y", "uint", "11 bits of mantissa", "", STEP_OF, "coded"},
     {"channel frame/radar.Y", "uint", "7 bits of mantissa", "", STEP_OF, "coded"},
     {"header frame/frame", "int", "", "from 0", "", "number of the frame"},
+    {"header frame/material_names", "string", "", "separated by commas; the first is material 1", "in older baselines",
+     "names of the materials, by which material is compared"},
     {"header frame/capDate", "string", "", "UTC", "", "instant of the frame"},
     {"channel profile/bounce_1", "uint", "7 bits of mantissa", "", "", "coded; a row of range bins"},
     {"channel profile/bounce_2", "uint", "7 bits of mantissa", "", "", "coded"},

@@ -11,6 +11,13 @@ static const char *what_skip(int i) { return skip_what((Skip)i); }
 static const char *kind(int i) { return i < PLANT_STANDING ? plant_name((PlantKind)i) : NULL; }
 static const char *stage(int i) { return i < session_stages ? session_stage_name[i] : NULL; }
 
+/* All but those that are no fault. */
+static const char *answer_fault(int i)
+{
+    const int reason = i + 1 + (i + 1 >= DETECTIONS_LATE);
+    return reason < DETECTIONS_REASONS ? detections_reason_name[reason] : NULL;
+}
+
 static const char *latency(int i) { return i < LATENCY_STAGE_COUNT ? latency_stage_name[i] : NULL; }
 
 static const ReferenceField fields[] = {
@@ -29,6 +36,9 @@ static const ReferenceField fields[] = {
     {"isa", "string", "", "", "", "instruction set of the ray tracer"},
     {"libraries", "object", "", "", "", "libraries used in the computation"},
     {"libraries.LIBRARY", "string", "", "", "", "its version"},
+    {"memory", "string", "", "", "without publish.memory", "name of the ring of frames in /dev/shm"},
+    {"detections_port", "integer", "", "", "without publish.detections_port",
+     "UDP port that received a recogniser's detections"},
     {"hosts", "list of strings", "", "site:application:entity, or `observer`", "",
      "which entities carried the sensor, one after the other"},
     {"choices", "list of strings", "", "`what: choice`", "", "automatic choices, as printed"},
@@ -36,6 +46,8 @@ static const ReferenceField fields[] = {
     {"frame_sha256", "list of strings", "", "as frame_number", "with publish.truth false", "SHA-256 of all planes before they are encoded"},
     {"frame_number", "list of integers", "", "from 0", "",
      "numbers of the frames in frame_sha256; of a very long run only the first"},
+    {"materials", "list of strings", "", "", "", "names of the materials: the k-th, from 1, is value k of the material "
+     "planes"},
     {"woods", "object", "", "", "with terrain.woods off", "plants that stand on the ground"},
     {"woods.plants", "integer", "", "", "", "trees, bushes and hedges"},
     {"woods.kinds", "object", "", "", "", "of these, by kind"},
@@ -57,6 +69,9 @@ static const ReferenceField fields[] = {
     {"counters.pdus.TYPE", "integer", "", "", "when there were none", "well-formed PDUs of this type"},
     {"counters.dropped", "object", "", "", "", "PDUs rejected, by reason"},
     {"counters.dropped.REASON", "integer", "", "", "", "PDUs"},
+    {"counters.lengths_made", "integer", "", "", "when 0",
+     "PDUs with a length field of 0, taken by their type and the datagram's length"},
+    {"counters.padded", "integer", "", "", "when 0", "runs of zeros behind a PDU, passed over"},
     {"counters.stamps_doubted", "integer", "", "", "", "time stamps inconsistent with their arrival"},
     {"counters.packets_without_datagram", "integer", "", "", "",
      "of the capture: other protocols, other ports, cut short, incomplete fragments"},
@@ -71,6 +86,15 @@ static const ReferenceField fields[] = {
     {"counters.live.frames_late", "integer", "", "", "", "frames dropped because they were too late"},
     {"counters.live.files_failed", "integer", "", "", "", "frames whose files could not be written"},
     {"counters.live.files_left_out", "integer", "", "", "", "frames without files because the disk was too slow"},
+    {"counters.answers", "object", "", "", "without publish.detections_port", "datagrams of a recogniser"},
+    {"counters.answers.datagrams", "integer", "", "", "", "all that arrived: taken, refused or lost"},
+    {"counters.answers.taken", "integer", "", "", "", "answers in answers.jsonl"},
+    {"counters.answers.late", "integer", "", "", "", "of these, received after that to a newer frame: not in metadata"},
+    {"counters.answers.refused", "object", "", "", "", "by reason"},
+    {"counters.answers.refused.FAULT", "integer", "", "", "when there were none", "datagrams"},
+    {"counters.answers.lost_kernel", "integer", "", "", "", "lost in the kernel, since they came too fast"},
+    {"counters.answers.lines", "integer", "", "", "", "of answers.jsonl"},
+    {"counters.answers.lines_failed", "integer", "", "", "when 0", "that could not be written"},
     {"counters.frames_at_gimbal_limit", "integer", "", "", "", "frames with the aim point beyond the gimbal limit"},
     {"counters.frames_without_radar", "integer", "", "", "radar.preset, live or a recording of that",
      "frames whose radar was left out, as signatures of targets were still to be made; absent: none"},
@@ -152,6 +176,7 @@ static const ReferenceWord words[] = {
     {"LIBRARY", "embree, openimageio, geographiclib, erfa, fftw, libc, compiler", NULL, NULL},
     {"TYPE", "the PDU type's number: 1 Entity State, 2 Fire, 3 Detonation ...", NULL, NULL},
     {"REASON", "one of", drop, NULL},
+    {"FAULT", "one of", answer_fault, NULL},
     {"SKIP", "one of", skip, what_skip},
     {"KIND", "one of", kind, NULL},
     {"STAGE", "one of", stage, NULL},

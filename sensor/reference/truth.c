@@ -27,6 +27,7 @@ const Reference reference_products = {
         "    radar/NNNNNN_view.exr, _view_*.png help radar-scan both on the pixels of the bands\n"
         "    pairs.jsonl, pairs/              help pairs     each frame without its target, without noise; --pairs\n"
         "    coco.json                        help coco      boxes and masks; --coco\n"
+        "    answers.jsonl                    help answers   a recogniser's detections; --set publish.detections_port=PORT\n"
         "    manifest.jsonl, V/variant.json   help manifest  of --sweep: a line per variant; V/ is a folder of "
         "this kind\n"
         "    manifest.html, V/thumbnail.png   help sheet     of --sweep: thumbnails\n"
@@ -135,6 +136,8 @@ static const ReferenceField fields[] = {
      "temperature of each patch of its surface, also of those that are not seen"},
     {"targets[].age_s", "number", "s", "", "", "since its last Entity State"},
     {"targets[].position_error_m", "number", "m", "", "", "error of dead reckoning when it was received"},
+    {"targets[].error_px", "number", "px", "", "when it is occluded; with quality.budget off",
+     "its own error of position: rms displacement on the image by dead reckoning, facets and the ground"},
     {"targets[].bands", "object", "", "", "", "signal by band; empty: it is occluded"},
     {"targets[].bands.BAND", "object", "", "", "when the band was not rendered or it is occluded", "its signal in one "
      "band"},
@@ -144,32 +147,41 @@ static const ReferenceField fields[] = {
      "root of contrast_k squared plus the variance over the target"},
     {"targets[].bands.BAND.contrast", "number", "", "", "in mwir and lwir; without a background",
      "the same difference divided by the mean of the ring"},
-    {"targets[].bands.BAND.snr", "number", "", "", "without a background, or without clutter and noise",
-     "contrast divided by the rms sum of the ring's standard deviation and the detector's noise"},
+    {"targets[].bands.BAND.snr", "number", "", "", "without a background (not in optical); with a contrast, but neither clutter nor noise",
+     "contrast divided by the rms sum of the ring's standard deviation and the detector's noise; in optical at least 5e-5 "
+     "W/(m2 sr) of it without a sensor: a dark image shows nothing. Optical, where nothing surrounds it: its mean over the noise"},
     {"targets[].bands.BAND.veil_transmittance", "number", "", "0 .. 1", "in radar",
      "path transmittance of smoke and dust in front of it; 1: none"},
     {"targets[].bands.BAND.intensity_w_sr", "number", "W/sr", "in-band, at the aperture", "in radar",
      "its radiance times its area"},
     {"targets[].bands.BAND.intensity_error_w_sr", "number", "W/sr", "",
      "in radar, of a target that is not small, with quality.budget off", "rms sampling error of intensity_w_sr"},
+    {"targets[].bands.BAND.error_rms_k", "number", "K, apparent", "", "in optical and radar; with quality.budget off",
+     "its own error: rms over its pixels, by that displacement, heat and tables"},
+    {"targets[].bands.BAND.error_median_k", "number", "K, apparent", "", "in optical and radar; with quality.budget off",
+     "the same, median of its pixels' expected errors"},
     {"error", "object", "", "", "with quality.budget off", "the frame's estimate of its own error"},
-    {"error.BAND", "object", "", "", "when the band was not rendered", "rms over the image"},
+    {"error.BAND", "object", "", "", "when the band was not rendered; of the pseudo-radar, whose mean is that of a few mirrors",
+     "rms over the image: that of the brightest pixels, if these may be off"},
+    {"error.BAND.median_k", "number", "K, apparent", "", "in optical",
+     "median of the pixels' expected errors: half of them are better"},
+    {"error.BAND.beyond_1k", "number", "share of the image", "0 .. 1", "in optical", "pixels whose expected error is above 1 K"},
     {"error.BAND.sampling", "number", "", "share of the band's mean", "", "finite number of rays per pixel"},
     {"error.BAND.level_of_detail", "number", "", "share of the band's mean", "", "level of detail of ground and "
      "models"},
     {"error.BAND.table", "number", "", "share of the band's mean", "", "interpolation in tables of the atmosphere and "
      "Planck's law"},
     {"error.BAND.heat", "number", "", "share of the band's mean", "", "steps, elements and facets of the heat of ground and "
-     "parts; 0 in optical and radar"},
+     "parts; 0 in optical"},
     {"error.BAND.dead_reckoning", "number", "", "share of the band's mean", "", "position errors of dead-reckoned "
      "entities"},
     {"error.BAND.total", "number", "", "share of the band's mean", "", "total of these"},
-    {"error.BAND.sampling_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
-    {"error.BAND.level_of_detail_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
-    {"error.BAND.table_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
-    {"error.BAND.heat_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
-    {"error.BAND.dead_reckoning_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
-    {"error.BAND.total_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
+    {"error.BAND.sampling_k", "number", "K, apparent", "", "in optical", "the same in temperature"},
+    {"error.BAND.level_of_detail_k", "number", "K, apparent", "", "in optical", "the same in temperature"},
+    {"error.BAND.table_k", "number", "K, apparent", "", "in optical", "the same in temperature"},
+    {"error.BAND.heat_k", "number", "K, apparent", "", "in optical", "the same in temperature"},
+    {"error.BAND.dead_reckoning_k", "number", "K, apparent", "", "in optical", "the same in temperature"},
+    {"error.BAND.total_k", "number", "K, apparent", "", "in optical", "the same in temperature"},
     {"error.range_doppler", "object", "", "", "with radar.preset none",
      "the same of the radar's map, rms over the cells of its sum channel"},
     {"error.range_doppler.sampling", "number", "", "share of the cells' rms", "", "grid of ray tubes on entities"},

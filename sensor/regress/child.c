@@ -1,6 +1,8 @@
 /* sensor/regress/child.c: runs this program as a child process with output in files and a time limit. */
 #include "sensor/regress/child.h"
+#include "pitviper_output.h"
 
+#include "pitviper_file.h"
 #include "sensor/node/stop.h"
 
 #include <errno.h>
@@ -46,23 +48,32 @@ static int spawn(pid_t *child, const ChildLine *line, const char *out_path, cons
     posix_spawn_file_actions_t files;
     posix_spawnattr_t          how;
     sigset_t                   none, usual;
-    char                     **with = environment();
-    if (!with) return ENOMEM;
+    const int                  out   = output_open(out_path, 0);
+    const int                  error = out >= 0 ? output_open(error_path, 0) : -1;
+    int                        failure = error < 0 ? errno : 0;
+    char                     **with = failure ? NULL : environment();
+    if (!with) {
+        if (out >= 0) close(out);
+        if (error >= 0) close(error);
+        return failure ? failure : ENOMEM;
+    }
     sigemptyset(&none);
     sigfillset(&usual);
     sigdelset(&usual, SIGHUP); /* nohup stays */
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out_path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, error_path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&files, error, STDERR_FILENO);
     posix_spawnattr_init(&how);
     posix_spawnattr_setflags(&how, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
     posix_spawnattr_setpgroup(&how, 0);
     posix_spawnattr_setsigmask(&how, &none);
     posix_spawnattr_setsigdefault(&how, &usual);
-    const int failure = posix_spawn(child, "/proc/self/exe", &files, &how, (char *const *)line->argument, with);
+    failure = posix_spawn(child, "/proc/self/exe", &files, &how, (char *const *)line->argument, with);
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&how);
+    close(out);
+    close(error);
     free(with);
     return failure;
 }
@@ -127,7 +138,8 @@ void child_text(char *out, size_t out_size, const ChildLine *line)
 
 void child_tail(char *out, size_t out_size, const char *path)
 {
-    FILE *file = fopen(path, "rb");
+    char  why[file_why_size];
+    FILE *file = file_open_stream(why, path);
     *out       = 0;
     if (!file) return;
     if (fseek(file, 0, SEEK_END) == 0) {

@@ -133,6 +133,19 @@ static Status take_size(RecordFrame *f, const ImageInfo *info, const char *path)
     return STATUS_BAD_VALUE;
 }
 
+/* The names of the material plane, if the file has them; a list too long for any table of materials in use is none. */
+static Status read_material_names(RecordFrame *f, const char *path)
+{
+    enum { most = 65536 };
+    char  *text   = malloc(most);
+    Status status = text ? STATUS_OK : STATUS_NO_MEMORY;
+    if (text && image_read_string(text, most, path, "material_names") && *text && strlen(text) < most - 1 &&
+        !(f->material_names = strdup(text)))
+        status = STATUS_NO_MEMORY;
+    free(text);
+    return status;
+}
+
 static Status read_plane(RecordFrame *f, int plane, const char *path, const char *channel)
 {
     const size_t count = (size_t)f->width * (size_t)f->height;
@@ -212,6 +225,7 @@ Status frame_from_run(RecordFrame *out, const char *folder, int number)
         if (status == STATUS_OK && !rows[p].is_id)
             round_plane(f.number_plane[p], (size_t)f.width * (size_t)f.height, &rows[p].rounding);
         if (p == 0 && !image_read_string(f.date, sizeof f.date, path, "DateTime")) *f.date = 0;
+        if (p == FRAME_MATERIAL && status == STATUS_OK) status = read_material_names(&f, path);
     }
     snprintf(path, sizeof path, "%s/profiles/radar/%06d.csv", folder, number);
     if (status == STATUS_OK && access(path, F_OK) == 0) status = read_profile_csv(&f, path);
@@ -265,6 +279,7 @@ Status frame_from_record(RecordFrame *out, const char *folder, const RecordFrame
                                    : read_coded(&f.number_plane[p], path, rows[p].name, f.width, f.height,
                                                 &rows[p].rounding);
     if (status == STATUS_OK && !image_read_string(f.date, sizeof f.date, path, "DateTime")) *f.date = 0;
+    if (status == STATUS_OK) status = read_material_names(&f, path);
     snprintf(path, sizeof path, "%s/%06d.profile.exr", folder, like->number);
     if (status == STATUS_OK && like->bins > 0 && access(path, F_OK) == 0)
         status = read_profile_exr(&f, path, like->bins);
@@ -290,9 +305,10 @@ Status frame_to_record(const char *folder, const RecordFrame *f)
         if (f->number_plane[p]) plane[planes++] = plane_u32(rows[p].name, f->width, f->height, to);
         if (f->id_plane[p]) plane[planes++] = plane_u32(rows[p].name, f->width, f->height, f->id_plane[p]);
     }
-    const ImageAttribute number = image_int("frame", f->number);
+    const ImageAttribute number  = image_int("frame", f->number);
+    const ImageAttribute named[] = {number, image_string("material_names", f->material_names ? f->material_names : "")};
     snprintf(path, sizeof path, "%s/%06d.exr", folder, f->number);
-    Status status = image_write_exr_as(path, compression, plane, planes, date, &number, 1);
+    Status status = image_write_exr_as(path, compression, plane, planes, date, named, f->material_names ? 2 : 1);
 
     const ImageAttribute attribute[] = {number, image_double("near_m", f->near_m), image_double("bin_m", f->bin_m)};
     for (int b = 0; b < frame_bounces && f->bins > 0; b++) {
@@ -307,8 +323,48 @@ Status frame_to_record(const char *folder, const RecordFrame *f)
     return status;
 }
 
+/* ---- ids by name ----------------------------------------------------------------------------- */
+
+/* Number, from 1, of a name of that length in a list separated by commas; 0: not there. *count: names in the list. */
+static uint32_t number_of(uint32_t *count, const char *list, const char *name, size_t length)
+{
+    uint32_t at = 0, found = 0;
+    for (const char *next = list; *next;) {
+        const size_t n = strcspn(next, ",");
+        at++;
+        if (!found && n == length && memcmp(next, name, n) == 0) found = at;
+        next += n + (next[n] == ',');
+    }
+    *count = at;
+    return found;
+}
+
+Status frame_rename_materials(RecordFrame *frame, const RecordFrame *like)
+{
+    uint32_t *id = frame->id_plane[FRAME_MATERIAL], count, beyond, most;
+    if (!id || !frame->material_names || !like->material_names ||
+        strcmp(frame->material_names, like->material_names) == 0) return STATUS_OK;
+    number_of(&count, frame->material_names, "", 0);
+    uint32_t *map = calloc((size_t)count + 1, sizeof *map), k = 1;
+    if (!map) return STATUS_NO_MEMORY;
+    number_of(&beyond, like->material_names, "", 0);
+    most = beyond + count;
+    for (const char *next = frame->material_names; *next; k++) {
+        const size_t n = strcspn(next, ",");
+        uint32_t     ignored;
+        map[k] = number_of(&ignored, like->material_names, next, n);
+        if (map[k] == 0) map[k] = ++beyond;
+        next += n + (next[n] == ',');
+    }
+    for (size_t i = 0; i < (size_t)frame->width * (size_t)frame->height; i++)
+        id[i] = id[i] <= count ? map[id[i]] : most + id[i];
+    free(map);
+    return STATUS_OK;
+}
+
 void frame_free(RecordFrame *frame)
 {
+    free(frame->material_names);
     for (int p = 0; p < FRAME_PLANES; p++) {
         free(frame->number_plane[p]);
         free(frame->id_plane[p]);

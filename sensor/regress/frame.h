@@ -34,6 +34,7 @@ typedef struct RecordFrame {
     double    near_m, bin_m;              /* middle of the first bin; spacing */
     float    *profile[frame_bounces];     /* [bins] */
     char      date[32];                   /* of the exercise, as EXR writes it */
+    char     *material_names;             /* comma-separated: the k-th is material k; NULL: an older baseline */
 } RecordFrame;
 
 const char *frame_plane_name(FramePlane plane); /* channel in the baseline */
@@ -48,6 +49,9 @@ typedef struct FrameSize {
     int width, height, bins;
 } FrameSize;
 Status frame_record_size(FrameSize *out, const char *folder, int number);
+/* Renames the materials of `frame` as `like` numbers them, by name; a name that only `frame` has gets a number beyond
+ * those of `like`. Nothing changes where one of them has no names. STATUS_NO_MEMORY. */
+Status frame_rename_materials(RecordFrame *frame, const RecordFrame *like);
 Status frame_to_record(const char *folder, const RecordFrame *frame);
 void   frame_free(RecordFrame *frame);
 

@@ -1,5 +1,6 @@
 /* sensor/regress/junit.c: the XML that test servers read (testsuite, testcase, failure, error, skipped). */
 #include "sensor/regress/report.h"
+#include "pitviper_output.h"
 
 #include <errno.h>
 #include <unistd.h>
@@ -61,16 +62,15 @@ static void put_case(FILE *to, const CaseResult *r)
 
 Status junit_write(const char *path, const CaseResult *const *result, int count)
 {
-    char   part[case_path_size];
     int    of[CASE_STATES] = {0};
     double seconds = 0;
     for (int i = 0; i < count; i++) {
         of[result[i]->state]++;
         seconds += result[i]->seconds;
     }
-    FILE *file = snprintf(part, sizeof part, "%s.part", path) < (int)sizeof part ? fopen(part, "w") : NULL;
+    FILE *file = output_begin(path, OUTPUT_STREAM);
     if (!file) {
-        log_error("regress: --junit: cannot write %s: %s; choose another path", path, strerror(errno));
+        log_error("regress: --junit: cannot write %s: %s; choose another path", path, output_reason(errno));
         return STATUS_IO;
     }
     fprintf(
@@ -80,9 +80,7 @@ Status junit_write(const char *path, const CaseResult *const *result, int count)
         count, of[CASE_FAILED] + of[CASE_NO_RECORD], of[CASE_BROKEN], of[CASE_SKIPPED], seconds);
     for (int i = 0; i < count; i++) put_case(file, result[i]);
     fputs("</testsuite>\n", file);
-    const bool spoilt = ferror(file);
-    if (fclose(file) == 0 && !spoilt && rename(part, path) == 0) return STATUS_OK;
-    log_error("regress: --junit: cannot write %s: %s", path, strerror(errno));
-    unlink(part);
+    if (output_end(file, path)) return STATUS_OK;
+    log_error("regress: --junit: cannot write %s: %s", path, output_reason(errno));
     return STATUS_IO;
 }

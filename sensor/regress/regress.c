@@ -1,5 +1,6 @@
 /* sensor/regress/regress.c: the command `pitviper regress`: its options, the cases given, their output and summary. */
 #include "sensor/regress/regress.h"
+#include "pitviper_output.h"
 
 #include "sensor/node/stop.h"
 #include "sensor/publish/frame_files.h"
@@ -287,6 +288,18 @@ static bool open_work(Suite *s, char own[case_path_size])
     return true;
 }
 
+/* Told before the cases are run, and not after. */
+static bool can_report(const Options *o)
+{
+    const char *const path[] = {o->junit, o->report}, *const option[] = {"--junit", "--report"};
+    for (int i = 0; i < 2; i++) {
+        if (!path[i] || output_check(path[i], OUTPUT_STREAM) == 0) continue;
+        log_error("regress: %s: cannot write %s: %s; choose another place", option[i], path[i], output_reason(errno));
+        return false;
+    }
+    return true;
+}
+
 /* ---- the command ------------------------------------------------------------------------------ */
 
 static bool run_all(Suite *s)
@@ -340,7 +353,7 @@ int regress_command(int argc, char **argv)
             code = 2;
             goto done;
         }
-    if (!run_all(&s)) goto done;
+    if (!can_report(&s.o) || !run_all(&s)) goto done;
     failed = summary(&s);
     code   = !failed ? 0 : stop_asked() ? stop_exit_code() : 1;
     if (s.o.junit && junit_write(s.o.junit, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;

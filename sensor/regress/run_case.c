@@ -1,5 +1,6 @@
 /* sensor/regress/run_case.c: runs one case: its log, settings and replay, then the comparison or the update. */
 #include "sensor/regress/run_case.h"
+#include "pitviper_output.h"
 
 #include "sensor/settings/config.h"
 #include "sensor/publish/frame_files.h"
@@ -138,7 +139,7 @@ static bool make_paths_absolute(const char *config, const CaseResult *r)
     log_suppress(true);
     if (ok) *read = config_default();
     if (ok && config_read_as(read, config, in_case) == STATUS_OK) {
-        FILE *file = fopen(config, "w");
+        FILE *file = output_file(config, 0);
         if (file) config_write_settings(file, read);
         ok = file && fclose(file) == 0;
     }
@@ -158,13 +159,13 @@ static bool find_config(char config[path_size], CaseResult *r)
         snprintf(config, path_size, "%s", path);
     } else if (*r->c.config) {
         snprintf(config, path_size, "%.4080s/config.yaml", r->work);
-        FILE *file = fopen(config, "w");
+        FILE *file = output_file(config, 0);
         bool  ok   = file && fputs(r->c.config, file) >= 0;
         if (file && fclose(file) != 0) ok = false;
         ok = ok && make_paths_absolute(config, r);
         if (!ok)
             return end_case(r, CASE_BROKEN, "cannot write %.300s: %s; choose another place with --work", config,
-                            strerror(errno));
+                            output_reason(errno));
     }
     return true;
 }

@@ -1,5 +1,6 @@
 /* sensor/regress/update.c: approves the output of a run: writes the baseline (record/) and card.md. */
 #include "sensor/regress/update.h"
+#include "pitviper_output.h"
 
 #include "sensor/publish/frame_files.h"
 
@@ -13,13 +14,10 @@ enum { path_size = case_path_size + 64, file_most = 64 << 20 };
 
 static Status write_file(const char *path, const char *text, size_t octets)
 {
-    char  part[path_size + 16];
-    FILE *file = (size_t)snprintf(part, sizeof part, "%s.part", path) < sizeof part ? fopen(part, "wb") : NULL;
-    bool  ok   = file && fwrite(text, 1, octets, file) == octets;
-    if (file && fclose(file) != 0) ok = false;
-    if (ok && rename(part, path) == 0) return STATUS_OK;
-    log_error("regress: cannot write %s: %s", path, strerror(errno));
-    if (file) unlink(part);
+    FILE *file = output_begin(path, 0);
+    if (file) fwrite(text, 1, octets, file);
+    if (file && output_end(file, path)) return STATUS_OK;
+    log_error("regress: cannot write %s: %s", path, output_reason(errno));
     return STATUS_IO;
 }
 
@@ -67,13 +65,13 @@ static bool move_files(const char *folder, const char *to)
 {
     char from_path[path_size + 300], to_path[path_size + 300];
     bool ok        = true;
-    DIR *directory = opendir(folder);
+    DIR *directory = output_list(folder);
     if (!directory) return errno == ENOENT;
     for (struct dirent *entry; (entry = readdir(directory));) {
         if (!is_of_record(entry->d_name)) continue;
         snprintf(from_path, sizeof from_path, "%s/%s", folder, entry->d_name);
         snprintf(to_path, sizeof to_path, "%s/%s", to ? to : "", entry->d_name);
-        ok = (to ? rename(from_path, to_path) : unlink(from_path)) == 0 && ok;
+        ok = (to ? output_rename(from_path, to_path) : output_remove(from_path)) == 0 && ok;
     }
     closedir(directory);
     return ok;
@@ -228,7 +226,7 @@ void update_case(CaseResult *r, const char *why)
     if (status == STATUS_OK) status = write_products(r, out, fresh, date);
     if (status == STATUS_OK && (frame_files_folder(record) != STATUS_OK || !move_files(record, NULL) ||
                                 !move_files(fresh, record))) {
-        log_error("regress: cannot write in %s: %s", record, strerror(errno));
+        log_error("regress: cannot write in %s: %s", record, output_reason(errno));
         status = STATUS_IO;
     }
     if (status == STATUS_OK) status = write_card(r, why, &run, date);

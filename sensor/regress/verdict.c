@@ -496,6 +496,7 @@ static Status compare_frame(Verdict *v, const Case *c, const char *record, const
         return status;
     }
     if (status == STATUS_OK) status = frame_from_record(&expected, record, &got);
+    if (status == STATUS_OK) status = frame_rename_materials(&got, &expected);
     if (status == STATUS_OK) status = truth_of(&was, record, number);
     if (status == STATUS_OK) status = truth_of(&is, run, number);
     if (status == STATUS_OK) {

@@ -1,7 +1,9 @@
 /* sensor/settings/config.c: the table of all settings, their defaults, and the checks that involve several of them. */
 #include "sensor/settings/config.h"
+#include "dis/recorder.h"
 
 #include "pitviper_channels.h"
+#include "pitviper_file.h"
 
 #include "dis/pdu.h"
 #include "sensor/settings/memory_choice.h"
@@ -10,10 +12,7 @@
 #include "sensor/settings/video_choice.h"
 #include "terrain/woods/woods.h"
 
-#include <errno.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #define AT(member) SETTING_AT(Config, member)
 
@@ -93,7 +92,8 @@ static const Setting keys[] = {
     {"detector.optical_high_w_m2_sr", SETTING_DOUBLE, AT(detector.optical_high_w_m2_sr), 1e-3, 1e4, NULL, "W/(m2 sr)",
      "radiance shown as white; manual level"},
     {"detector.agc_s", SETTING_DOUBLE, AT(detector.agc_s), 0, 1000, NULL, "s",
-     "time constant of the automatic level, from the first frame rendered; 0: gain and level set per frame"},
+     "time constant of the automatic level, from the first frame rendered; a tenth of it applies where the image "
+     "would be nearly black or white; 0: gain and level set per frame"},
     {"detector.noise", SETTING_DOUBLE, AT(detector.noise), 0, 100, NULL, "", "factor on all noise; 0: none"},
     {"detector.f_number", SETTING_DOUBLE, AT(detector.f_number), 0.5, 100, NULL, "", "overrides the preset"},
     {"detector.obscuration", SETTING_DOUBLE, AT(detector.obscuration), 0, 0.95, NULL, "",
@@ -171,15 +171,17 @@ static const Setting keys[] = {
      "write image files; truth.jsonl and run.json are written without them, too"},
     {"publish.png", SETTING_BOOL, AT(publish.png), 0, 1, NULL, "", "write display images beside the EXR files"},
     {"publish.planes", SETTING_TEXT, AT(publish.planes), 0, 0, NULL, "",
-     "truth planes to write: all, none, or any of range,entity,part,material,temperature,normal"},
+     "truth planes to write: all, none, or any of range,entity,part,material,temperature,normal,emissivity,instance,cover"},
     {"publish.pairs", SETTING_TEXT, AT(publish.pairs), 0, 0, "off|target|all", "",
      "replay only: render each frame also without its target, or without any entity, and both without noise"},
     {"publish.coco", SETTING_BOOL, AT(publish.coco), 0, 1, NULL, "",
      "replay only: write coco.json, boxes and masks of visible targets"},
     {"publish.coco_min_pixels", SETTING_INT, AT(publish.coco_min_pixels), 1, 1000000, NULL, "px",
-     "targets with fewer mask pixels are marked in coco.json to be ignored (iscrowd)"},
+     "targets with fewer mask pixels are ignore regions of coco.json (iscrowd)"},
     {"publish.coco_min_visible", SETTING_DOUBLE, AT(publish.coco_min_visible), 0, 1, NULL, "",
-     "targets with a smaller visible fraction are marked in coco.json to be ignored (iscrowd)"},
+     "targets with a smaller visible fraction are ignore regions of coco.json (iscrowd)"},
+    {"publish.coco_min_snr", SETTING_DOUBLE, AT(publish.coco_min_snr), 0, 1000, NULL, "",
+     "targets with a smaller snr in a band, whatever its sign, are ignore regions of that band's images in coco.json (iscrowd)"},
     {"publish.truth", SETTING_BOOL, AT(publish.truth), 0, 1, NULL, "",
      "write truth.jsonl and hash every frame; false, in `run` and `replay --speed X` only: neither is computed, and truth "
      "planes only if another product has them"},
@@ -208,7 +210,7 @@ static const Setting keys[] = {
     {"publish.memory_slots", SETTING_INT, AT(publish.memory_slots), 2, 64, NULL, "",
      "frames that the ring holds; a reader slower than that loses frames"},
     {"publish.detections_port", SETTING_INT, AT(publish.detections_port), 0, 65535, NULL, "",
-     "UDP port on loopback that receives a recogniser's detections; 0: none"},
+     "UDP port on loopback that receives a recogniser's detections, for answers.jsonl and metadata; 0: none"},
     {"record.path", SETTING_PATH, AT(record.path), 0, 0, NULL, "",
      "pcapng file to which `run` records all received datagrams; empty: none"},
     {"weather.atmosphere", SETTING_NAME_OR_PATH, AT(weather.atmosphere), 0, 0, NULL, "",
@@ -396,7 +398,8 @@ Config config_default(void)
     c.publish.files                 = true;
     c.publish.truth                 = true;
     c.publish.png                   = true;
-    c.publish.coco_min_pixels       = 1;
+    c.publish.coco_min_pixels       = 5;   /* of 4 no class can be told */
+    c.publish.coco_min_snr          = 0.1; /* in the dark: 3e-6 W/(m2 sr), ten of the display's 255 steps */
     strcpy(c.publish.video_codec, "h264");
     strcpy(c.publish.klv, "async");
     strcpy(c.publish.vmti, "atr");
@@ -485,13 +488,11 @@ const char *config_sheet(const Config *config) { return table_has_rows(config) ?
 
 static bool is_readable(const char *key, const char *path)
 {
-    struct stat about;
-    const int   failed = !*path || access(path, R_OK) == 0 ? 0 : errno;
-    const bool  file = !*path || stat(path, &about) != 0 || S_ISREG(about.st_mode);
-    if (failed == 0 && file) return true;
+    char why[file_why_size];
+    if (!*path || file_is_regular(why, path)) return true;
     log_error("config: %s: cannot read %s: %s; in a file of settings paths are relative to that file, on the command "
               "line "
-              "to the current folder", key, path, file ? strerror(failed) : "it is not a regular file");
+              "to the current folder", key, path, why);
     return false;
 }
 
@@ -543,6 +544,7 @@ static bool store_alone(const Config *config)
 
 Status config_check(const Config *config)
 {
+    if (!settings_paths_good(config, &table, "publish.video,record.path")) return STATUS_BAD_VALUE;
     if (config->detector.bits != 8 && config->detector.bits != 16) {
         log_error("config: detector.bits: %d is not 8 or 16", config->detector.bits);
         return STATUS_BAD_VALUE;
@@ -590,7 +592,7 @@ Status config_check(const Config *config)
     if (!plane_choice_parse(&planes, config->publish.planes)) {
         log_error("config: publish.planes: '%s' is not all, none, or a list of range, entity, part, material, "
                   "temperature, "
-                  "normal, instance, cover, for example range,entity", config->publish.planes);
+                  "normal, emissivity, instance, cover, for example range,entity", config->publish.planes);
         return STATUS_BAD_VALUE;
     }
     const unsigned of_woods = 1u << PLANE_INSTANCE | 1u << PLANE_COVER;
@@ -639,6 +641,7 @@ Status config_check(const Config *config)
         log_error("config: exercise.from_s: %s is after exercise.to_s: %s", config->exercise.from, config->exercise.to);
         return STATUS_BAD_VALUE;
     }
+    if (*config->record.path && !dis_recorder_name("config: record.path", config->record.path)) return STATUS_BAD_VALUE;
     const Status status = video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,
                               config->sensor.bands);
     const bool sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config);

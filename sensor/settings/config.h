@@ -81,8 +81,8 @@ typedef struct Config {
         char   planes[64];         /* of truth: all, none or a list */
         char   pairs[8];           /* off, target or all */
         bool   coco;
-        int    coco_min_pixels;    /* targets below are marked to be ignored */
-        double coco_min_visible;
+        int    coco_min_pixels;    /* targets below any of these are ignore regions */
+        double coco_min_visible, coco_min_snr;
         bool   truth;              /* truth.jsonl, and the hash of each frame */
         bool   latest;             /* OUT/latest: the newest display of each band */
         char   video[config_paths_size]; /* a file (.mp4, .mkv, .ts) or a folder; empty: none */

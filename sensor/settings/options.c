@@ -74,7 +74,7 @@ static const struct Row {
     {"no-files", KEY, IN_BOTH, "publish.files=false", NULL, "no image files: only truth.jsonl and run.json"},
     {"planes", KEY, IN_BOTH, "publish.planes", "LIST",
      "truth planes to write: none, or any of range,entity,part,material,\n"
-     "temperature,normal,instance,cover (default: all); truth.jsonl is always written"},
+     "temperature,normal,emissivity,instance,cover (default: all); truth.jsonl is always written"},
     {"pairs", KEY, IN_REPLAY, "publish.pairs", "WHO",
      "target or all: each frame also without its target, or without any\nentity, and both without noise, in DIR/pairs"},
     {"coco", KEY, IN_REPLAY, "publish.coco=true", NULL, "DIR/coco.json: boxes and masks in COCO's format"},

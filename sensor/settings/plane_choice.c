@@ -2,7 +2,7 @@
 #include "sensor/settings/plane_choice.h"
 
 const char *const plane_choice_name[PLANE_CHOICES] = {"range", "entity", "part", "material", "temperature", "normal",
-                                                    "instance", "cover"};
+                                                    "instance", "cover", "emissivity"};
 
 bool plane_choice_parse(unsigned *planes, const char *text)
 {

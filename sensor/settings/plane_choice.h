@@ -1,5 +1,5 @@
-/* sensor/settings/plane_choice.h: truth planes written to files (publish.planes, --planes). All are computed in any
- * case: truth.jsonl, coco.json and the hash of a frame do not depend on the choice. */
+/* sensor/settings/plane_choice.h: truth planes written to files (publish.planes, --planes). All but emissivity are computed
+ * in any case: truth.jsonl, coco.json and the hash of a frame do not depend on the choice. */
 #ifndef SENSOR_SETTINGS_PLANE_CHOICE_H
 #define SENSOR_SETTINGS_PLANE_CHOICE_H
 
@@ -8,6 +8,7 @@
 typedef enum PlaneChoice {
     PLANE_RANGE, PLANE_ENTITY, PLANE_PART, PLANE_MATERIAL, PLANE_TEMPERATURE, PLANE_NORMAL,
     PLANE_INSTANCE, PLANE_COVER, /* of a world with plants */
+    PLANE_EMISSIVITY,            /* of thermal bands, made for the file (sensor/publish/emissivity.h) */
     PLANE_CHOICES
 } PlaneChoice;
 

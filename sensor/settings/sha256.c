@@ -1,9 +1,11 @@
 /* sensor/settings/sha256.c: SHA-256 as text, by OpenSSL. */
 #include "sensor/settings/sha256.h"
 
+#include "pitviper_file.h"
+
 #include <errno.h>
 #include <openssl/evp.h>
-#include <stdio.h>
+#include <unistd.h>
 
 static void to_text(char out[sha256_text_size], const unsigned char digest[32])
 {
@@ -45,21 +47,19 @@ Status sha256_bytes(char out[sha256_text_size], const void *bytes, size_t count)
 
 Status sha256_file(char out[sha256_text_size], const char *path)
 {
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        log_error("hash: cannot read %s: %s", path, strerror(errno));
+    char      why[file_why_size];
+    const int file = file_open(why, NULL, path, FILE_FROM_DISK);
+    if (file < 0) {
+        log_error("hash: cannot read %s: %s", path, why);
         return STATUS_IO;
     }
     Sha256 *digest = sha256_begin();
     bool    ok = digest;
     char    chunk[65536];
-    while (ok) {
-        const size_t n = fread(chunk, 1, sizeof chunk, file);
-        if (n == 0) break;
-        ok = sha256_add(digest, chunk, n);
-    }
-    const int reason = ferror(file) ? errno : 0;
-    fclose(file);
+    long    n  = 1;
+    while (ok && (n = file_read(file, chunk, sizeof chunk)) > 0) ok = sha256_add(digest, chunk, (size_t)n);
+    const int reason = n < 0 ? errno : 0;
+    close(file);
     if (reason) {
         log_error("hash: cannot read %s: %s", path, strerror(reason));
         EVP_MD_CTX_free(digest);

@@ -1,7 +1,9 @@
 /* sensor/settings/video_choice.c: parses the address of a stream, and checks the settings of videos and streams. */
 #include "sensor/settings/video_choice.h"
+#include "pitviper_output.h"
 
 #include <strings.h>
+#include <sys/stat.h>
 
 /* ---- address ------------------------------------------------------------------------------------ */
 
@@ -75,15 +77,14 @@ VideoKind video_kind(const char *path)
     return VIDEO_FOLDER;
 }
 
-/* A name that ends as videos do in other containers is no folder. */
+/* A name with another ending is no folder, unless it is one already or says so. */
 static bool other_video(const char *path)
 {
-    static const char *const ends[] = {".avi", ".mov", ".m4v", ".mpg", ".mpeg", ".m2ts", ".mts", ".mxf", ".webm", ".wmv",
-                                       ".flv", ".ogv", ".gif", ".h264", ".264", ".hevc", ".265"};
-    const char *const last = strrchr(path, '.');
-    for (size_t i = 0; last && i < sizeof ends / sizeof *ends; i++)
-        if (strcasecmp(last, ends[i]) == 0) return true;
-    return false;
+    struct stat about;
+    const char *ending = output_ending(path);
+    bool        known  = strcmp(ending, ".264") == 0 || strcmp(ending, ".265") == 0; /* the only ones without a letter */
+    for (const char *at = ending; *at && !known; at++) known = (*at | 32) >= 'a' && (*at | 32) <= 'z';
+    return known && !(stat(path, &about) == 0 && S_ISDIR(about.st_mode));
 }
 
 VideoCodec video_codec(const char *name)
@@ -115,7 +116,8 @@ Status video_choice_check(const char *video, const char *stream, const char *cod
     return STATUS_BAD_VALUE;
 #endif
     if (kind == VIDEO_FOLDER && other_video(video)) {
-        log_error("config: publish.video: '%s': choose a name that ends with .mp4, .mkv or .ts, or a folder", video);
+        log_error("config: publish.video: '%s': choose a name that ends with .mp4, .mkv or .ts, or a folder (a name without an "
+                  "ending, or with / at its end)", video);
         return STATUS_BAD_VALUE;
     }
     if (*stream && !stream_url_parse(&url, &why, stream)) {

@@ -5,6 +5,7 @@
 #include "dis/enumerations.h"
 #include "render/frame/error_budget.h"
 #include "render/heat/vehicle_heat.h"
+#include "sensor/truth/pixel_error.h"
 
 /* Rows of a target are subsampled to about this many pixels at most. */
 enum { most_px = 4096 };
@@ -17,13 +18,6 @@ typedef struct Outline {
 } Outline;
 
 static double square(double x) { return x * x; }
-
-/* Share of a pixel that the target covers. */
-static double share_of(const Picture *p, const TargetPixels *px, uint32_t id, size_t at)
-{
-    if (px->small && p->covered && p->covered[at] > 0) return (double)p->covered[at];
-    return p->entity[at] == id;
-}
 
 typedef struct Steps {
     /* squared differences with the target and without; squared shares of ground with */
@@ -54,13 +48,13 @@ static Outline outline_of(const Picture *p, const TargetPixels *px, int index, c
     for (int y = box[1]; y < box[3]; y += stride)
         for (int x = box[0]; x < box[2]; x++) {
             const size_t at = (size_t)y * (size_t)p->width + (size_t)x, right = at + 1, below = at + (size_t)p->width;
-            const double on = share_of(p, px, id, at);
+            const double on = pixel_share_of(p, px, id, at);
             if (on > 0) sum += value[at], sum_2 += square(value[at]), on_px++;
             else ring += value[at], ring_px++;
             if (x + 1 < p->width)
-                add_step(&s, on, share_of(p, px, id, right), (double)value[right] - (double)value[at]);
+                add_step(&s, on, pixel_share_of(p, px, id, right), (double)value[right] - (double)value[at]);
             if (y + 1 < p->height)
-                add_step(&s, on, share_of(p, px, id, below), (double)value[below] - (double)value[at]);
+                add_step(&s, on, pixel_share_of(p, px, id, below), (double)value[below] - (double)value[at]);
         }
     const double mean = ring_px > 0 ? ring / ring_px : on_px > 0 ? sum / on_px : 0;
     o.apart = fmax(sum_2 - 2 * mean * sum + mean * mean * on_px, 0);
@@ -123,45 +117,114 @@ static double heat_k2(const Picture *p, const Snapshot *snapshot, double air_k)
     return sum / (double)pixels;
 }
 
+/* ---- pixel by pixel ------------------------------------------------------------------------------ */
+
+static void error_of_target(ErrorSpread *all, Target *t, const DisplacedTarget *of, Band band)
+{
+    ErrorSpread own = {0};
+    error_of_displaced(all, &own, of);
+    t->band[band].error_rms_k    = error_spread_rms_k(&own);
+    t->band[band].error_median_k = error_spread_median_k(&own);
+}
+
+/* The pixels that no displaced target touches: as the probes say, which stand for those whose own samples say nothing; the
+ * sum of squares of the others is spread over them as an exponential distribution, of which nine steps are taken.
+ * further_k2: the same for all. */
+static void error_of_the_rest(ErrorSpread *all, const ErrorBudget *budget, int plane, double pixels, double kelvin,
+                              double further_k2)
+{
+    enum { steps = 9 };
+    const float *square_w = budget->probe_square[plane - picture_mwir];
+    const double rest = fmax(pixels - all->all_px, 0) / pixels;
+    double       asked = 0;
+    for (int i = 0; i < budget->probes; i++)
+        if (!isnan(square_w[i])) asked += budget->probe_px[i];
+    const double most = asked > pixels ? pixels / asked : 1, refined = fmax(pixels - asked, 0);
+    for (int i = 0; i < budget->probes; i++)
+        if (!isnan(square_w[i]))
+            error_spread_add(all, square(kelvin) * (double)square_w[i] + further_k2, rest * most * budget->probe_px[i]);
+    if (!(refined > 0)) return;
+    const double mean_k2 = square(kelvin) * budget->refined_square[plane - picture_mwir] / refined;
+    for (int i = 0; i < steps; i++)
+        error_spread_add(all, -log(1 - (i + 0.5) / steps) * mean_k2 + further_k2, rest * refined / steps);
+}
+
+/* A plane's errors of all targets: sums of squares over the image, and pixel by pixel in a thermal plane. */
+typedef struct PlaneOf {
+    const Picture       *picture;
+    const World         *world;
+    const Snapshot      *snapshot;
+    double               focal_px, sag_m, air_k;
+    bool                 clamped;
+    Band                 band;
+    const float         *value;
+    const PlanckTable   *planck;    /* NULL: not thermal */
+    double               tables_k2;
+} PlaneOf;
+
+typedef struct PlaneSums {
+    double      drift, facets;
+    ErrorSpread spread;
+} PlaneSums;
+
+static void add_target(PlaneSums *sums, Target *t, const PlaneOf *of)
+{
+    const SnapshotEntity *e = &of->snapshot->entity[t->index];
+    const TargetPixels   *px = &of->picture->target[t->index];
+    if (!(px->visible > 0) || !(t->range_m > 0)) return;
+    const double  per_m = of->focal_px / t->range_m;
+    const Model  *model = catalog_model(of->world->catalog, e->model);
+    const Outline o = outline_of(of->picture, px, t->index, of->value);
+    /* two of three directions of a displacement in space are visible; a rotation moves the outline by half the radius,
+     * in the mean */
+    const double way_m = hypot(sqrt(2.0 / 3) * e->drift_m, 0.5 * model->radius_m * e->drift_rad);
+    const double ground_m = of->clamped ? ground_way_m(of->world, e, model) : 0;
+    const double still_m = hypot(2.0 / 3 * of->sag_m, ground_m);
+    sums->drift += shifted(&o, way_m * per_m);
+    sums->facets += shifted(&o, still_m * per_m);
+    t->error_px = hypot(way_m, still_m) * per_m;
+    if (!of->planck) return;
+    const DisplacedTarget displaced = {.picture = of->picture, .px = px, .index = t->index, .value = of->value,
+                                       .planck = of->planck, .way_px = t->error_px, .further_k2 = of->tables_k2,
+                                       .air_k = e->first_patch >= 0 ? of->air_k : NAN};
+    error_of_target(&sums->spread, t, &displaced, of->band);
+}
+
 bool frame_error(FrameError *out, const Picture *picture, const World *world, const Snapshot *snapshot,
-                 const RenderRequest *request, const Target *target, int targets, double sag_m, bool clamped, double air_k)
+                 const RenderRequest *request, Target *target, int targets, double sag_m, bool clamped, double air_k)
 {
     const ErrorBudget *budget = picture->budget;
     const double       pixels = (double)picture->width * picture->height;
     double             sums[BAND_COUNT][error_sources] = {{0}};
     int                planes[BAND_COUNT] = {0};
     if (!budget || !picture->entity || !picture->target) return false;
+    for (int b = 0; b < BAND_COUNT; b++) out->median_k[b] = out->beyond_1k[b] = NAN;
     for (int k = 0; k < picture_plane_count; k++) {
-        const float *value = picture_plane(picture, k);
-        const Band   b = band_of(k);
-        double       drift = 0, facets = 0;
-        if (!value || !(budget->mean[k] > 0)) continue;
-        for (int i = 0; i < targets; i++) {
-            const SnapshotEntity *e = &snapshot->entity[target[i].index];
-            const TargetPixels   *px = &picture->target[target[i].index];
-            if (!(px->visible > 0) || !(target[i].range_m > 0)) continue;
-            const double  per_m = request->view.focal_px / target[i].range_m;
-            const Model  *model = catalog_model(world->catalog, e->model);
-            const Outline o = outline_of(picture, px, target[i].index, value);
-            /* two of three directions of a displacement in space are visible; a rotation moves the outline by half
-             * the radius, in the mean */
-            const double way_m = hypot(sqrt(2.0 / 3) * e->drift_m, 0.5 * model->radius_m * e->drift_rad);
-            drift += shifted(&o, way_m * per_m);
-            const double ground_m = clamped ? ground_way_m(world, e, model) : 0;
-            facets += shifted(&o, hypot(2.0 / 3 * sag_m, ground_m) * per_m);
-        }
-        const double square_of_mean = square(budget->mean[k]);
+        const Band         b = band_of(k);
         const PlanckTable *planck = b == BAND_MWIR ? world->planck_mwir : b == BAND_LWIR ? world->planck_lwir : NULL;
-        const double       kelvin = planck ? error_budget_kelvin(planck, budget->mean[k], 1) : NAN; /* for 1 W/(m2 sr) */
-        const double       heat = kelvin > 0 ? heat_k2(picture, snapshot, air_k) / square(kelvin) : 0;
-        const double       squares[ERROR_TOTAL] = {square(budget->sampling[k]),
-                                                   square(budget->level_of_detail[k]) + facets / pixels,
-                                                   square(budget->tables[k]), heat, drift / pixels};
+        PlaneOf            of = {.picture = picture, .world = world, .snapshot = snapshot, .focal_px = request->view.focal_px,
+                                 .sag_m = sag_m, .air_k = air_k, .clamped = clamped, .band = b,
+                                 .value = picture_plane(picture, k), .planck = planck};
+        PlaneSums          all = {0};
+        if (!of.value || !(budget->mean[k] > 0)) continue;
+        const double kelvin = planck ? error_budget_kelvin(planck, budget->mean[k], 1) : NAN; /* for 1 W/(m2 sr) */
+        of.tables_k2 = square(kelvin * budget->tables[k]);
+        for (int i = 0; i < targets; i++) add_target(&all, &target[i], &of);
+        const double square_of_mean = square(budget->mean[k]);
+        const double all_heat_k2 = kelvin > 0 ? heat_k2(picture, snapshot, air_k) : 0;
+        const double heat = kelvin > 0 ? all_heat_k2 / square(kelvin) : 0;
+        const double squares[ERROR_TOTAL] = {square(budget->sampling[k]),
+                                             square(budget->level_of_detail[k]) + all.facets / pixels,
+                                             square(budget->tables[k]), heat, all.drift / pixels};
         for (int s = 0; s < ERROR_TOTAL; s++) {
             sums[b][s] += squares[s] / square_of_mean;
             sums[b][ERROR_TOTAL] += squares[s] / square_of_mean;
         }
         planes[b]++;
+        if (!planck) continue;
+        error_of_the_rest(&all.spread, budget, k, pixels, kelvin, of.tables_k2 + all_heat_k2);
+        out->median_k[b]  = error_spread_median_k(&all.spread);
+        out->beyond_1k[b] = error_spread_beyond(&all.spread);
     }
     for (int b = 0; b < BAND_COUNT; b++) {
         const int          plane = b == BAND_MWIR ? picture_mwir : picture_lwir;

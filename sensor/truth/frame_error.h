@@ -24,13 +24,20 @@ typedef enum ErrorSource {
 } ErrorSource;
 
 /* rms over the image, as a share of the band's mean; of the optical band the root of its channels' mean square.
- * kelvin: of apparent temperature, by its slope at the mean. NaN: no such band, or none. */
+ * kelvin: of apparent temperature, by its slope at the mean. Both are those of the brightest pixels, if these may be off:
+ * a hot exhaust that is displaced by a pixel outweighs all others. Of the pseudo-radar, whose power is that of a few
+ * mirrors, the share says nothing, and truth.jsonl does not have it. median_k, beyond_1k: of the pixels' expected
+ * errors, in apparent temperature without linearizing what a displacement changes: half of the pixels are better; share
+ * of those beyond 1 K. NaN: no such band, or none. */
 typedef struct FrameError {
     double share[BAND_COUNT][error_sources], kelvin[BAND_COUNT][error_sources];
+    double median_k[BAND_COUNT], beyond_1k[BAND_COUNT];
 } FrameError;
 
-/* air_k: of the weather; NaN: heat is left out. False without a budget in the picture or without truth planes. */
+/* target: receives error_px - the rms displacement on the image of each by dead reckoning, facets and the ground's error,
+ * all of it if it lies across the line of sight - and the errors of its bands.
+ * air_k: of the weather; NaN: heat is left out. False without a budget in the picture or without truth planes. */
 bool frame_error(FrameError *out, const Picture *picture, const World *world, const Snapshot *snapshot,
-                 const RenderRequest *request, const Target *target, int targets, double sag_m, bool clamped, double air_k);
+                 const RenderRequest *request, Target *target, int targets, double sag_m, bool clamped, double air_k);
 
 #endif

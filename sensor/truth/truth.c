@@ -177,6 +177,7 @@ static double intensity(const Target *t, const TargetPixels *px, const View *vie
 typedef struct Look {
     double mean, variance;
     double ring_mean, ring_variance;
+    bool   alone; /* there is no ring: both are 0 */
 } Look;
 
 static bool look_at(Look *look, const Target *t, const TargetPixels *px, const Picture *picture, PixelValues *values,
@@ -184,8 +185,9 @@ static bool look_at(Look *look, const Target *t, const TargetPixels *px, const P
 {
     Moments target, ring;
     two_moments(&target, &ring, t, picture, values, user);
-    if (!(ring.n > 0) || !(px->small || target.n > 0)) return false;
-    *look = (Look){.ring_mean = moments_mean(&ring), .ring_variance = moments_variance(&ring)};
+    if (!(px->small || target.n > 0)) return false;
+    *look = (Look){.alone = !(ring.n > 0)};
+    if (!look->alone) look->ring_mean = moments_mean(&ring), look->ring_variance = moments_variance(&ring);
     if (px->small) return true;
     look->mean     = moments_mean(&target);
     look->variance = moments_variance(&target);
@@ -195,8 +197,8 @@ static bool look_at(Look *look, const Target *t, const TargetPixels *px, const P
 /* The contrast of a small target is that of its fullest pixel: proportional to its share of it. */
 static double to_noise(const Look *look, const TargetPixels *px, double noise_sigma)
 {
-    const double sigma = sqrt(look->ring_variance + noise_sigma * noise_sigma);
-    return sigma > 0 ? (look->mean - look->ring_mean) * (px->small ? px->peak_area : 1) / sigma : NAN;
+    const double sigma = sqrt(look->ring_variance + noise_sigma * noise_sigma), apart = look->mean - look->ring_mean;
+    return sigma > 0 ? apart * (px->small ? px->peak_area : 1) / sigma : apart == 0 ? 0 : NAN;
 }
 
 static void thermal_band(TargetBand *out, const Target *t, const TargetPixels *px, const Picture *picture, int plane,
@@ -204,7 +206,7 @@ static void thermal_band(TargetBand *out, const Target *t, const TargetPixels *p
 {
     const ThermalPlane user = {picture_plane(picture, plane), planck};
     Look               look = {0};
-    if (!look_at(&look, t, px, picture, apparent_temp, &user)) return;
+    if (!look_at(&look, t, px, picture, apparent_temp, &user) || look.alone) return;
     if (px->small) {
         /* temperature is nearly linear in radiance over a target: the slope at its mean is used */
         const double mean = px->mean[plane], step = 1e-3 * mean;
@@ -228,7 +230,7 @@ static void plain_band(TargetBand *out, const Target *t, const TargetPixels *px,
         for (int k = 0; k < planes; k++) look.mean += px->mean[plane + k] / planes;
     }
     if (look.ring_mean > 0) out->contrast = (look.mean - look.ring_mean) / look.ring_mean;
-    out->snr = to_noise(&look, px, noise_sigma);
+    if (!look.alone || noise_sigma > 0) out->snr = to_noise(&look, px, noise_sigma);
 }
 
 static void radiometry(Target *t, const TargetPixels *px, const Picture *picture, const World *world,
@@ -283,9 +285,9 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
         if (i == eye->host_index || !(px->projected || px->amodal > 0)) continue;
         Target t = {.index = i, .pixels = px->visible, .visible_fraction = NAN, .foliage_fraction = NAN,
                     .occluder_index = -1};
-        t.range_m = t.closing_mps = t.aspect_rad = t.depression_rad = t.los_az_rad = t.los_el_rad = NAN;
+        t.error_px = t.range_m = t.closing_mps = t.aspect_rad = t.depression_rad = t.los_az_rad = t.los_el_rad = NAN;
         for (int b = 0; b < BAND_COUNT; b++)
-            t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+            t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
         for (int b = BAND_OPTICAL; b <= BAND_LWIR && px->visible > 0; b++)
             if (request->bands >> b & 1) t.band[b].veil_transmittance = 1 - px->veiled[b];
         line_of_sight(&t, &snapshot->entity[i], catalog_model(world->catalog, snapshot->entity[i].model), eye);

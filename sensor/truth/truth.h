@@ -13,10 +13,12 @@ typedef struct TargetBand {
     double dt_rss_k;        /* root of the squared mean difference plus the target's variance */
     double contrast;        /* optical, radar: the same difference over the ring's mean, dimensionless */
     double snr;             /* contrast over the ring's sigma and the detector's noise together; of a small target:
-                             * times the share it has of the pixel it fills most */
+                             * times the share it has of the pixel it fills most. Optical, without a ring: its own
+                             * mean over the noise. 0: no contrast; NaN: no ring, or neither clutter nor noise */
     double intensity_w_sr;  /* in-band, at the aperture: its own radiance times the area it fills, at its range */
     double intensity_error_w_sr; /* rms sampling error; of a small target, in a frame with a budget */
     double veil_transmittance; /* of smoke and dust in front of it, mean over its visible pixels; 1: none */
+    double error_rms_k, error_median_k; /* thermal: of its pixels, by its position, heat and tables (frame_error.h) */
 } TargetBand;
 
 typedef struct Target {
@@ -32,6 +34,7 @@ typedef struct Target {
     double foliage_fraction;                /* of its area on the image, hidden by plants; NaN: there are none */
     const char *occluder;                   /* "ground", "trees", "entity" with occluder_index >= 0, or NULL */
     int    occluder_index;
+    double error_px;                        /* rms displacement on the image (frame_error.h) */
     TargetBand band[BAND_COUNT];
 } Target;
 

@@ -2,7 +2,8 @@
  * checks. */
 #include "terrain/earth/geoid.h"
 
-#include <errno.h>
+#include "pitviper_file.h"
+
 #include <stdlib.h>
 
 static const char file_name[] = "egm96_15.gtx";
@@ -30,11 +31,8 @@ static bool find_file(char *out, size_t out_size)
             const size_t length = strcspn(at, ":");
             const int    n      = snprintf(out, out_size, "%.*s/%s", (int)length, at, file_name);
             if (n > 0 && n < (int)out_size) {
-                FILE *file = fopen(out, "rb");
-                if (file) {
-                    fclose(file);
-                    return true;
-                }
+                char why[file_why_size];
+                if (file_is_regular(why, out)) return true;
             }
             at += length + (at[length] == ':');
         }
@@ -131,10 +129,10 @@ Status geoid_open(Geoid *out, const char *path)
         }
         path = found;
     }
-    FILE *file = fopen(path, "rb");
+    char  why[file_why_size];
+    FILE *file = file_open_stream(why, path);
     if (!file) {
-        log_error("geoid: cannot open %s: %s; apt-get install proj-data, or name another with terrain.geoid", path,
-                  strerror(errno));
+        log_error("geoid: cannot open %s: %s; apt-get install proj-data, or name another with terrain.geoid", path, why);
         return STATUS_IO;
     }
     Status status = fread(header, sizeof header, 1, file) == 1 ? STATUS_OK : STATUS_TRUNCATED;

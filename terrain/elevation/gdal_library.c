@@ -3,6 +3,7 @@
 
 #define GDAL(X)                                                                                                       \
     X(CPLErrorReset) X(CPLGetLastErrorMsg) X(CPLPopErrorHandler) X(CPLPushErrorHandler) X(CPLQuietErrorHandler)       \
+    X(CPLSetConfigOption) X(CSLDestroy) X(GDALGetFileList)                                                            \
     X(GDALAllRegister) X(GDALClose) X(GDALDataTypeIsInteger) X(GDALDatasetRasterIO) X(GDALGetBlockSize)               \
     X(GDALGetCacheMax64) X(GDALGetGeoTransform) X(GDALGetMaskBand) X(GDALGetMaskFlags) X(GDALGetRasterBand)           \
     X(GDALGetRasterCount) X(GDALGetRasterDataType) X(GDALGetRasterOffset) X(GDALGetRasterScale)                       \

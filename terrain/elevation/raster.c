@@ -2,14 +2,17 @@
  * with a remedy. */
 #include "terrain/elevation/raster.h"
 
+#include "pitviper_file.h"
 #include "terrain/elevation/gdal_library.h"
 
 #include <strings.h>
 #include <cpl_conv.h>
+#include <cpl_string.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <gdal.h>
+#include <limits.h>
 #include <ogr_srs_api.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -32,6 +35,9 @@ static pthread_once_t once = PTHREAD_ONCE_INIT;
 static void register_drivers(void)
 {
     static const GIntBig most_cache = 256 << 20; /* octets; by default a twentieth of the memory */
+    /* A file may name others (VRT): none makes this program ask a server. */
+    CPLSetConfigOption("GDAL_SKIP", "HTTP,WMS,WMTS,WCS,DAAS,EEDA,EEDAI,PLMosaic,NGW,OGCAPI,STACTA,STACIT,PostGISRaster");
+    CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none"); /* of /vsicurl/ and those of its kind */
     GDALAllRegister();
     if (GDALGetCacheMax64() > most_cache) GDALSetCacheMax64(most_cache);
 }
@@ -45,8 +51,8 @@ static const char *reason(const char *else_text)
 
 static void quiet(void)
 {
-    pthread_once(&once, register_drivers);
     CPLPushErrorHandler(CPLQuietErrorHandler);
+    pthread_once(&once, register_drivers);
     CPLErrorReset();
 }
 
@@ -212,6 +218,44 @@ static void take_suffixes(Opened *o, char *path)
     else *colon = ':';
 }
 
+static char only_within[PATH_MAX]; /* empty: anywhere */
+
+void raster_stay_within(const char *folder) { snprintf(only_within, sizeof only_within, "%s", folder ? folder : ""); }
+
+static bool is_within(const char *path)
+{
+    char         whole[PATH_MAX];
+    const size_t length = strlen(only_within);
+    return length == 0 || (realpath(path, whole) && strncmp(whole, only_within, length) == 0 &&
+                           (whole[length] == '/' || strcmp(only_within, "/") == 0));
+}
+
+/* GDAL opens by name and waits for a FIFO. Names that are no file's (a subdataset, a file in an archive) are its own. */
+static bool may_be_opened(const char *path, const char *key)
+{
+    struct stat about;
+    char        why[file_why_size] = "it lies outside the folder of the store that is made again of it";
+    if (is_within(path) && (stat(path, &about) != 0 || file_is_regular(why, path))) return true;
+    log_error("%s: cannot read %s: %s", key, path, why);
+    return false;
+}
+
+/* Of a file that names others, such as a VRT, those too; what those name where it matters. */
+static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char *key, int depth)
+{
+    char **parts = GDALGetFileList(file);
+    bool   good = depth < 8;
+    for (int k = 0; good && parts && parts[k]; k++) {
+        if (strcmp(parts[k], path) == 0) continue;
+        good = may_be_opened(parts[k], key);
+        GDALDatasetH part = good && *only_within ? GDALOpen(parts[k], GA_ReadOnly) : NULL;
+        if (part) good = parts_may_be_opened(part, parts[k], key, depth + 1);
+        if (part) GDALClose(part);
+    }
+    CSLDestroy(parts);
+    return good;
+}
+
 static Status add_sheet(RasterSet *set, const char *name, const char *key)
 {
     Opened o = {0};
@@ -222,13 +266,14 @@ static Status add_sheet(RasterSet *set, const char *name, const char *key)
     take_suffixes(&o, path);
     const RasterVertical vertical = o.vertical;
     const int            chosen_band = o.band;
+    if (!may_be_opened(path, key)) return STATUS_IO;
     GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
     if (!file) {
         log_error("%s: cannot read %s: %s; gdalinfo %s says what it is", key, path, reason("not a raster GDAL knows"),
                   path);
         return STATUS_IO;
     }
-    status = describe(&o, file, path, key);
+    status = parts_may_be_opened(file, path, key, 0) ? describe(&o, file, path, key) : STATUS_IO;
     GDALClose(file);
     if (status != STATUS_OK) return status;
     o.vertical = vertical;
@@ -331,6 +376,10 @@ static Status add_folder(RasterSet *set, const char *path, const char *key)
         struct stat about;
         const int   n = snprintf(full, sizeof full, "%s/%s", path, entry->d_name);
         if (n < 0 || n >= (int)sizeof full || stat(full, &about) != 0 || !S_ISREG(about.st_mode)) continue;
+        if (!may_be_opened(full, key)) {
+            status = STATUS_IO;
+            break;
+        }
         if (!GDALIdentifyDriver(full, NULL)) continue; /* notes, world files, overviews' sidecars */
         char **more = names < most_sheets ? realloc(name, ((size_t)names + 1) * sizeof *name) : NULL;
         if (more) name = more;

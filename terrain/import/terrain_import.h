@@ -29,7 +29,10 @@ typedef struct TerrainReport {
 Status terrain_import(TerrainReport *out, const TerrainOptions *options, const char *path, Pool *pool,
                       TerrainProgress *progress, void *user);
 /* Makes a store again with the options that it has, on all processors. options: as TerrainStore or store_recall has
- * them. */
-Status terrain_store_rebuild(const char *path, const char *options);
+ * them. A store may come from a stranger: only what lies in its own folder is read, also of what those files name;
+ * anywhere: whatever it names. A requested stop ends it, and leaves the store as it was. */
+Status terrain_store_rebuild(const char *path, const char *options, bool anywhere);
+/* Whether its options name a source outside its own folder; outside: the first. */
+bool   terrain_store_foreign(char *outside, size_t outside_size, const char *path, const char *options);
 
 #endif

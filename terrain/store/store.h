@@ -112,7 +112,8 @@ typedef struct TerrainStore {
 Status store_open(TerrainStore *out, const char *path);
 void   store_close(TerrainStore *store);
 /* As store_open, but a file that cannot be used is not logged: *why, for a message. STATUS_BAD_VALUE: it was cut or is
- * damaged; STATUS_UNSUPPORTED: another version wrote it; STATUS_IO: it cannot be read. */
+ * damaged; STATUS_UNSUPPORTED: another version wrote it; STATUS_IO: it cannot be read, or is no
+ * regular file. *why stays as it is until the thread's next call. */
 Status store_open_why(TerrainStore *out, const char **why, const char *path);
 /* The import's options in a file that cannot be used, by a checksum of their own; malloc'd. NULL: no store, or nothing
  * of them is left. */

@@ -1,11 +1,11 @@
 /* terrain/store/store_read.c: a terrain store opened: its header read and checked, its data mapped and not touched. */
 #include "terrain/store/store_format.h"
 
+#include "pitviper_file.h"
+
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* The whole header with its texts, malloc'd; *why stays NULL for a failure of the system, in errno. */
@@ -34,20 +34,18 @@ static StoreHeader *read_header(const char **why, Status *status, int file, uint
 
 Status store_open_why(TerrainStore *out, const char **why, const char *path)
 {
-    struct stat about;
-    Status      status = STATUS_IO;
+    static _Thread_local char refused[file_why_size];
+    uint64_t octets = 0;
+    Status   status = STATUS_IO;
     *out = (TerrainStore){0};
     *why = NULL;
-    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0 || fstat(file, &about) != 0) {
-        *why = strerror(errno);
-        if (file >= 0) close(file);
+    const int file = file_open(refused, &octets, path, FILE_FROM_DISK);
+    if (file < 0) {
+        *why = refused;
         return STATUS_IO;
     }
-    StoreHeader *header = NULL;
-    if (S_ISREG(about.st_mode)) header = read_header(why, &status, file, (uint64_t)about.st_size);
-    else *why = "it is no file", status = STATUS_BAD_VALUE;
-    void *map = header ? mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_SHARED, file, 0) : MAP_FAILED;
+    StoreHeader *header = read_header(why, &status, file, octets);
+    void        *map = header ? mmap(NULL, (size_t)octets, PROT_READ, MAP_SHARED, file, 0) : MAP_FAILED;
     if (map == MAP_FAILED) {
         if (!*why) *why = strerror(errno);
         free(header);

@@ -2,7 +2,8 @@
  * also in a file that was cut, has a damaged header, or was written by another version. */
 #include "terrain/store/store_format.h"
 
-#include <fcntl.h>
+#include "pitviper_file.h"
+
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -48,8 +49,9 @@ const char *store_record_options(const char *text)
 char *store_recall(const char *path)
 {
     char      *all = malloc(record_most + 1), *out = NULL;
-    const int  file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    const long size = all && file >= 0 ? (long)pread(file, all, record_most, 0) : 0;
+    char       why[file_why_size];
+    const int  file = file_open(why, NULL, path, FILE_FROM_DISK);
+    const long size = all && file >= 0 ? file_read(file, all, record_most) : 0;
     if (file >= 0) close(file);
     if (size > (long)sizeof store_magic && memcmp(all, store_magic, sizeof store_magic) == 0) {
         all[size] = 0;

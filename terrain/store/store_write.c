@@ -1,5 +1,6 @@
 /* terrain/store/store_write.c: a terrain store written: the file at its full size, its rasters, and its end. */
 #include "terrain/store/store_write_private.h"
+#include "pitviper_output.h"
 
 #include "terrain/landscape/landscape_parts.h"
 #include "terrain/store/store_landscape_private.h"
@@ -135,18 +136,12 @@ static Status io_fault(const StoreWriter *w, const char *what)
 /* Locked while it is written: of two writers of one store the second stops. */
 static Status open_part(StoreWriter *w)
 {
-    w->file = open(w->part, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (w->file < 0) return io_fault(w, "create");
-    struct stat opened, there;
-    if (flock(w->file, LOCK_EX | LOCK_NB) != 0 || fstat(w->file, &opened) != 0 || stat(w->part, &there) != 0 ||
-        opened.st_ino != there.st_ino) {
-        log_error("store: %s is being written by another process; wait until it is done", w->path);
-        close(w->file);
-        w->file = -1;
+    w->file = output_check(w->path, 0) == 0 ? output_open(w->part, OUTPUT_READ) : -1;
+    if (w->file < 0) {
+        log_error("store: cannot write %s: %s%s", w->path, output_reason(errno), errno == EBUSY ? "; wait until it is done" : "");
         return STATUS_IO;
     }
     const uint64_t octets = w->header->file_octets;
-    if (ftruncate(w->file, 0) != 0) return io_fault(w, "write");
     const int full = posix_fallocate(w->file, 0, (off_t)octets); /* a full disk is found here, not by SIGBUS */
     if (full != 0) {
         errno = full;
@@ -216,7 +211,7 @@ static void free_writer(StoreWriter *w)
 void store_writer_abandon(StoreWriter *w)
 {
     if (!w) return;
-    if (w->file >= 0) unlink(w->part);
+    if (w->file >= 0) output_remove(w->part);
     free_writer(w);
 }
 
@@ -351,7 +346,7 @@ static Status seal(StoreWriter *w)
     h->checksum = store_checksum(h);
     memcpy(w->map, h, (size_t)h->header_octets);
     if (msync(w->map, w->map_octets, MS_SYNC) != 0 || fsync(w->file) != 0) return io_fault(w, "write");
-    if (rename(w->part, w->path) != 0) {
+    if (output_rename(w->part, w->path) != 0) {
         log_error("store: cannot rename %s to %s: %s", w->part, w->path, strerror(errno));
         return STATUS_IO;
     }

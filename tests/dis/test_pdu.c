@@ -222,7 +222,7 @@ static void failure_leaves_the_output_alone(void **state)
             CHECK(memcmp(&decoded, &again, sizeof again) == 0);
         }
         /* the same with a length field that admits it */
-        for (size_t octets = 0; octets < length; octets++) {
+        for (size_t octets = 1; octets < length; octets++) {
             wire[8] = (uint8_t)(octets >> 8);
             wire[9] = (uint8_t)octets;
             memset(&decoded, 0xA5, sizeof decoded);
@@ -317,7 +317,7 @@ static void every_misfit_has_its_reason(void **state)
         {7, 1, 144, 11, DIS_DROP_SHORT_HEADER},      {7, 1, 144, 1, DIS_DROP_SHORT_HEADER},
         {4, 1, 144, 144, DIS_DROP_BAD_VERSION},      {8, 1, 144, 144, DIS_DROP_BAD_VERSION},
         {0, 0, 0, 20, DIS_DROP_BAD_VERSION}, /* zeros at the end of a datagram */
-        {7, 20, 0, 144, DIS_DROP_LENGTH_TOO_SHORT},  {7, 20, 11, 144, DIS_DROP_LENGTH_TOO_SHORT},
+        {7, 20, 0, 144, DIS_DROP_LENGTH_ZERO},       {7, 20, 11, 144, DIS_DROP_LENGTH_TOO_SHORT},
         {7, 1, 143, 144, DIS_DROP_LENGTH_TOO_SHORT}, {7, 3, 103, 144, DIS_DROP_LENGTH_TOO_SHORT},
         {7, 67, 71, 144, DIS_DROP_LENGTH_TOO_SHORT}, {7, 2, 95, 144, DIS_DROP_LENGTH_TOO_SHORT},
         {7, 12, 27, 144, DIS_DROP_LENGTH_TOO_SHORT}, {7, 13, 43, 144, DIS_DROP_LENGTH_TOO_SHORT},

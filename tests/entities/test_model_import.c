@@ -175,7 +175,7 @@ static void what_is_odd_is_counted_and_what_is_broken_refused(void **state)
     refused(path, STATUS_BAD_VALUE, "cannot be read");
     snprintf(path, sizeof path, "%s/none.obj", folder);
     refused(path, STATUS_IO, "cannot open");
-    refused(folder, STATUS_IO, "not a file");
+    refused(folder, STATUS_IO, "a directory, not a regular file");
 
     write_text(path, "joint.obj", BLOCK);
     char yaml[128];

@@ -1,5 +1,5 @@
-"""tests/layers/layers.py ROOT [--changed BRANCH]: what a file may include, where a library is known, that includes go in no circle, and
-that a .c file says in its first line what it is. A link alone proves none of it: an object that is already pulled in
+"""tests/layers/layers.py ROOT [--changed BRANCH]: what a file may include, where a library is known, that includes go in no circle,
+that files are opened for writing in one place, and that a .c file says in its first line what it is. A link alone proves none of it: an object that is already pulled in
 satisfies a call backwards.
 
     base < dis, terrain < entities < render < sensor
@@ -30,7 +30,8 @@ MAY = {
     'sensor': ('dis/*', 'terrain/*', 'entities/*', 'render/*'),
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),
 }
-BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_library.h', 'pitviper_simd.h')
+BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_file.h', 'pitviper_library.h', 'pitviper_output.h',
+                'pitviper_simd.h')
 
 # Libraries that one file, or one folder, knows: header, places.
 LIBRARIES = (
@@ -40,6 +41,10 @@ LIBRARIES = (
     ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),
     ('jansson.h', 'sensor/publish/*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep_file.c'),
 )
+
+# Files are opened for writing, and renamed, by pitviper_output.c alone, which follows no link; shared memory has names of its own.
+WRITES = re.compile(r'\bf(?:re)?open\s*\([^;]*"[wa]|\bO_CREAT\b|(?<![\w.>])(?:creat|rename|truncate)\s*\(|\bjson_dump_file\b')
+WRITERS = ('pitviper_output.c', 'sensor/publish/memory/memory_segment.c')
 
 # Includes from one wing into another that are left out when circles between wings are looked for, with the reason.
 WING_EXCEPTIONS = {}
@@ -174,7 +179,15 @@ def check_first_lines(tree):
             yield f'{path}: the first line is not `/* {path}: what it is`: {first}'
 
 
-CHECKS = (check_rooms, check_circles, check_first_lines)
+def check_writers(tree):
+    for path, text in tree.items():
+        if path.startswith(('tests/', 'etc/')) or path in WRITERS:
+            continue
+        for found in WRITES.finditer(text):
+            yield f'{path}: {found.group(0).split("(")[0].strip()}: pitviper_output.h opens files for writing'
+
+
+CHECKS = (check_rooms, check_circles, check_first_lines, check_writers)
 
 
 def violations(tree):
@@ -244,6 +257,10 @@ def twins():
                         ('tests/dis/test_a.c', '#include "tests/check.h"'), ('main.c', '')):
         if not violations({path: first + '\n'}):
             wrong.append(f'twin: not caught: {path} begins {first}')
+    for bad, line in ((True, 'f = fopen(path, "wb");'), (True, 'open(p, O_WRONLY | O_CREAT, 0666);'), (True, 'rename(part, path);'),
+                      (False, 'f = fopen(path, "rb");'), (False, 'output_rename(part, path);')):
+        if bool(violations({'dis/a.c': f'/* dis/a.c: planted. */\n{line}\n'})) != bad:
+            wrong.append(f'twin: {"not caught" if bad else "wrongly caught"}: {line}')
     return wrong
 
 

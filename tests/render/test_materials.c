@@ -293,6 +293,53 @@ static void leaves_are_as_leaves_are(void **state)
     materials_close(&m);
 }
 
+/* Rows of the user's own: an equal one changes nothing, a changed one keeps its place, new ones follow plants too, and
+ * what referred to a new one still does. */
+static void own_rows_move_no_other(void **state)
+{
+    (void)state;
+    static const char *const figures = "0.04,0.09,0.06,0.0625,0.45,0.015,0.019,0.73,0,1,0,0.1,1,1700,1200,test\n";
+    char      text[2048], path[text_file_size], a[512], b[512], optics[512], ground[512];
+    Materials plain, own;
+    CHECK(add_plants(&plain, "name,", "name,") == STATUS_OK);
+    snprintf(text, sizeof text, "%snew_paint,%sgrass_green,%sleaf_spare,%s", header, figures, figures, figures);
+    text_file(path, text);
+    CHECK(etc_own_set("materials.csv", path));
+    CHECK(add_plants(&own, "name,", "name,") == STATUS_OK);
+    CHECK(own.count == plain.count + 2 && own.own_first == plain.count);
+    for (int i = 0; i < plain.count; i++) CHECK(strcmp(own.material[i].name, plain.material[i].name) == 0);
+    CHECK(materials_find(&own, "new_paint") == plain.count && materials_find(&own, "leaf_spare") == plain.count + 1);
+    CHECK_NEAR(own.material[materials_find(&own, "grass_green")].rho_lwir, 0.019, 1e-6);
+    CHECK(memcmp(own.surface, plain.surface, sizeof own.surface) == 0 && memcmp(own.plant, plain.plant, sizeof own.plant) == 0);
+    materials_close(&own);
+
+    /* a surface of a new material, and a row twice */
+    char changed[1024];
+    snprintf(changed, sizeof changed, "%.*s%s", (int)(strstr(surfaces, "grass,turf") - surfaces), surfaces,
+             "grass,new_paint\ndry_grass,new_paint\ncrop,new_paint\nbare_soil,grass_green\nploughed,grass_green\n"
+             "track,grass_green\nrock,grass_green\nscrub,leaf_spare\nwater,grass_green\nforest_broadleaf,grass_green\n"
+             "forest_conifer,grass_green\nbuilt,grass_green\nroad,leaf_spare\nsand,grass_green\nsnow,grass_green\n"
+             "wetland,grass_green\n");
+    char surface_path[text_file_size];
+    text_file(surface_path, changed);
+    CHECK(etc_path(a, sizeof a, "materials.csv") && etc_path(b, sizeof b, "surfaces.csv"));
+    CHECK(etc_path(optics, sizeof optics, "plant_optics.csv") && etc_path(ground, sizeof ground, "woods.csv"));
+    CHECK(materials_open(&own, a, surface_path, NULL) == STATUS_OK);
+    CHECK(materials_add_plants(&own, optics, ground) == STATUS_OK);
+    CHECK(strcmp(own.material[own.surface[SURFACE_GRASS]].name, "new_paint") == 0);
+    CHECK(strcmp(own.material[own.surface[SURFACE_ROAD]].name, "leaf_spare") == 0);
+    materials_close(&own);
+    remove(path);
+    snprintf(text, sizeof text, "%snew_paint,%snew_paint,%s", header, figures, figures);
+    text_file(path, text);
+    CHECK(etc_own_set("materials.csv", path));
+    CHECK(materials_open(&own, a, b, NULL) == STATUS_BAD_VALUE);
+    CHECK(etc_own_set("materials.csv", NULL));
+    remove(path);
+    remove(surface_path);
+    materials_close(&plain);
+}
+
 static void bad_plants_are_refused(void **state)
 {
     (void)state;
@@ -333,6 +380,7 @@ int main(void)
         cmocka_unit_test(glass_is_a_dielectric),
         cmocka_unit_test(metal_and_glass_have_no_diffuse_share),
         cmocka_unit_test(leaves_are_as_leaves_are),
+        cmocka_unit_test_setup_teardown(own_rows_move_no_other, listen, stop_listening),
         cmocka_unit_test_setup_teardown(bad_plants_are_refused, listen, stop_listening),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -145,7 +145,8 @@ static double apart(const Picture *a, const Picture *b, Band band)
     return sqrt(shares);
 }
 
-static FrameError error_of(TrialFrame *f)
+/* targets: how many there are, in the frame's arena. */
+static inline FrameError error_of_targets(Target **out, int *targets_out, TrialFrame *f)
 {
     FrameError error;
     Target    *target = arena_alloc(f->arena, (size_t)f->snapshot.count + 1, sizeof *target);
@@ -156,7 +157,16 @@ static FrameError error_of(TrialFrame *f)
     const int targets = truth_targets(target, &f->picture, &f->scene->world, &f->snapshot, &f->request, &eye, &noise);
     CHECK(frame_error(&error, &f->picture, &f->scene->world, &f->snapshot, &f->request, target, targets, 0.002, true,
                       world_air_k(&f->scene->world, f->scene->unix_s)));
+    *out         = target;
+    *targets_out = targets;
     return error;
+}
+
+static FrameError error_of(TrialFrame *f)
+{
+    Target *target;
+    int     targets;
+    return error_of_targets(&target, &targets, f);
 }
 
 /* Of one source of error, a band. */

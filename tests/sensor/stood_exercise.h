@@ -2,6 +2,7 @@
 #ifndef TESTS_SENSOR_STOOD_EXERCISE_H
 #define TESTS_SENSOR_STOOD_EXERCISE_H
 
+#include "entities/motion/dead_reckoning.h"
 #include "tests/check.h"
 
 #include "sensor/node/choices.h"
@@ -46,10 +47,14 @@ static inline Track *stand(Exercise *e, DisEntityType type, double x_m, double y
             assert_int_equal(geodetic_from_ecef(&place, p->p_ecef), STATUS_OK);
             p_enu[2] += h_m - place.h_m;
         }
-        m3_mul(p->r_ecef_from_body, frame.r_ecef_from_enu, r_enu_from_body);
+        double r[9], euler[3];
+        m3_mul(r, frame.r_ecef_from_enu, r_enu_from_body);
+        euler_from_r_ecef_from_body(&euler[0], &euler[1], &euler[2], r);
+        for (int k = 0; k < 3; k++) p->euler_rad[k] = (float)euler[k];
+        track_point_rotation(r, p);
         m3_mul_v3(p->v_ecef_mps, frame.r_ecef_from_enu, v_enu);
         if (origin == ORIGIN_CENTRE)
-            for (int k = 0; k < 3; k++) p->p_ecef[k] -= 0.5 * model->height_m * p->r_ecef_from_body[3 * k + 2];
+            for (int k = 0; k < 3; k++) p->p_ecef[k] -= 0.5 * model->height_m * r[3 * k + 2];
     }
     return track;
 }

@@ -136,7 +136,6 @@ static Track track(uint16_t entity, uint8_t kind, uint8_t domain, TrackPoint *po
 {
     for (int i = 0; i < count; i++) {
         point[i] = (TrackPoint){.t_s = count > 1 ? start_s + (end_s - start_s) * i / (count - 1) : start_s, .p_ecef = {6378137 + 10.0 * kind, 100.0 * i, entity}};
-        m3_identity(point[i].r_ecef_from_body);
     }
     return (Track){.id = {1, 1, entity}, .type = {kind, domain, 225, 1, 1, 1, 0}, .count = count, .point = point};
 }

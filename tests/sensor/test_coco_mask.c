@@ -127,11 +127,34 @@ static void every_mask_reads_back(void **state)
     }
 }
 
+/* A whole box is the mask of a plane that has the value just there. */
+static void a_box_is_the_mask_of_its_pixels(void **state)
+{
+    (void)state;
+    enum { width = 7, height = 5, area = width * height };
+    for (int code = 0; code < width * height * width * height; code++) {
+        const int a = code % area, b = code / area;
+        const MaskExtent box = {.box = {a % width, a / width, b % width + 1, b / width + 1}};
+        if (box.box[2] <= box.box[0] || box.box[3] <= box.box[1]) continue;
+        uint32_t   plane[area] = {0};
+        MaskExtent extent[1];
+        char       text[7 * (width * (height + 1) + 2) + 1], want[sizeof text];
+        for (int y = box.box[1]; y < box.box[3]; y++)
+            for (int x = box.box[0]; x < box.box[2]; x++) plane[y * width + x] = 1;
+        mask_extents(extent, 1, plane, width, height);
+        CHECK(memcmp(extent->box, box.box, sizeof box.box) == 0 && mask_text_size(&box) <= sizeof text);
+        mask_text(want, plane, 1, width, height, extent);
+        mask_box_text(text, width, height, &box);
+        assert_string_equal(text, want);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(masks_are_written_as_pycocotools_writes_them),
         cmocka_unit_test(every_mask_reads_back),
+        cmocka_unit_test(a_box_is_the_mask_of_its_pixels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* coco.json of several folders in one: new ids, and files that this program did not write end in a line. */
 #include "tests/check.h"
 
+#include "sensor/publish/coco_file.h"
 #include "sensor/publish/coco_merge.h"
 
 #include <sys/stat.h>
@@ -95,9 +96,26 @@ static void others_files_are_refused(void **state)
     take("b");
 }
 
+/* Whole or not at all. */
+static void a_full_disk_leaves_nothing(void **state)
+{
+    (void)state;
+    CocoFile file;
+    log_set_sink(check_listen, NULL);
+    CHECK(coco_file_open(&file, folder) == STATUS_OK && there("coco.json.part"));
+    CHECK(coco_file_image(&file, json_pack("{s:i}", "id", 1)) == STATUS_OK);
+    check_full_disk(true);
+    const Status closed = coco_file_close(&file, json_object(), true);
+    check_full_disk(false);
+    CHECK(closed == STATUS_IO && strstr(check_said, "coco.json: File too large"));
+    CHECK(!there("coco.json") && !there("coco.json.part") && !there("coco.json.annotations.part"));
+    log_set_sink(NULL, NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_full_disk_leaves_nothing),
         cmocka_unit_test(ids_are_new),
         cmocka_unit_test(others_files_are_refused),
     };

@@ -109,6 +109,70 @@ static void percentiles_are_exact_order_statistics(void **state)
     }
 }
 
+/* Kelvin as the plane's unit: ground of 290 K with a spread of 0.1, 1 or 4 K, a target 2 K above it on 0.5 % of the pixels,
+ * fire of 900 K on 0 .. 5 %: the target keeps 10 grey levels and the ground half of the contrast that it has without. */
+static void a_fire_takes_no_grey_levels_from_the_rest(void **state)
+{
+    (void)state;
+    static const double spread_k[3] = {0.1, 1, 4}, fire[4] = {0, 0.01, 0.03, 0.05};
+    const float        *planes[1] = {plane};
+    DetectorConfig      config = detector_default_config();
+    config.highlight = 1.5;
+    config.min_span  = 2;
+    for (int k = 0; k < 3; k++) {
+        double without = 0;
+        for (int f = 0; f < 4; f++) {
+            for (int i = 0; i < pixels; i++) {
+                const double u = random_uniform(7, 0, 0, (uint64_t)i), v = random_normal(7, 1, 0, (uint64_t)i);
+                plane[i] = (float)(290 + spread_k[k] * v + (u > 0.995 ? 2 : 0));
+                if (u < fire[f]) plane[i] = (float)(700 + 200 * random_uniform(7, 2, 0, (uint64_t)i));
+            }
+            const DetectorLevel level = detector_level(&config, planes, 1, pixels);
+            const double        contrast = 1 / (level.high - level.low);
+            if (f == 0) without = contrast;
+            CHECK(255 * 2 * contrast >= 10 && contrast >= 0.5 * without);
+            CHECK(level.low < 290 && level.high > 290 && level.high < 340);
+        }
+    }
+}
+
+/* A step of 20 K: settles to 5 % within 1 s in scenes of 5 and 9 K, that it leaves black or white, and within 6 s in one
+ * of 40 K. A burst of 10000 K for 0.2 s: within 1 s the level is within 10 of 255 grey levels of where it belongs. Alike
+ * at 5, 25 and 100 Hz. */
+static void a_level_settles_in_a_second_at_any_rate(void **state)
+{
+    (void)state;
+    static const double rate_hz[3] = {5, 25, 100}, span_k[3] = {5, 9, 40}, settled_s[3] = {1, 1, 6};
+    for (int k = 0; k < 3; k++) {
+        double low[3];
+        for (int r = 0; r < 3; r++) {
+            bool                quick = false;
+            DetectorLevel       level = {280, 280 + span_k[k]};
+            const DetectorLevel after = {300, 300 + span_k[k]};
+            for (int i = 0; i < settled_s[k] * rate_hz[r]; i++) detector_level_follow(&level, &quick, after, 1 / rate_hz[r], 2);
+            CHECK(fabs(level.low - after.low) <= 0.05 * 20 && fabs(level.high - after.high) <= 0.05 * 20);
+            low[r] = level.low;
+
+            const DetectorLevel burst = {280, 10280};
+            level = (DetectorLevel){280, 280 + span_k[k]};
+            for (int i = 0; i < 0.2 * rate_hz[r]; i++) detector_level_follow(&level, &quick, burst, 1 / rate_hz[r], 2);
+            CHECK(level.high > 1000);
+            for (int i = 0; i < rate_hz[r]; i++)
+                detector_level_follow(&level, &quick, (DetectorLevel){280, 280 + span_k[k]}, 1 / rate_hz[r], 2);
+            CHECK(fabs(level.high - 280 - span_k[k]) <= 10.0 / 255 * span_k[k]);
+        }
+        CHECK_NEAR(low[0], low[1], 1e-9);
+        CHECK_NEAR(low[0], low[2], 1e-9);
+    }
+    /* what differs by less than two spans is averaged: a fiftieth of it a frame of 25 Hz */
+    DetectorLevel level = {280, 300};
+    bool          quick = false;
+    detector_level_follow(&level, &quick, (DetectorLevel){280.5, 300.5}, 0.04, 2);
+    CHECK_NEAR(level.low, 280.5 - 0.5 * exp(-0.02), 1e-12);
+    detector_level_follow(&level, &quick, (DetectorLevel){10, 20}, 0.04, 0);
+    CHECK(level.low == 10 && level.high == 20);
+}
+
 static void a_constant_plane_is_steady_mid_grey(void **state)
 {
     (void)state;
@@ -342,6 +406,8 @@ int main(void)
         cmocka_unit_test(rgb_has_one_gain),
         cmocka_unit_test(colours_of_a_flat_picture_stay),
         cmocka_unit_test(radar_decibels_by_hand),
+        cmocka_unit_test(a_fire_takes_no_grey_levels_from_the_rest),
+        cmocka_unit_test(a_level_settles_in_a_second_at_any_rate),
         cmocka_unit_test(bad_configurations_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

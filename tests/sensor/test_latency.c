@@ -175,6 +175,7 @@ static void lines_open(Lines *l)
     assert_int_equal(latency_create(&l->latency), STATUS_OK);
     assert_int_equal(frame_pool_create(&l->pool, queue_frames), STATUS_OK);
     assert_int_equal(consume_truth_lines(&lines, l->folder, false, NULL), STATUS_OK);
+    assert_int_equal(lines->begin(lines), STATUS_OK);
     consumers_add(&l->list, lines);
     consumers_add(&l->list, &l->fast.consumer);
     consumers_add(&behind, &l->slow.consumer);

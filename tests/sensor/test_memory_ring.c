@@ -4,6 +4,7 @@
 #include "tests/check.h"
 
 #include "sensor/publish/memory/detections.h"
+#include "sensor/publish/target_class.h"
 #include "sensor/publish/memory/memory_ring.h"
 #include "sensor/settings/config.h"
 
@@ -399,7 +400,9 @@ static void each_octet_of_a_detection_is_checked(void **state)
 #define SPOILT(change, reason) d = good; change; CHECK(parse(&d, size) == (reason))
     SPOILT(d.magic[7] = 0, DETECTIONS_MAGIC);
     SPOILT(d.byte_order = 0x04030201, DETECTIONS_ORDER);
-    SPOILT(d.version = 2, DETECTIONS_VERSION);
+    SPOILT(d.version = 0, DETECTIONS_VERSION);
+    SPOILT(d.version = 3, DETECTIONS_VERSION);
+    SPOILT(d.version = 1, DETECTIONS_VERSION); /* with the size of another */
     SPOILT(d.detection_size = 49, DETECTIONS_VERSION);
     SPOILT(d.count = 65, DETECTIONS_COUNT);
     SPOILT(d.count = UINT32_MAX, DETECTIONS_COUNT);
@@ -415,9 +418,44 @@ static void each_octet_of_a_detection_is_checked(void **state)
     SPOILT(d.detection[1].top = 48, DETECTIONS_BOX);
     SPOILT(d.detection[1].score = 1.01f, DETECTIONS_SCORE);
     SPOILT(d.detection[1].score = NAN, DETECTIONS_SCORE);
-    SPOILT(memset(d.detection[1].class_name, 'a', 16), DETECTIONS_TEXT);
+    SPOILT(memset(d.detection[1].class_name, 'a', sizeof d.detection[1].class_name), DETECTIONS_TEXT);
     SPOILT(d.detection[1].class_name[1] = '\n', DETECTIONS_TEXT);
     SPOILT(d.detection[1].class_name[9] = 'x', DETECTIONS_TEXT); /* behind the end */
+}
+
+/* Our own names fit, the longest too; and so do datagrams of version 1, whose classes have 15 characters. */
+static void classes_are_as_long_as_our_own(void **state)
+{
+    (void)state;
+    enum { octets_of_1 = 48, count = 3 };
+    PitviperDetections d = detections_of(3, BAND_LWIR, count), out;
+    for (int k = 1; k <= target_class_count(); k++) {
+        CHECK(strlen(target_class_name(k)) < sizeof d.detection[0].class_name);
+        memset(d.detection[2].class_name, 0, sizeof d.detection[2].class_name);
+        strcpy(d.detection[2].class_name, target_class_name(k));
+        CHECK(detections_parse(&out, (const uint8_t *)&d, PITVIPER_DETECTIONS_SIZE(count), 1 << BAND_LWIR, 64, 48) == DETECTIONS_GOOD);
+        assert_string_equal(out.detection[2].class_name, target_class_name(k));
+    }
+    uint8_t      bytes[sizeof d];
+    const size_t head = PITVIPER_DETECTIONS_SIZE(0), size = head + count * octets_of_1;
+    d = detections_of(3, BAND_LWIR, count);
+    d.version = 1, d.detection_size = octets_of_1;
+    memcpy(bytes, &d, head);
+    for (int i = 0; i < count; i++) {
+        memcpy(bytes + head + (size_t)i * octets_of_1, &d.detection[i], 40);
+        memset(bytes + head + (size_t)i * octets_of_1 + 40, 0, 8);
+    }
+    CHECK(detections_parse(&out, bytes, size, 1 << BAND_LWIR, 64, 48) == DETECTIONS_GOOD);
+    CHECK(out.count == count && out.version == PITVIPER_DETECTIONS_VERSION && out.detection[2].right == 3 &&
+          out.detection[2].track == 2 && strcmp(out.detection[2].class_name, "tank") == 0);
+    CHECK(detections_parse(&out, bytes, size - 1, 1 << BAND_LWIR, 64, 48) == DETECTIONS_SIZE);
+    memset(bytes + head + 2 * octets_of_1 + 24, 'a', 15);
+    CHECK(detections_parse(&out, bytes, size, 1 << BAND_LWIR, 64, 48) == DETECTIONS_GOOD && strlen(out.detection[2].class_name) == 15);
+    bytes[head + 2 * octets_of_1 + 39] = 'a'; /* without an end */
+    CHECK(detections_parse(&out, bytes, size, 1 << BAND_LWIR, 64, 48) == DETECTIONS_TEXT);
+    bytes[head + 2 * octets_of_1 + 39] = 0;
+    bytes[head + octets_of_1 + 44]     = 1;
+    CHECK(detections_parse(&out, bytes, size, 1 << BAND_LWIR, 64, 48) == DETECTIONS_RESERVED);
 }
 
 /* Sends one, and waits until it has been counted. */
@@ -425,50 +463,113 @@ static void deliver(Detections *to, int socket_of, int port, const PitviperDetec
 {
     const struct sockaddr_in node = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port),
                                      .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    uint64_t count[DETECTIONS_REASONS], before = 0, after = 0;
-    detections_counters(to, count);
-    for (int i = 0; i < DETECTIONS_REASONS; i++) before += count[i];
+    AnswerCounters count;
+    uint64_t       before = 0, after = 0;
+    detections_counters(to, &count);
+    for (int i = 0; i < DETECTIONS_REASONS; i++) before += count.datagrams[i];
     CHECK(sendto(socket_of, d, size, 0, (const struct sockaddr *)&node, sizeof node) == (ssize_t)size);
     for (int i = 0; i < 1000000 && after != before + 1; i++) {
         usleep(100);
         after = 0;
-        detections_counters(to, count);
-        for (int k = 0; k < DETECTIONS_REASONS; k++) after += count[k];
+        detections_counters(to, &count);
+        for (int k = 0; k < DETECTIONS_REASONS; k++) after += count.datagrams[k];
     }
     CHECK(after == before + 1);
+}
+
+/* On a free port. */
+static Detections *open_detections(int *port, const char *folder)
+{
+    Detections *to = NULL;
+    *port = 20000 + (int)getpid() % 20000;
+    for (int i = 0; i < 50 && !to; i++)
+        detections_open(&to, &(DetectionsOf){.port = ++*port, .bands = 1 << BAND_LWIR, .width = 64, .height = 48});
+    CHECK(to && (!folder || detections_record(to, folder) == STATUS_OK));
+    return to;
 }
 
 static void the_newest_detections_are_kept(void **state)
 {
     (void)state;
     static const size_t size = PITVIPER_DETECTIONS_SIZE(1);
-    Detections  *to = NULL, *second = NULL;
-    DetectionSet set;
-    uint64_t     count[DETECTIONS_REASONS];
-    int          port = 20000 + (int)getpid() % 20000;
-    const int    from = socket(AF_INET, SOCK_DGRAM, 0);
+    Detections    *second = NULL;
+    DetectionSet   set;
+    AnswerCounters count;
+    int            port;
+    const int      from = socket(AF_INET, SOCK_DGRAM, 0);
     log_set_sink(check_listen, NULL);
-    for (int i = 0; i < 50 && !to; i++) detections_open(&to, ++port, 1 << BAND_LWIR, 64, 48);
-    CHECK(to && detections_open(&second, port, 1 << BAND_LWIR, 64, 48) == STATUS_IO);
+    Detections *to = open_detections(&port, NULL);
+    CHECK(detections_open(&second, &(DetectionsOf){.port = port, .bands = 1 << BAND_LWIR, .width = 64, .height = 48}) == STATUS_IO);
     CHECK(strstr(check_said, "publish.detections_port"));
     CHECK(!detections_latest(to, BAND_LWIR, &set));
 
     const PitviperDetections five = detections_of(5, BAND_LWIR, 1), six = detections_of(6, BAND_LWIR, 1);
     deliver(to, from, port, &five, size); /* no such frame yet */
     CHECK(!detections_latest(to, BAND_LWIR, &set));
-    for (int n = 0; n <= 6; n++) detections_frame(to, n, 0.1 * n, 1000 + 0.1 * n);
+    for (int n = 0; n <= 6; n++) detections_frame(to, n, 0.1 * n, 1000 + 0.1 * n, 0);
     deliver(to, from, port, &six, size);
     deliver(to, from, port, &five, size); /* late */
     deliver(to, from, port, &six, size - 1);
+    PitviperDetections again = six;
+    strcpy(again.detection[0].class_name, "truck");
+    deliver(to, from, port, &again, size); /* it has been answered */
     CHECK(detections_latest(to, BAND_LWIR, &set) && set.frame == 6 && set.time_s == 0.1 * 6 && set.count == 1);
     CHECK(set.unix_s == 1000 + 0.1 * 6 && strcmp(set.detection[0].class_name, "tank") == 0);
-    for (int n = 7; n < 7 + detections_frames_kept; n++) detections_frame(to, n, 0.1 * n, 0);
+    for (int n = 7; n < 7 + detections_frames_kept; n++) detections_frame(to, n, 0.1 * n, 0, 0);
     deliver(to, from, port, &six, size); /* too old */
-    detections_counters(to, count);
-    CHECK(count[DETECTIONS_GOOD] == 1 && count[DETECTIONS_FRAME] == 2 && count[DETECTIONS_LATE] == 1 &&
-          count[DETECTIONS_SIZE] == 1);
-    detections_close(to);
-    CHECK(strstr(check_said, "1 datagrams taken; refused size 1, unknown frame 2, late 1"));
+    detections_close(to, &count);
+    CHECK(count.datagrams[DETECTIONS_GOOD] == 1 && count.datagrams[DETECTIONS_FRAME] == 2 &&
+          count.datagrams[DETECTIONS_LATE] == 1 && count.datagrams[DETECTIONS_SIZE] == 1 &&
+          count.datagrams[DETECTIONS_REPEATED] == 1 && count.lost_kernel == 0 && count.lines == 0);
+    CHECK(strstr(check_said, "1 datagrams taken; refused size 1, unknown_frame 2, late 1, repeated 1"));
+    log_set_sink(NULL, NULL);
+    close(from);
+}
+
+/* A flood of answers to three frames: each datagram is in a count, and three are written. */
+static void a_flood_is_counted_and_bounded(void **state)
+{
+    (void)state;
+    enum { sent = 20000, frames = 3 };
+    char           folder[] = "/tmp/pitviper-answers-XXXXXX", path[64], line[512];
+    AnswerCounters count;
+    int            port, lines = 0;
+    CHECK(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/answers.jsonl", folder);
+    log_set_sink(check_listen, NULL);
+    Detections              *to = open_detections(&port, folder);
+    const int                from = socket(AF_INET, SOCK_DGRAM, 0);
+    const struct sockaddr_in node = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port),
+                                     .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    PitviperDetections       answer[frames];
+    for (int n = 0; n < frames; n++) {
+        answer[n] = detections_of(n, BAND_LWIR, 2);
+        strcpy(answer[n].detection[1].class_name, "surveillance_aircraft");
+        answer[n].detection[1].score = 0.9f;
+        detections_frame(to, n, 0.25 * n, 0, wall_clock_s());
+        deliver(to, from, port, &answer[n], PITVIPER_DETECTIONS_SIZE(2));
+    }
+    for (int i = frames; i < sent; i++)
+        CHECK(sendto(from, &answer[i % frames], PITVIPER_DETECTIONS_SIZE(2), 0, (const struct sockaddr *)&node, sizeof node) > 0);
+    detections_close(to, &count);
+    uint64_t all = count.lost_kernel;
+    for (int i = 0; i < DETECTIONS_REASONS; i++) all += count.datagrams[i];
+    CHECK(all == sent && count.datagrams[DETECTIONS_GOOD] == frames && count.lines == 2 * frames && count.lines_failed == 0);
+    CHECK(count.datagrams[DETECTIONS_REPEATED] + count.lost_kernel == sent - frames);
+    FILE *file = fopen(path, "r");
+    CHECK(file);
+    for (; fgets(line, sizeof line, file); lines++) {
+        char want[256];
+        if (lines % 2 == 0) continue;
+        snprintf(want, sizeof want, "{\"frame\":%d,\"band\":\"lwir\",\"time_s\":%.15g%s,\"answer\":2,\"of\":2,\"class\":\"surveillance_aircraft\","
+                 "\"box_px\":[1.0,0.0,2.0,48.0],\"score\":0.9,\"track\":1,\"latency_ms\":", lines / 2, 0.25 * (lines / 2), lines / 2 ? "" : ".0");
+        if (strncmp(line, want, strlen(want)) != 0) printf("%s\n%s", want, line);
+        CHECK(strncmp(line, want, strlen(want)) == 0 && strstr(line, ",\"late\":false}"));
+    }
+    CHECK(lines == 2 * frames);
+    fclose(file);
+    unlink(path);
+    rmdir(folder);
     log_set_sink(NULL, NULL);
     close(from);
 }
@@ -487,7 +588,9 @@ int main(void)
         cmocka_unit_test(many_readers_see_whole_frames),
         cmocka_unit_test(settings_are_checked),
         cmocka_unit_test(each_octet_of_a_detection_is_checked),
+        cmocka_unit_test(classes_are_as_long_as_our_own),
         cmocka_unit_test(the_newest_detections_are_kept),
+        cmocka_unit_test(a_flood_is_counted_and_bounded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -179,7 +179,7 @@ static void the_guided_one_carries_the_sensor_and_then_the_next(void **state)
         {30, 3, 0}, {31, 2, 0}, {32, 2, 0}, {33, 1, 0}, {34, 1, 0}, {35, 3, 0}, {33, 1, 1u << 23}, {34, 1, 1u << 23},
         {31, 2, 1u << 23}, {36, 0, 0}, {32, 2, 1u << 23}, {36, 0, 1u << 23}, {37, 2, 0}, {37, 2, 0}};
     enum { says = sizeof say / sizeof *say };
-    static const uint16_t want[says] = {0, 31, 31, 33, 33, 33, 34, 31, 32, 32, 36, 0, 0, 37};
+    static const uint16_t want[says] = {0, 31, 31, 33, 33, 33, 34, 0, 0, 0, 0, 0, 0, 0};
     uint8_t      octets[says][256];
     DisDatagram  heard[says];
     EntityTable *table = make_table();
@@ -209,6 +209,51 @@ static void the_guided_one_carries_the_sensor_and_then_the_next(void **state)
     entity_table_destroy(table);
 }
 
+/* A shell that lies there (30), and two shells of which the first bursts at 102.2 and the second falls silent at 103: neither is gone back to, and no
+ * shell after a missile (at 109), which keeps the sensor when it has burst (at 110.2). */
+static void no_spent_one_carries_the_sensor_again(void **state)
+{
+    (void)state;
+    static const struct { uint16_t entity; uint8_t category; bool burst; double t_s; uint16_t want; } say[] = {
+        {30, 2, false, 99, 0}, {31, 2, false, 100, 31}, {32, 2, false, 101, 31}, {31, 2, true, 102.2, 32}, {31, 2, false, 102.3, 32},
+        {32, 2, false, 103, 32}, {39, 1, false, 109, 39}, {31, 2, false, 110, 39}, {39, 1, true, 110.2, 39},
+        {31, 2, false, 110.3, 39}};
+    enum { says = sizeof say / sizeof *say };
+    uint8_t      octets[says][256];
+    DisDatagram  heard[says];
+    EntityTable *table = make_table();
+    Player      *player = NULL;
+    for (int k = 0; k < says; k++) {
+        const uint32_t stamp = (uint32_t)(say[k].t_s / 3600 * 2147483648.0) << 1;
+        DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1, .timestamp = stamp},
+                              .id = {1, 1, say[k].entity}, .type = {2, 9, 225, say[k].category, 1, 1, 0},
+                              .velocity_mps = {0, say[k].entity == 30 ? 0 : -50, 0}, .p_ecef = {6378137, 10.0 * k, 0}, .dead_reckoning = 2};
+        DisDetonation  burst = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_detonation, .family = 2, .timestamp = stamp},
+                                .firing = {1, 1, 7}, .munition = {1, 1, say[k].entity}, .p_ecef = {6378137, 0, 0}};
+        const size_t   n = say[k].burst ? dis_encode_detonation(octets[k], sizeof octets[k], &burst)
+                                        : dis_encode_entity_state(octets[k], sizeof octets[k], &pdu);
+        CHECK(n > 0);
+        heard[k] = (DisDatagram){.capture_s = 900 + say[k].t_s, .octets = (uint32_t)n, .bytes = octets[k]};
+    }
+    const DisLog log = {.count = says, .datagram = heard};
+    DisEntityId  host = {0}, none = {0};
+    bool         guided;
+    assert_int_equal(player_create(&player, -1, true), STATUS_OK);
+    assert_int_equal(player_add_log(player, &log), STATUS_OK);
+    for (int k = 0; k < says; k++) {
+        player_feed(player, table, say[k].t_s + 0.05);
+        player_munition(&host, &guided, player, table); /* false, and nothing changed, where none is left */
+        CHECK(host.entity == say[k].want);
+    }
+    /* 31 was heard again after 7.7 s: another munition with its id */
+    CHECK(!player_spent(player, (DisEntityId){1, 1, 31}) && !player_spent(player, (DisEntityId){1, 1, 32}));
+    CHECK(player_spent(player, (DisEntityId){1, 1, 39}));
+    player_feed(player, table, 118);
+    CHECK(!player_munition(&none, &guided, player, table)); /* unheard for 7 s */
+    player_destroy(player);
+    entity_table_destroy(table);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +263,7 @@ int main(void)
         cmocka_unit_test(arrival_and_exercise_time_agree_to_the_last_bit),
         cmocka_unit_test(munitions_and_their_targets_are_known_when_they_were_heard),
         cmocka_unit_test(the_guided_one_carries_the_sensor_and_then_the_next),
+        cmocka_unit_test(no_spent_one_carries_the_sensor_again),
     };
     return cmocka_run_group_tests(tests, open_catalog, close_catalog);
 }

@@ -333,9 +333,30 @@ static void counters_are_the_same_or_not(void **state)
     json_values_free(&is);
 }
 
+/* The same materials under other numbers are equal; a name that the baseline lacks is none of its own. */
+static void materials_are_compared_by_name(void **state)
+{
+    (void)state;
+    uint32_t    was[4] = {0, 1, 2, 3}, is[4] = {0, 2, 3, 1}, other[4] = {0, 1, 4, 9};
+    char        before[] = "turf,steel,paint", after[] = "paint,turf,steel", more[] = "turf,a,b,glass";
+    RecordFrame record = {.width = 4, .height = 1, .material_names = before};
+    RecordFrame run = {.width = 4, .height = 1, .material_names = after};
+    record.id_plane[FRAME_MATERIAL] = was;
+    run.id_plane[FRAME_MATERIAL] = is;
+    CHECK(frame_rename_materials(&run, &record) == STATUS_OK && memcmp(is, was, sizeof is) == 0);
+    run.material_names = more;
+    run.id_plane[FRAME_MATERIAL] = other;
+    CHECK(frame_rename_materials(&run, &record) == STATUS_OK);
+    CHECK(other[0] == 0 && other[1] == 1 && other[2] > 3 && other[3] > 3 && other[2] != other[3]);
+    run.material_names = NULL; /* by number */
+    run.id_plane[FRAME_MATERIAL] = was;
+    CHECK(frame_rename_materials(&run, &record) == STATUS_OK && was[3] == 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(materials_are_compared_by_name),
         cmocka_unit_test(shares_and_places_are_counted),
         cmocka_unit_test(what_is_not_finite_is_equal_only_to_itself),
         cmocka_unit_test(edges_may_differ_only_when_told),

@@ -51,10 +51,11 @@ static void planes_are_listed_by_name(void **state)
 {
     (void)state;
     unsigned planes;
-    CHECK(plane_choice_parse(&planes, "all") && planes == 255);
+    CHECK(plane_choice_parse(&planes, "all") && planes == 511);
     CHECK(plane_choice_parse(&planes, "none") && planes == 0);
     CHECK(plane_choice_parse(&planes, "range,entity,part,material,temperature,normal") && planes == 63);
     CHECK(plane_choice_parse(&planes, "instance,cover") && planes == (1u << PLANE_INSTANCE | 1u << PLANE_COVER));
+    CHECK(plane_choice_parse(&planes, "emissivity") && planes == 1u << PLANE_EMISSIVITY);
     CHECK(plane_choice_parse(&planes, "normal") && planes == 1u << PLANE_NORMAL);
     CHECK(plane_choice_parse(&planes, "part,entity,part") && planes == (1u << PLANE_PART | 1u << PLANE_ENTITY));
     static const char *const bad[] = {"", ",", "range,", ",range", "rang", "ranges", "range entity", "all,range", "none,range"};

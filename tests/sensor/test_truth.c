@@ -224,6 +224,28 @@ static void a_small_target_is_judged_by_its_samples(void **state)
     CHECK_NEAR(b->intensity_w_sr / (0.1 * own * t[0].range_m * t[0].range_m / 250000), 1, 1e-12);
 }
 
+/* Optical: what nothing surrounds is told from darkness by its mean; no contrast is 0, one without noise is not known. */
+static void a_signal_is_known_without_surroundings_and_without_noise(void **state)
+{
+    (void)state;
+    static float optical[width * height];
+    Target       t[2];
+    scene();
+    f.picture.optical[0] = optical;
+    for (int i = 0; i < width * height; i++) f.id[i] = 2, optical[i] = 0.5f;
+    f.pixels[1] = (TargetPixels){.visible = width * height, .amodal = width * height, .box = {0, 0, width, height}, .occluder = -1};
+    assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
+    CHECK_NEAR(t[0].band[BAND_OPTICAL].snr, 0.5 / 0.01, 1e-9);
+    CHECK(isnan(t[0].band[BAND_OPTICAL].contrast) && isnan(t[0].band[BAND_LWIR].snr));
+    const TruthNoise none = {0, 0, 0};
+    f.id[0] = 0; /* one pixel of the same brightness beside it */
+    assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &none), 1);
+    CHECK(t[0].band[BAND_OPTICAL].snr == 0);
+    optical[0] = 0.25f;
+    assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &none), 1);
+    CHECK(isnan(t[0].band[BAND_OPTICAL].snr) && t[0].band[BAND_OPTICAL].contrast == 1);
+}
+
 static void hidden_targets_are_listed_and_the_host_never(void **state)
 {
     (void)state;
@@ -300,6 +322,7 @@ int main(void)
         cmocka_unit_test(azimuth_elevation_and_aspect_have_the_stated_senses),
         cmocka_unit_test(contrast_is_the_temperature_difference_that_was_painted),
         cmocka_unit_test(a_small_target_is_judged_by_its_samples),
+        cmocka_unit_test(a_signal_is_known_without_surroundings_and_without_noise),
         cmocka_unit_test(hidden_targets_are_listed_and_the_host_never),
         cmocka_unit_test(an_occluder_is_named_where_the_fraction_shows_it),
         cmocka_unit_test(plants_hide_a_share_of_a_target),

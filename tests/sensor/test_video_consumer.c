@@ -74,6 +74,7 @@ static Consumer *open_video(Config *config, const char *path, const char *codec,
     const VideoOf of = {.config = config, .to = VIDEO_TO_FILE, .bands = 1u << BAND_MWIR | 1u << BAND_LWIR,
                         .rate_hz = 10, .patient = patient};
     assert_int_equal(consume_video(&consumer, &of), STATUS_OK);
+    assert_int_equal(consumer->begin(consumer), STATUS_OK);
     CHECK(consumer->wants & WANT_DISPLAY);
     warnings = again = 0;
     return consumer;

@@ -295,9 +295,9 @@ def take_run(topics, out, lines_of):
         take_table(topics["radar-azimuths" if "_dbs" in path else "radar"], open(path).read().splitlines(), ",", True)
     for path in glob.glob(f"{out}/radar/??????.exr"): take_exr(topics["radar-map"], path, "", "")
     for path in glob.glob(f"{out}/radar/??????_*.exr"): take_exr(topics["radar-scan"], path, path[:-4].split("/")[-1][7:] + "/", "")
-    for name, file in (("pairs", "pairs.jsonl"), ("coco", "coco.json")):
+    for name, file in (("pairs", "pairs.jsonl"), ("coco", "coco.json"), ("answers", "answers.jsonl")):
         if os.path.exists(f"{out}/{file}"): take_json(topics[name], f"{out}/{file}")
-    known = r"(pairs/\w+/)?(frames|raw|profiles)/\w+/\d{6}\.(exr|png|csv)|radar/\d{6}(_scan|_dbs|_view|_view_scan|_view_dbs)?\.(exr|png|csv)|latest/\w+\.png|(truth|pairs)\.jsonl|(run|coco|variant)\.json|settings\.yaml|log\.txt|thumbnail\.png"
+    known = r"(pairs/\w+/)?(frames|raw|profiles)/\w+/\d{6}\.(exr|png|csv)|radar/\d{6}(_scan|_dbs|_view|_view_scan|_view_dbs)?\.(exr|png|csv)|latest/\w+\.png|(truth|pairs|answers)\.jsonl|(run|coco|variant)\.json|settings\.yaml|log\.txt|thumbnail\.png"
     for path in glob.glob(f"{out}/**", recursive=True):
         if os.path.isfile(path): check(re.fullmatch(known, os.path.relpath(path, out)), path, "is no product of the reference")
     meaning_of_truth(out)
@@ -333,7 +333,7 @@ def main():
     for what, path in zip(sys.argv[2::2], sys.argv[3::2]):
         begin = first.setdefault(what, True)
         first[what] = False
-        every = ("truth", "run.json", "exr", "png", "raw", "profile", "radar", "radar-map", "radar-scan", "radar-azimuths", "pairs", "coco")
+        every = ("truth", "run.json", "exr", "png", "raw", "profile", "radar", "radar-map", "radar-scan", "radar-azimuths", "pairs", "coco", "answers")
         if what == "--run": take_run(topics, path, every if begin else ())
         elif what == "--truth": take_run(topics, path, ["truth"])
         elif what == "--sweep": take_sweep(topics, path)

@@ -19,6 +19,7 @@ exercise "$tmp/column.yaml" "$tmp/column.pcap"
 # the log's port is 3000, so an address of this test's own
 address=127.$((1 + $$ % 250)).$((1 + RANDOM % 250)).1
 coproc receiver { python3 tests/system/data_pdus.py receive $address 3000 "$tmp/pdus"; }
+receiver_pid=$receiver_PID # bash forgets it once the receiver has ended
 read -r -t $patience listening <&"${receiver[0]}"
 check "a receiver of Data PDUs listens" [ "${listening:-}" = listening ]
 options=(--size 96x64 --rate 1 --threads 2 --bands lwir --host 1:3001:14 --from 1353 --to 1355 --set sensor.hfov_deg=40
@@ -30,7 +31,7 @@ run replay "$tmp/column.pcap" --out "$tmp/out" "${options[@]}" --memory "$ring" 
     --video "$video" --set publish.vmti=truth
 check "a replay with all formats" [ $code = 0 ] || cat "$tmp/stderr"
 echo "end" >&"${receiver[1]}"
-wait "$receiver_PID" 2>/dev/null
+wait "$receiver_pid" 2>/dev/null
 wait "$watcher"
 check "ffmpeg takes the metadata out of lwir.ts" quiet ffmpeg -v error -y -i "$video/lwir.ts" -map 0:d:0 -c copy -f data "$tmp/lwir.klv"
 python3 tests/system/five_records.py compare "$tmp" || fail "five formats, one box"

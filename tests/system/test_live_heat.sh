@@ -19,9 +19,9 @@ shots:
 YAML
 look=(--size 32x24 --bands lwir,mwir --rate 2 --host observer --no-files --set exercise.aim=1:3001:1
     --set observer.range_m=60 --set observer.height_m=25 --set sensor.hfov_deg=50 --set exercise.listen_s=0.5)
-# warmth OUT: a line for each target of a frame: frame entity dt_k patch_temp_k
+# warmth OUT [COUNT]: a line for each target of a frame, of so many frames: frame entity dt_k patch_temp_k
 warmth() {
-    sed 's/"targets":/\n&/; s/{"entity":/\n&/g' "$1/truth.jsonl" | awk -F'"' '
+    head -n "${2:--0}" "$1/truth.jsonl" | sed 's/"targets":/\n&/; s/{"entity":/\n&/g' | awk -F'"' '
         /^\{"frame":/ { frame = $3; gsub(/[^0-9]/, "", frame) }
         /^\{"entity":/ && match($0, /"dt_k":[^,]*,"patch_temp_k":\[[^]]*/) {
             line = substr($0, RSTART, RLENGTH); gsub(/"dt_k":|"patch_temp_k":\[/, "", line); sub(/,/, " ", line)
@@ -40,7 +40,7 @@ sender "$tmp/tanks.yaml" --send 127.0.0.1:$port
 # until what is looked for below has been seen
 for ((n = 6; n < 400; n += 2)); do
     makes heat $n || break
-    warmth "$tmp/heat" >"$tmp/live.warmth"
+    warmth "$tmp/heat" $n >"$tmp/live.warmth" # the line after them may not be whole
     is "$(rise)" '>' 0.2 && [ "$(temps 1 | cut -d' ' -f4 | sort -u | wc -l)" -ge 5 ] && [ -n "$(temps 2)" ] && break
 done
 stop heat

@@ -23,6 +23,8 @@ shown plain --set quality.budget=off
 check "a replay" [ "$code" = 0 ]
 check "no budget, no errors" [ "$(grep -c '"error"' "$tmp/plain/truth.jsonl")" = 0 ]
 shown on
+check "with the median, and the share beyond 1 K, of thermal bands; none of the pseudo-radar" eval \
+    '[ "$(grep -oE "\"median_k\":[0-9.e-]+,\"beyond_1k\":[0-9.e-]+" "$tmp/on/truth.jsonl" | wc -l)" -ge 2 ] && ! errors "$tmp/on" | grep -q "\"radar\":{\"sampling"'
 check "errors by default, in every line" \
     [ "$(grep -c '"error":{"optical":{"sampling"' "$tmp/on/truth.jsonl")" = 2 -a "$(wc -l <"$tmp/on/truth.jsonl")" = 2 ]
 check "the same planes" same_hashes "$tmp/plain" "$tmp/on"

@@ -4,6 +4,7 @@
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 judges python3.numpy python3.OpenEXR python3.PIL
+needs "writable /dev/shm" test -w /dev/shm
 needs "video: built without FFmpeg's libraries" has_video
 
 run help
@@ -44,10 +45,24 @@ done
 printf 'entity,signature\ntank,point.csv\n1:3001:22,point.csv\n' >"$tmp/but_one.csv"
 exercise demo "$tmp/demo.pcap"
 small=(--size 32x24 --rate 1 --threads 1)
-run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --from 1366 --to 1366 --pairs target --coco \
+# a recogniser that answers, before there is a frame and after: a detection in one frame of two, else none
+free_port
+python3 -u - $port <<'PY' &
+import socket, struct, sys, time
+to = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+while True:
+    for frame in range(40):
+        for band in range(4):
+            one = struct.pack("=5fI32s2I", 3, 4, 20.5, 10, 0.75, 9, b"surveillance_aircraft", 0, 0) * (band % 2)
+            to.sendto(struct.pack("=8sIHHiIII", b"PVDETECT", 0x01020304, 2, 64, frame, band, band % 2, 0) + one, ("127.0.0.1", int(sys.argv[1])))
+    time.sleep(0.003)
+PY
+answers=$!
+run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --memory "pitviper-reference-$$" --set publish.detections_port=$port --from 1366 --to 1366 --pairs target --coco \
     --set sensor.preset=staring_lwir,staring_mwir,tv --set sensor.lens_k1=-0.1 --set sensor.lateral_r=0.001 \
     --set radar.preset=search_ku --set radar.scan_deg=4 --set radar.given="$tmp/but_one.csv"
 check "all products" [ $code = 0 ] || cat "$tmp/stderr"
+kill $answers
 cat >"$tmp/two.yaml" <<'Y'
 duration_s: 8
 vehicles:

@@ -20,6 +20,7 @@ end_sender
 check "the node ends well" [ $code = 0 ] || tail -n 5 "$tmp/live.out"
 
 coproc receiver { "${pdus[@]}" receive 127.0.0.1 $port "$tmp/replayed"; }
+receiver_pid=$receiver_PID # bash forgets it once the receiver has ended
 read -r -t $patience listening <&"${receiver[0]}"
 check "a receiver listens" [ "${listening:-}" = listening ]
 again() {
@@ -33,7 +34,7 @@ check "at a speed: exit code" [ $code = 0 ]
 check "at a speed: says to where, and how many" said "Data PDUs go to 127.0.0.1 port $port from 4711:1"
 sent=$(grep -oE 'Data PDUs sent [0-9]+, not sent 0' "$tmp/stderr" | grep -oE '[0-9]+' | head -n 1)
 echo "end" >&"${receiver[1]}"
-wait "$receiver_PID" 2>/dev/null
+wait "$receiver_pid" 2>/dev/null
 check "all of them arrive, none of the replay at full speed: ${sent:-none}" [ "$(wc -l <"$tmp/replayed")" = "${sent:-none}" ]
 check "the same images" part_of "$tmp/live" "$tmp/again" 3
 # no network: said, with a next step, and a failure

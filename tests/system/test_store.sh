@@ -53,6 +53,28 @@ rm "$tmp/cover.tif"
 replay "$tmp/demo.pcap" "$tmp/four" "${few[@]}" --bands lwir --no-files
 check "a missing source is said" said 'used as it is: .*cover\.tif'
 
+# of sources outside its own folder it is not made again unasked: a store may be a stranger's (tests/terrain/test_terrain_import.c)
+mkdir "$tmp/mine" "$tmp/given"
+cp "$tmp/dtm.tif" "$tmp/mine/secret.tif"
+given=$tmp/given/a.store
+run terrain import "$tmp/mine/secret.tif" --size 0.4x0.4 --horizon 1 -o "$given"
+touch "$tmp/mine/secret.tif"
+run terrain info "$given"
+check "a source elsewhere has changed: said" said 'CHANGED; the store is used as it is: .*secret\.tif lies outside'
+replay "$tmp/demo.pcap" "$tmp/foreign" "${few[@]}" --bands lwir --no-files --set "terrain.store=$given"
+check "a source elsewhere has changed: used as it is" [ "$code" = 0 ]
+check "and the command that makes it again is named" said "used as it is: secret\.tif has changed, but secret\.tif lies outside the store's own folder .*terrain again"
+truncate -s 100000 "$given"
+replay "$tmp/demo.pcap" "$tmp/foreign" "${few[@]}" --no-files --set "terrain.store=$given"
+check "cut, it is refused" [ "$code" = 1 ]
+check "with that reason, and that command" complained 'made of .*mine/secret\.tif, outside its own folder.*terrain again'
+check "and stays as it is" [ "$(stat -c %s "$given")" = 100000 ]
+run terrain again "$given"
+check "asked for, it is made" [ "$code" = 0 ]
+check "of what is printed" said '^elevation .*mine/secret\.tif'
+run terrain info "$given"
+check "and is whole" said 'sources: as they were'
+
 # terrain info
 run terrain info "$store" --out "$tmp/pictures" --verify
 check "info" [ "$code" = 0 ]

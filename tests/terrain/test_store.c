@@ -190,7 +190,7 @@ static void damaged_files_are_refused_with_the_next_step(void **state)
     StoreHeader *h = (StoreHeader *)(void *)octets;
     log_set_sink(check_listen, NULL);
     refused(bad, STATUS_IO, "No such file");
-    refused(folder, STATUS_BAD_VALUE, "no file");
+    refused(folder, STATUS_IO, "a directory, not a regular file");
     write_whole(bad, octets, count - 4096);
     refused(bad, STATUS_BAD_VALUE, "cut");
     write_whole(bad, octets, 100);

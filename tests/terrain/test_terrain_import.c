@@ -7,7 +7,9 @@
 #include "terrain/import/terrain_import.h"
 #include "terrain/landscape/elevation_stream.h"
 
+#include <limits.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static char folder[temp_path_size];
 
@@ -456,13 +458,13 @@ static void a_store_is_made_again_from_its_header(void **state)
     assert_int_equal(store_open(&store, out), STATUS_OK);
     const uint64_t was = store.content;
     CHECK(store_sources(&store, which, sizeof which) == STORE_FRESH);
-    assert_int_equal(terrain_store_rebuild(out, store.options), STATUS_OK);
+    assert_int_equal(terrain_store_rebuild(out, store.options, false), STATUS_OK);
     store_close(&store);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     CHECK(store.content == was); /* the same, on other threads */
     write_grid(path, &other);
     CHECK(store_sources(&store, which, sizeof which) == STORE_CHANGED && strstr(which, "again"));
-    assert_int_equal(terrain_store_rebuild(out, store.options), STATUS_OK);
+    assert_int_equal(terrain_store_rebuild(out, store.options, false), STATUS_OK);
     store_close(&store);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     CHECK(store_sources(&store, which, sizeof which) == STORE_FRESH);
@@ -484,6 +486,95 @@ static int tear_down(void **state)
     return system(command);
 }
 
+/* The grid `own` by another name. */
+static void write_vrt(const char *path, const char *source)
+{
+    FILE *file = fopen(path, "w");
+    CHECK(file != NULL);
+    fprintf(file, "<VRTDataset rasterXSize=\"260\" rasterYSize=\"250\"><SRS>EPSG:4326</SRS>"
+                  "<GeoTransform>11,1e-5,0,46.0025,0,-1e-5</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\">"
+                  "<SimpleSource><SourceFilename relativeToVRT=\"0\">%s</SourceFilename><SourceBand>1</SourceBand>"
+                  "</SimpleSource></VRTRasterBand></VRTDataset>", source);
+    CHECK(fclose(file) == 0);
+}
+
+/* A store may be a stranger's: what lies outside its own folder is not read for it, whichever way it is named. */
+static void a_store_is_made_again_of_its_own_folder_alone(void **state)
+{
+    (void)state;
+    char          path[temp_name_size], out[temp_name_size], outside[512], text[4 * temp_name_size], whole[PATH_MAX],
+        own[temp_path_size], other[temp_path_size], secret[temp_name_size], vrt[temp_name_size], nested[temp_name_size],
+        linked[temp_name_size], links[temp_name_size];
+    TerrainReport r;
+    Grid          first = ground;
+    first.name = "own";
+    write_grid(path, &first);
+    path_of(out, "own.store");
+    const TerrainOptions o = coarse_options_of(path);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+
+    assert_true(temp_folder(other));
+    memcpy(own, folder, sizeof own);
+    memcpy(folder, other, sizeof folder);
+    write_grid(secret, &first);
+    memcpy(folder, own, sizeof folder);
+    path_of(linked, "linked.flt");
+    path_of(links, "links");
+    path_of(vrt, "named.vrt");
+    path_of(nested, "nested.vrt");
+    assert_int_equal(symlink(secret, linked), 0);
+    assert_int_equal(mkdir(links, 0700), 0);
+    snprintf(text, sizeof text, "%s/linked.flt", links);
+    assert_int_equal(symlink(secret, text), 0);
+    write_vrt(vrt, secret);
+    write_vrt(nested, vrt);
+    const char *file_name = strrchr(path, '/') + 1, *store_folder = realpath(out, whole);
+    assert_non_null(store_folder);
+    const struct {
+        const char *options[4];
+        const char *said;
+    } bad[] = {
+        {{"elevation ", secret}, "outside its own folder"},
+        {{"elevation ", path, ",", secret}, "outside its own folder"},
+        {{"elevation ", path, "\nsurface ", secret}, "outside its own folder"},
+        {{"elevation ", path, "\ncover ", secret}, "outside its own folder"},
+        {{"elevation ", path, "\nphoto ", secret}, "outside its own folder"},
+        {{"elevation ", path, "\ncanopy-height ", secret}, "outside its own folder"},
+        {{"elevation ", path, "\ncanopy-cover ", secret}, "outside its own folder"},
+        {{"elevation ", path, "\ngeoid ", secret}, "outside its own folder"},
+        {{"elevation ", path, "\ncover-table ", secret}, "outside its own folder"},
+        {{"elevation ", secret, "@geoid"}, "outside its own folder"},
+        {{"elevation ", secret, ":1"}, "outside its own folder"},
+        {{"elevation ", path, "/../../", secret}, "outside its own folder"},
+        {{"elevation ", "/vsicurl/http://127.0.0.1:9/a.tif"}, "outside its own folder"},
+        {{"elevation ", "http://127.0.0.1:9/a.tif"}, "outside its own folder"},
+        {{"elevation ", "/vsizip/", path}, "outside its own folder"},
+        {{"elevation ", "GTIFF_DIR:1:", path}, "outside its own folder"},
+        {{"elevation ", file_name}, "outside its own folder"}, /* of the current folder */
+        {{"elevation ", linked}, "outside its own folder"},
+        {{"elevation ", links}, "lies outside the folder"},
+        {{"elevation ", vrt}, "lies outside the folder"},
+        {{"elevation ", nested}, "lies outside the folder"},
+    };
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        const char *const *part = bad[i].options;
+        snprintf(text, sizeof text, "%s%s%s%s\nhorizon 1\n", part[0], part[1], part[2] ? part[2] : "", part[3] ? part[3] : "");
+        if (terrain_store_rebuild(out, text, false) == STATUS_OK) fail_msg("made again: %s", text);
+        if (!strstr(check_said, bad[i].said)) fail_msg("%s: said '%s'", text, check_said);
+        CHECK(terrain_store_foreign(outside, sizeof outside, out, text) == (strstr(bad[i].said, "its own") != NULL));
+    }
+    log_set_sink(NULL, NULL);
+    snprintf(text, sizeof text, "elevation %s\nspacing 10\nhorizon 1\n", path);
+    CHECK(!terrain_store_foreign(outside, sizeof outside, out, text));
+    assert_int_equal(terrain_store_rebuild(out, text, false), STATUS_OK);
+    snprintf(text, sizeof text, "elevation %s\nspacing 10\nhorizon 1\n", nested);
+    assert_int_equal(terrain_store_rebuild(out, text, true), STATUS_OK);
+    memcpy(folder, other, sizeof folder);
+    tear_down(state);
+    memcpy(folder, own, sizeof folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -498,6 +589,7 @@ int main(void)
         cmocka_unit_test(options_are_a_text_and_back),
         cmocka_unit_test(stopped_or_refused_it_leaves_nothing),
         cmocka_unit_test(a_store_is_made_again_from_its_header),
+        cmocka_unit_test(a_store_is_made_again_of_its_own_folder_alone),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

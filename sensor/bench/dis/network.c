@@ -269,7 +269,8 @@ static double differing(const Recording *r)
     if (log.count != r->count) bad = INFINITY;
     for (int i = 0; i < log.count && i < r->count; i++) {
         fill(octet, pdu_octets, (uint64_t)i);
-        bad += log.datagram[i].octets != pdu_octets || memcmp(log.datagram[i].bytes, octet, pdu_octets) != 0;
+        const DisDatagram d = dis_log_datagram(&log, i);
+        bad += d.octets != pdu_octets || memcmp(d.bytes, octet, pdu_octets) != 0;
     }
     dis_log_close(&log);
     return bad;

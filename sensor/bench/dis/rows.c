@@ -2,6 +2,7 @@
  * octets with valid headers, from a counter; each row's error is the number of octets that differ after a round
  * trip. */
 #include "sensor/bench/dis/rows.h"
+#include "pitviper_output.h"
 
 #include "sensor/bench/dis/network.h"
 #include "sensor/bench/dis/stability.h"
@@ -217,7 +218,8 @@ static double lost_of_capture(const Capture *c)
     if (log.count != o->pdus) lost = INFINITY;
     for (int i = 0; i < log.count && i < o->pdus; i++) {
         const size_t octets = o->first[i + 1] - o->first[i];
-        lost += log.datagram[i].octets != octets || memcmp(log.datagram[i].bytes, o->octet + o->first[i], octets) != 0
+        const DisDatagram d = dis_log_datagram(&log, i);
+        lost += d.octets != octets || memcmp(d.bytes, o->octet + o->first[i], octets) != 0
                     ? (double)octets : 0;
     }
     dis_log_close(&log);
@@ -229,7 +231,7 @@ static Status time_capture(Bench *bench, const Octets *o)
     static const uint32_t head[6] = {0xA1B2C3D4, 0x00040002, 0, 0, 262144, 1};
     Capture    c = {.octets = o};
     BenchTime  time;
-    FILE      *file = temp_file(c.path, "") ? fopen(c.path, "wb") : NULL;
+    FILE      *file = temp_file(c.path, "") ? output_file(c.path, 0) : NULL;
     bool       ok = file && fwrite(head, sizeof head, 1, file) == 1;
     for (int i = 0; i < o->pdus && ok; i++)
         ok = write_packet(file, (uint32_t)i, o->octet + o->first[i], o->first[i + 1] - o->first[i]);

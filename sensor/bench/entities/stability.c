@@ -337,12 +337,12 @@ static void tracks(Bench *bench)
         v3_scale(k.w_body_rps, turn_rad, axis);
         dead_reckon(&whole, &k, 1);
         dead_reckon(&half, &k, 0.5);
-        for (int p = 0; p < 2; p++) {
-            memcpy(point[p].p_ecef, p ? whole.p_ecef : k.p_ecef, sizeof k.p_ecef);
-            memcpy(point[p].r_ecef_from_body, p ? whole.r_ecef_from_body : k.r_ecef_from_body,
-                   sizeof k.r_ecef_from_body);
-        }
-        track_at(&pose, &track, 0.5 * (point[0].t_s + point[1].t_s));
+        for (int p = 0; p < 2; p++) memcpy(point[p].p_ecef, p ? whole.p_ecef : k.p_ecef, sizeof k.p_ecef);
+        const double middle_s = 0.5 * (point[0].t_s + point[1].t_s);
+        track_at(&pose, &track, middle_s);
+        /* a report has its attitude in floats: the turn is that of doubles */
+        track_turn(pose.r_ecef_from_body, k.r_ecef_from_body, whole.r_ecef_from_body,
+                   (middle_s - point[0].t_s) / (point[1].t_s - point[0].t_s));
         stress_rotation(&crooked, pose.r_ecef_from_body);
         bench_worse(&place, pose.p_ecef[0] - 6378137);
         bench_worse(&place, v3_length(pose.v_ecef_mps));

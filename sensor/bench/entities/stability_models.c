@@ -2,6 +2,7 @@
  * slivers, faces without area, duplicated, or five at one edge. References: analytic areas and volumes, and every
  * vertex of every pose for the bounding spheres. */
 #include "sensor/bench/entities/stability.h"
+#include "pitviper_output.h"
 
 #include "entities/parametric/mesh_builder.h"
 #include "entities/import/model_import.h"
@@ -215,7 +216,7 @@ static Status obj_imports(Bench *bench)
     for (int k = 0; k < count; k++) {
         Model       m = {0};
         ModelImport report;
-        FILE       *file = fopen(path, "w");
+        FILE       *file = output_file(path, 0);
         bool        written = file && fputs(obj_files[k].text, file) >= 0;
         if (file) written = fclose(file) == 0 && written;
         bench_progress(bench, obj_files[k].what);

@@ -2,6 +2,7 @@
  * of scenarios, cells of tables, columns of probes. Each must be rejected with a message, or the results must be
  * finite. */
 #include "sensor/bench/entities/stability.h"
+#include "pitviper_output.h"
 
 #include "dis/datagram.h"
 #include "dis/decode.h"
@@ -109,7 +110,7 @@ static void write_item(FILE *to, const char *const (*keys)[2], int count, const 
 static bool write_scenario(const char *path, const char *section, const char *key, const char *value)
 {
     const bool vehicle = strcmp(section, "vehicles") == 0, shot = strcmp(section, "shots") == 0;
-    FILE      *to = fopen(path, "w");
+    FILE      *to = output_file(path, 0);
     if (!to) return false;
     if (!vehicle && !shot && *section) fprintf(to, "%s: {%s: %s}\n", section, key, value);
     else if (!vehicle && !shot) fprintf(to, "%s: %s\n", key, value);
@@ -241,7 +242,7 @@ static Status table_cells(Bench *bench, double *bad, const char *name, bool (*is
         if (!text_to_double(&value, cell)) continue;
         for (int t = 0; t < text_count; t++) {
             if (number++ % (bench_quick(bench) ? 37 : 7) != 0) continue;
-            FILE *to = fopen(path, "w");
+            FILE *to = output_file(path, 0);
             if (!to) *bad = INFINITY;
             else fprintf(to, "%.*s%s%s", (int)(at - whole), whole, texts[t], at + length);
             if (to && fclose(to) != 0) *bad = INFINITY;

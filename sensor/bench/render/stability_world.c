@@ -1,5 +1,6 @@
 /* sensor/bench/render/stability_world.c: worlds of blocks, and frames of them, for stress cases. */
 #include "sensor/bench/render/stability_world.h"
+#include "pitviper_output.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -9,7 +10,7 @@ static Status open_catalog(Catalog **out)
 {
     static const char text[] = "type,model,origin\n1,marker,base\n";
     char  path[temp_path_size];
-    FILE *file = temp_file(path, "") ? fopen(path, "w") : NULL;
+    FILE *file = temp_file(path, "") ? output_file(path, 0) : NULL;
     if (!file) return STATUS_IO;
     const bool   written = fputs(text, file) >= 0;
     const Status status = fclose(file) == 0 && written ? catalog_open(out, path, 0.01) : STATUS_IO;

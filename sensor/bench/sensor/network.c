@@ -6,6 +6,7 @@
  * frame was published. Both processes end by themselves, and are killed if they do not. On quick rounds, which run
  * beside other load, times and losses are printed and not checked. */
 #include "sensor/bench/sensor/network.h"
+#include "pitviper_output.h"
 
 #include "sensor/bench/sensor/network_node.h"
 
@@ -78,7 +79,7 @@ static Status run_both(Live *l)
                                 NULL};
     const char *const exercise[] = {"pitviper", "exercise", quick ? "demo" : "crowd", "--send", to, NULL};
     if (pipe2(ears, O_CLOEXEC) != 0) return STATUS_IO;
-    const int     out = open(l->said, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    const int     out = output_open(l->said, 0);
     const double  begun_s = wall_clock_s();
     struct rusage usage = {0}, unused;
     pid_t         listener = out < 0 ? -1 : node_start(node, ears[1], ears[1]), sender = -1;
@@ -165,14 +166,16 @@ static Status read_latency(Live *l)
     l->published_s = calloc((size_t)log.count + 1, sizeof *l->published_s);
     if (!t_s || !l->sampled_s || !l->published_s) status = STATUS_NO_MEMORY;
     for (int i = 0; i < log.count && status == STATUS_OK; i++) {
-        const double frame_s = frame_of(&log.datagram[i], &config);
+        const DisDatagram d = dis_log_datagram(&log, i);
+        const double      frame_s = frame_of(&d, &config);
         if (isnan(frame_s)) continue;
         t_s[l->publications]           = frame_s;
         l->published_s[l->publications++] = after_s(frame_s, fmod(log.datagram[i].capture_s, 3600));
     }
     for (int i = 0, k = 0; i < log.count && status == STATUS_OK && l->publications > 1; i++) {
-        const double came_s = fmod(log.datagram[i].capture_s, 3600);
-        if (after_s(t_s[0], came_s) < 0 || !isnan(frame_of(&log.datagram[i], &config))) continue;
+        const DisDatagram d = dis_log_datagram(&log, i);
+        const double      came_s = fmod(d.capture_s, 3600);
+        if (after_s(t_s[0], came_s) < 0 || !isnan(frame_of(&d, &config))) continue;
         while (k < l->publications && after_s(t_s[k], came_s) > 0) k++;
         if (k < l->publications) l->sampled_s[l->samples++] = after_s(came_s, t_s[k]);
     }

@@ -5,6 +5,7 @@
  * (publish.truth), and chooses its quality by the frame interval (quality.frame_ms). On quick rounds, which run beside
  * other load, times and losses are printed and not checked. */
 #include "sensor/bench/sensor/network.h"
+#include "pitviper_output.h"
 
 #include "sensor/bench/sensor/network_node.h"
 
@@ -216,7 +217,7 @@ static Status run_case(Bench *bench, const Case *of, int index)
     snprintf(n.memory, sizeof n.memory, "pitviper_bench_%d", (int)getpid());
     snprintf(n.stream, sizeof n.stream, "udp://127.0.0.1:%d", n.port + 1001);
     if (!temp_file(n.scenario, ".yaml")) status = STATUS_IO;
-    FILE *file = status == STATUS_OK ? fopen(n.scenario, "w") : NULL;
+    FILE *file = status == STATUS_OK ? output_file(n.scenario, 0) : NULL;
     if (!file || fputs(one_target, file) < 0 || fclose(file) != 0) status = STATUS_IO;
     if (!open_receivers(&n)) {
         log_error("bench: cannot receive on loopback: %s", strerror(errno));

@@ -3,6 +3,7 @@
  * A ratio is of interleaved runs: frame, frame of one ray per pixel and the rays alone alternate. Stages are of one
  * thread, where they add up. Every timed frame has its planes compared with those of one thread without skips. */
 #include "sensor/bench/sensor/speed.h"
+#include "pitviper_output.h"
 
 #include "sensor/bench/sensor/raw.h"
 #include "sensor/bench/sensor/speed_private.h"
@@ -336,7 +337,7 @@ static bool write_text(const char *folder, const char *name, const char *format,
 {
     char text[temp_name_size];
     snprintf(text, sizeof text, "%s/%s", folder, name);
-    FILE      *file = fopen(text, "w");
+    FILE      *file = output_file(text, 0);
     const bool ok = file && fprintf(file, format, path) > 0;
     return file && fclose(file) == 0 && ok;
 }

@@ -2,6 +2,7 @@
  * post wide, voids, grids of one cell and of a billion. References: each triangle's plane in long double, all posts for
  * the pyramids, and the least and greatest height of the file. */
 #include "sensor/bench/terrain/stability.h"
+#include "pitviper_output.h"
 
 #include "terrain/elevation/elevation.h"
 #include "terrain/landscape/elevation_import.h"
@@ -247,7 +248,7 @@ static bool write_file(const char *folder, const File *f)
     for (int part = 0; part < 3 && ok; part++) {
         char path[temp_name_size];
         snprintf(path, sizeof path, "%s/%s", folder, parts[part]);
-        FILE *file = fopen(path, "wb");
+        FILE *file = output_file(path, 0);
         if (!file) return false;
         if (part == 0)
             fprintf(file, "ncols %d\nnrows %d\nxllcorner %.10f\nyllcorner %.10f\ncellsize %.10f\nNODATA_value -9999\n"

@@ -2,6 +2,7 @@
  * mostly voids, overlapping sheets with a step between them, posts 0.1 m and 100 m apart. Reference: the file's own function
  * at each stored post, found by GeographicLib's geodetic places and, at the poles, Snyder's polar stereographic formulas. */
 #include "sensor/bench/terrain/stability.h"
+#include "pitviper_output.h"
 
 #include "terrain/import/terrain_import.h"
 
@@ -55,7 +56,7 @@ static bool write_sheet(const char *folder, const Case *c, int n)
     const Sheet *s = &c->sheet[n];
     char         path[temp_name_size];
     snprintf(path, sizeof path, "%s/%d.raw", folder, n);
-    FILE *file = fopen(path, "wb");
+    FILE *file = output_file(path, 0);
     if (!file) return false;
     for (int k = 0; k < side * side; k++) {
         const float z = is_void(s->shape, k % side, k / side) ? -9999 : (float)height_m(s->shape, k % side, k / side);
@@ -63,7 +64,7 @@ static bool write_sheet(const char *folder, const Case *c, int n)
     }
     bool ok = fclose(file) == 0;
     snprintf(path, sizeof path, "%s/%d.vrt", folder, n);
-    file = fopen(path, "w");
+    file = output_file(path, 0);
     if (!file) return false;
     fprintf(file, "<VRTDataset rasterXSize=\"%d\" rasterYSize=\"%d\"><SRS>EPSG:%d</SRS><GeoTransform>%.12f, %.12f, 0, %.12f, 0, "
             "%.12f</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\" subClass=\"VRTRawRasterBand\"><NoDataValue>-9999"

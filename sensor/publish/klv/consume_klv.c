@@ -1,5 +1,6 @@
 /* sensor/publish/klv/consume_klv.c: the consumer that writes metadata packets into files, one a band. */
 #include "sensor/publish/klv/consume_klv.h"
+#include "pitviper_output.h"
 
 #include "sensor/publish/frame_files.h"
 #include "sensor/publish/retry_backoff.h"
@@ -67,26 +68,31 @@ bool klv_geoid_open(Geoid *out, const Config *config)
     return found;
 }
 
+static Status begin(Consumer *consumer)
+{
+    KlvConsumer *k = (KlvConsumer *)consumer;
+    char         path[frame_path_size];
+    for (int b = 0; b < BAND_COUNT; b++) {
+        if (!(k->of.bands >> b & 1)) continue;
+        const bool fits = snprintf(path, sizeof path, "%s/%s.klv", k->of.out, band_name((Band)b)) < (int)sizeof path;
+        if (!fits) errno = ENAMETOOLONG;
+        k->file[b] = fits ? output_file(path, 0) : NULL;
+        if (k->file[b]) continue;
+        log_error("klv: cannot write %s: %s; choose another place with --out", path, output_reason(errno));
+        return STATUS_IO;
+    }
+    return STATUS_OK;
+}
+
 Status consume_klv(Consumer **out, const KlvFiles *of)
 {
-    char         path[frame_path_size];
     KlvConsumer *k = calloc(1, sizeof *k);
     if (!k) return STATUS_NO_MEMORY;
     const bool truth = strcmp(of->config->publish.vmti, "truth") == 0;
     k->of       = *of;
     k->found    = (KlvDetections){.from = of->detections};
     k->patience = (RetryBackoff){.what = "packets in .klv files"};
-    k->consumer = (Consumer){WANT_FOOTPRINT | (truth ? WANT_TARGETS : 0), put, NULL, close_klv, "klv"};
-    for (int b = 0; b < BAND_COUNT; b++) {
-        if (!(of->bands >> b & 1)) continue;
-        const bool fits = snprintf(path, sizeof path, "%s/%s.klv", of->out, band_name((Band)b)) < (int)sizeof path;
-        if (!fits) errno = ENAMETOOLONG;
-        k->file[b] = fits ? fopen(path, "wb") : NULL;
-        if (k->file[b]) continue;
-        log_error("klv: cannot write %s: %s; choose another place with --out", path, strerror(errno));
-        close_klv(&k->consumer);
-        return STATUS_IO;
-    }
+    k->consumer = (Consumer){WANT_FOOTPRINT | (truth ? WANT_TARGETS : 0), put, NULL, close_klv, "klv", begin};
     *out = &k->consumer;
     return STATUS_OK;
 }

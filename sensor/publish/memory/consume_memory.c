@@ -109,10 +109,17 @@ static Status close_memory(Consumer *consumer)
     return STATUS_OK;
 }
 
+void memory_name(char out[memory_name_size], const Config *config, const char *host)
+{
+    snprintf(out, memory_name_size, "%s%s%s", config->publish.memory, host ? "-" : "", host ? host : "");
+    for (char *c = out; *c; c++)
+        if (*c == ':') *c = '-';
+}
+
 Status consume_memory(Consumer **out, const MemoryOf *of)
 {
     const Config *config = of->config;
-    char          name[96];
+    char          name[memory_name_size];
     Memory       *m = calloc(1, sizeof *m);
     if (!m) return STATUS_NO_MEMORY;
     const bool truth = strcmp(config->publish.memory_record, "truth") == 0;
@@ -122,9 +129,7 @@ Status consume_memory(Consumer **out, const MemoryOf *of)
     m->height = config->sensor.height_px;
     m->consumer = (Consumer){.wants = (truth ? WANT_TARGETS : 0) | (m->counts ? WANT_COUNTS : 0), .put = put,
                              .close = close_memory, .name = "memory"};
-    snprintf(name, sizeof name, "%s%s%s", config->publish.memory, of->host ? "-" : "", of->host ? of->host : "");
-    for (char *c = name; *c; c++)
-        if (*c == ':') *c = '-';
+    memory_name(name, config, of->host);
     MemoryRingOf ring = {.name = name, .slots = config->publish.memory_slots, .target_room = m->room, .truth = truth,
                          .host = of->host, .config_sha256 = of->config_sha256,
                          .detections_port = config->publish.detections_port};

@@ -15,6 +15,10 @@ typedef struct MemoryOf {
     const char   *host;          /* of several hosts of one run: its id, or `observer`; NULL: one alone */
 } MemoryOf;
 
+/* Of the ring in /dev/shm; host as above. */
+enum { memory_name_size = 96 };
+void   memory_name(char out[memory_name_size], const Config *config, const char *host);
+
 /* STATUS_BAD_VALUE, STATUS_IO, logged with what to do: the name is in use; no room in /dev/shm. */
 Status consume_memory(Consumer **out, const MemoryOf *of);
 

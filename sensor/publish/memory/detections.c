@@ -1,8 +1,11 @@
 /* sensor/publish/memory/detections.c: receives detections on loopback and keeps the newest of each band. */
 #include "sensor/publish/memory/detections.h"
 
+#include "sensor/publish/memory/answers.h"
+
 #include <arpa/inet.h>
 #include <errno.h>
+#include <linux/sock_diag.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <pthread.h>
@@ -12,14 +15,16 @@
 #include <sys/socket.h>
 
 typedef struct KnownFrame {
-    int    frame;
-    double time_s, unix_s;
+    int      frame;
+    double   time_s, unix_s, rendered_s;
+    unsigned answered; /* 1 << band */
 } KnownFrame;
 
 struct Detections {
     int             socket, stop; /* stop: an eventfd */
     int             port, width, height;
     unsigned        bands;
+    Answers        *answers;      /* NULL: no file; of the thread */
     bool            running;
     pthread_t       thread;
     pthread_mutex_t lock;         /* of what follows */
@@ -27,12 +32,12 @@ struct Detections {
     int             known_count, known_next;
     bool            has[BAND_COUNT];
     DetectionSet    newest[BAND_COUNT];
-    uint64_t        count[DETECTIONS_REASONS];
+    AnswerCounters  counters;
 };
 
 /* ---- one datagram -------------------------------------------------------------------------- */
 
-static const KnownFrame *known(const Detections *d, int frame)
+static KnownFrame *known(Detections *d, int frame)
 {
     for (int i = 0; i < d->known_count; i++)
         if (d->known[i].frame == frame) return &d->known[i];
@@ -40,11 +45,14 @@ static const KnownFrame *known(const Detections *d, int frame)
 }
 
 /* A well-formed one. With the lock held. */
-static DetectionsReason keep(Detections *d, const PitviperDetections *one)
+static DetectionsReason keep(KnownFrame *of, Detections *d, const PitviperDetections *one)
 {
-    DetectionSet     *set   = &d->newest[one->band];
-    const KnownFrame *frame = known(d, one->frame);
+    DetectionSet *set   = &d->newest[one->band];
+    KnownFrame   *frame = known(d, one->frame);
     if (!frame) return DETECTIONS_FRAME;
+    if (frame->answered >> one->band & 1) return DETECTIONS_REPEATED;
+    frame->answered |= 1u << one->band;
+    *of = *frame;
     if (d->has[one->band] && frame->time_s < set->time_s) return DETECTIONS_LATE;
     set->frame      = one->frame;
     set->band       = (Band)one->band;
@@ -57,29 +65,56 @@ static DetectionsReason keep(Detections *d, const PitviperDetections *one)
     return DETECTIONS_GOOD;
 }
 
-static void receive(Detections *d)
+/* False: there is none, or a passing error: poll decides again. */
+static bool receive(Detections *d)
 {
     uint8_t            bytes[sizeof(PitviperDetections) + 1]; /* one more: a longer datagram is seen as longer */
     PitviperDetections one;
+    KnownFrame         frame = {0};
+    AnswerCounters     written = {0};
     const ssize_t      size = recv(d->socket, bytes, sizeof bytes, MSG_DONTWAIT);
-    if (size < 0) return; /* nothing there, or a passing error: poll decides again */
+    const double       now_s = wall_clock_s();
+    if (size < 0) return false;
     DetectionsReason reason = detections_parse(&one, bytes, (size_t)size, d->bands, d->width, d->height);
     pthread_mutex_lock(&d->lock);
-    if (reason == DETECTIONS_GOOD) reason = keep(d, &one);
-    d->count[reason]++;
+    if (reason == DETECTIONS_GOOD) reason = keep(&frame, d, &one);
+    d->counters.datagrams[reason]++;
+    Answers *answers = d->answers;
     pthread_mutex_unlock(&d->lock);
+    if (!answers || (reason != DETECTIONS_GOOD && reason != DETECTIONS_LATE)) return true;
+    answers_write(answers, &one, &(AnsweredFrame){.time_s = frame.time_s, .late = reason == DETECTIONS_LATE,
+                                                     .latency_ms = frame.rendered_s > 0 ? 1e3 * (now_s - frame.rendered_s) : NAN},
+                  &written);
+    pthread_mutex_lock(&d->lock);
+    d->counters.lines += written.lines;
+    d->counters.lines_failed += written.lines_failed;
+    pthread_mutex_unlock(&d->lock);
+    return true;
 }
 
 static void *work(void *user)
 {
+    enum { at_once = 256, at_the_end = 65536 }; /* then it is asked whether to stop; more than the socket holds */
     Detections   *d       = user;
     struct pollfd ready[2] = {{.fd = d->socket, .events = POLLIN}, {.fd = d->stop, .events = POLLIN}};
     for (;;) {
         const int count = poll(ready, 2, -1);
         if (count < 0 && errno != EINTR) return NULL;
-        if (count > 0 && ready[1].revents) return NULL;
-        if (count > 0 && ready[0].revents) receive(d);
+        for (int i = 0; count > 0 && ready[0].revents && i < at_once && receive(d); i++) {}
+        if (count <= 0 || !ready[1].revents) continue;
+        for (int i = 0; i < at_the_end && receive(d); i++) {}
+        return NULL;
     }
+}
+
+/* What the kernel had no room for. */
+static uint64_t lost_kernel(const Detections *d)
+{
+    uint32_t   info[SK_MEMINFO_VARS] = {0};
+    socklen_t  octets = sizeof info;
+    const bool told = d->socket >= 0 && getsockopt(d->socket, SOL_SOCKET, SO_MEMINFO, info, &octets) == 0 &&
+                      octets > SK_MEMINFO_DROPS * sizeof *info;
+    return told ? info[SK_MEMINFO_DROPS] : 0;
 }
 
 /* ---- open and close ------------------------------------------------------------------------- */
@@ -88,8 +123,10 @@ static Status open_socket(Detections *d)
 {
     const struct sockaddr_in own = {.sin_family = AF_INET, .sin_port = htons((uint16_t)d->port),
                                     .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    const int room = 1 << 20; /* as far as the system allows */
     d->stop   = eventfd(0, EFD_CLOEXEC);
     d->socket = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    setsockopt(d->socket, SOL_SOCKET, SO_RCVBUF, &room, sizeof room);
     if (d->stop >= 0 && d->socket >= 0 && bind(d->socket, (const struct sockaddr *)&own, sizeof own) == 0)
         return STATUS_OK;
     log_error("detections: cannot receive on 127.0.0.1 port %d: %s; choose another publish.detections_port", d->port,
@@ -97,11 +134,12 @@ static Status open_socket(Detections *d)
     return STATUS_IO;
 }
 
-Status detections_open(Detections **out, int port, unsigned bands, int width, int height)
+Status detections_open(Detections **out, const DetectionsOf *of)
 {
     Detections *d = calloc(1, sizeof *d);
     if (!d) return STATUS_NO_MEMORY;
-    *d = (Detections){.socket = -1, .stop = -1, .port = port, .width = width, .height = height, .bands = bands};
+    *d = (Detections){.socket = -1, .stop = -1, .port = of->port, .width = of->width, .height = of->height,
+                      .bands = of->bands};
     pthread_mutex_init(&d->lock, NULL);
     Status status = open_socket(d);
     if (status == STATUS_OK) {
@@ -113,31 +151,49 @@ Status detections_open(Detections **out, int port, unsigned bands, int width, in
         if (!d->running) status = STATUS_NO_MEMORY;
     }
     if (status == STATUS_OK) *out = d;
-    else detections_close(d);
+    else detections_close(d, NULL);
     return status;
 }
 
-static void report(const Detections *d)
+Status detections_record(Detections *d, const char *folder)
 {
-    char   text[400];
-    size_t used = 0;
-    *text       = 0;
-    for (int i = DETECTIONS_GOOD + 1; i < DETECTIONS_REASONS; i++)
-        if (d->count[i] && used < sizeof text)
-            used += (size_t)snprintf(text + used, sizeof text - used, ", %s %llu", detections_reason_name[i],
-                                     (unsigned long long)d->count[i]);
-    if (*text) log_warn("detections: %llu datagrams taken; refused%s", (unsigned long long)d->count[0], text + 1);
-    else log_info("detections: %llu datagrams taken", (unsigned long long)d->count[0]);
+    Answers     *answers = NULL;
+    const Status status  = answers_open(&answers, folder);
+    if (status != STATUS_OK) return status;
+    pthread_mutex_lock(&d->lock);
+    d->answers = answers;
+    pthread_mutex_unlock(&d->lock);
+    return STATUS_OK;
 }
 
-void detections_close(Detections *d)
+static void report(const AnswerCounters *c)
 {
+    char           text[480];
+    size_t         used = 0;
+    const uint64_t taken = c->datagrams[DETECTIONS_GOOD];
+    *text = 0;
+    for (int i = DETECTIONS_GOOD + 1; i < DETECTIONS_REASONS; i++)
+        if (c->datagrams[i] && used < sizeof text)
+            used += (size_t)snprintf(text + used, sizeof text - used, ", %s %llu", detections_reason_name[i],
+                                     (unsigned long long)c->datagrams[i]);
+    if (c->lost_kernel && used < sizeof text)
+        snprintf(text + used, sizeof text - used, ", lost, since they came too fast, %llu", (unsigned long long)c->lost_kernel);
+    if (*text) log_warn("detections: %llu datagrams taken; refused%s", (unsigned long long)taken, text + 1);
+    else log_info("detections: %llu datagrams taken", (unsigned long long)taken);
+}
+
+void detections_close(Detections *d, AnswerCounters *counters)
+{
+    if (counters) *counters = (AnswerCounters){{0}, 0, 0, 0};
     if (!d) return;
     if (d->running) {
         eventfd_write(d->stop, 1);
         pthread_join(d->thread, NULL);
-        report(d);
+        detections_counters(d, &d->counters);
+        report(&d->counters);
+        if (counters) *counters = d->counters;
     }
+    answers_close(d->answers);
     if (d->socket >= 0) close(d->socket);
     if (d->stop >= 0) close(d->stop);
     pthread_mutex_destroy(&d->lock);
@@ -146,10 +202,10 @@ void detections_close(Detections *d)
 
 /* ---- frames and results ---------------------------------------------------------------------- */
 
-void detections_frame(Detections *d, int frame, double time_s, double unix_s)
+void detections_frame(Detections *d, int frame, double time_s, double unix_s, double rendered_s)
 {
     pthread_mutex_lock(&d->lock);
-    d->known[d->known_next] = (KnownFrame){frame, time_s, unix_s};
+    d->known[d->known_next] = (KnownFrame){frame, time_s, unix_s, rendered_s, 0};
     d->known_next           = (d->known_next + 1) % detections_frames_kept;
     if (d->known_count < detections_frames_kept) d->known_count++;
     pthread_mutex_unlock(&d->lock);
@@ -164,22 +220,31 @@ bool detections_latest(Detections *d, Band band, DetectionSet *out)
     return has;
 }
 
-void detections_counters(Detections *d, uint64_t count[DETECTIONS_REASONS])
+void detections_counters(Detections *d, AnswerCounters *out)
 {
     pthread_mutex_lock(&d->lock);
-    memcpy(count, d->count, sizeof d->count);
+    d->counters.lost_kernel = lost_kernel(d);
+    *out = d->counters;
     pthread_mutex_unlock(&d->lock);
 }
 
 typedef struct DetectionsConsumer {
     Consumer    consumer;
     Detections *detections;
+    const char *folder;
 } DetectionsConsumer;
 
 static Status put(Consumer *consumer, Frame *frame)
 {
-    detections_frame(((DetectionsConsumer *)consumer)->detections, frame->number, frame->time_s, frame->unix_s);
+    detections_frame(((DetectionsConsumer *)consumer)->detections, frame->number, frame->time_s, frame->unix_s,
+                     frame->times.rendered_s);
     return STATUS_OK;
+}
+
+static Status begin(Consumer *consumer)
+{
+    const DetectionsConsumer *c = (DetectionsConsumer *)consumer;
+    return detections_record(c->detections, c->folder);
 }
 
 static Status close_consumer(Consumer *consumer)
@@ -188,11 +253,11 @@ static Status close_consumer(Consumer *consumer)
     return STATUS_OK;
 }
 
-Status consume_detections(Consumer **out, Detections *detections)
+Status consume_detections(Consumer **out, Detections *detections, const char *folder)
 {
     DetectionsConsumer *c = malloc(sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
-    *c   = (DetectionsConsumer){{.put = put, .close = close_consumer}, detections};
+    *c   = (DetectionsConsumer){{.begin = begin, .put = put, .close = close_consumer}, detections, folder};
     *out = &c->consumer;
     return STATUS_OK;
 }

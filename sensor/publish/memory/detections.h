@@ -1,28 +1,16 @@
 /* sensor/publish/memory/detections.h: detections that a recogniser on this machine sends back: datagrams on loopback,
  * laid out in etc/include/pitviper_memory.h, received by a thread of their own.
  *
- * Every octet is checked. Of each band the newest datagram that refers to a recent frame of this run is kept, the rest
- * is counted by reason, so memory is bounded and a flood costs the renderer nothing. */
+ * Every octet is checked. The first datagram for a band of a recent frame is that frame's answer and goes into
+ * answers.jsonl; of each band the newest frame's is kept for metadata. The rest is counted by reason, so memory and file
+ * are bounded - an answer for each frame and band - and a flood costs the renderer nothing. */
 #ifndef SENSOR_PUBLISH_MEMORY_DETECTIONS_H
 #define SENSOR_PUBLISH_MEMORY_DETECTIONS_H
 
+#include "sensor/publish/answer_counters.h"
 #include "sensor/publish/consumer.h"
 
 #include <pitviper_memory.h>
-
-typedef enum DetectionsReason {
-    DETECTIONS_GOOD,
-    DETECTIONS_SIZE,  /* not that of its count */
-    DETECTIONS_MAGIC, DETECTIONS_ORDER, DETECTIONS_VERSION, DETECTIONS_COUNT,
-    DETECTIONS_BAND,  /* not one of the run's */
-    DETECTIONS_BOX,   /* not within the image, not finite, empty */
-    DETECTIONS_SCORE, DETECTIONS_TEXT,
-    DETECTIONS_RESERVED, /* not 0 */
-    DETECTIONS_FRAME, /* not one of the last detections_frames_kept */
-    DETECTIONS_LATE,  /* well-formed, of an older frame than one received before */
-    DETECTIONS_REASONS
-} DetectionsReason;
-extern const char *const detections_reason_name[DETECTIONS_REASONS];
 
 enum { detections_frames_kept = 256 };
 
@@ -37,21 +25,29 @@ typedef struct DetectionSet {
 
 typedef struct Detections Detections;
 
-/* bands: bit set of those of the run. STATUS_IO, logged: the port is in use. */
-Status detections_open(Detections **out, int port, unsigned bands, int width, int height);
-/* NULL is valid. Logs the counts. */
-void   detections_close(Detections *detections);
-/* A frame that detections may refer to from now on. */
-void   detections_frame(Detections *detections, int frame, double time_s, double unix_s);
+typedef struct DetectionsOf {
+    int         port;
+    unsigned    bands;         /* bit set of those of the run */
+    int         width, height; /* of the images */
+} DetectionsOf;
+
+/* STATUS_IO, logged: the port is in use. */
+Status detections_open(Detections **out, const DetectionsOf *of);
+/* From now on answers are written to answers.jsonl of a folder. Once. STATUS_IO, logged: the file cannot be written. */
+Status detections_record(Detections *detections, const char *folder);
+/* NULL is valid. Logs the counts. counters: receives them; may be NULL, and is set to 0 without detections. */
+void   detections_close(Detections *detections, AnswerCounters *counters);
+/* A frame that detections may refer to from now on. rendered_s: wall_clock_s; 0: not known. */
+void   detections_frame(Detections *detections, int frame, double time_s, double unix_s, double rendered_s);
 /* The newest of a band; false: none yet. From any thread. */
 bool   detections_latest(Detections *detections, Band band, DetectionSet *out);
-/* Datagrams by reason, so far. */
-void   detections_counters(Detections *detections, uint64_t count[DETECTIONS_REASONS]);
+/* So far. */
+void   detections_counters(Detections *detections, AnswerCounters *out);
 
-/* Tells them of every frame; the detections stay the caller's and outlive it. */
-Status consume_detections(Consumer **out, Detections *detections);
+/* Tells them of every frame, and has them recorded; detections and folder stay the caller's and outlive it. */
+Status consume_detections(Consumer **out, Detections *detections, const char *folder);
 
-/* One datagram, but for the frame it refers to. out: valid if DETECTIONS_GOOD. */
+/* One datagram of version 1 or 2, but for the frame it refers to. out: valid if DETECTIONS_GOOD, and of version 2. */
 DetectionsReason detections_parse(PitviperDetections *out, const uint8_t *bytes, size_t size, unsigned bands, int width,
                                   int height);
 

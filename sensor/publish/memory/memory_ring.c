@@ -49,6 +49,7 @@ static void lay_out(PitviperMemoryHeader *h, MemoryRing *r, const MemoryRingOf *
                                 .plane_count = (uint32_t)of->plane_count, .target_room = (uint32_t)of->target_room,
                                 .kind = of->truth ? PITVIPER_MEMORY_TRUTH : PITVIPER_MEMORY_SENSOR,
                                 .writer_pid = (int32_t)getpid(), .detections_port = (uint32_t)of->detections_port,
+                                .detections_version = PITVIPER_DETECTIONS_VERSION,
                                 .state = PITVIPER_MEMORY_RUNNING};
     memcpy(h->magic, PITVIPER_MEMORY_MAGIC, sizeof h->magic);
     snprintf(h->host, sizeof h->host, "%s", of->host ? of->host : "");

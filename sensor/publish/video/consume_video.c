@@ -239,10 +239,12 @@ static Status add_channels(Video *v)
     return status;
 }
 
-static Status make_folder(const VideoOf *of)
+/* The folder; files are opened with their first frame. */
+static Status begin(Consumer *consumer)
 {
-    char path[video_path_size];
-    if (video_kind(of->config->publish.video) != VIDEO_FOLDER) return STATUS_OK;
+    const VideoOf *of = &((const Video *)consumer)->of;
+    char           path[video_path_size];
+    if (!(of->to & VIDEO_TO_FILE) || video_kind(of->config->publish.video) != VIDEO_FOLDER) return STATUS_OK;
     const Status status = frame_files_folder(of->config->publish.video);
     if (status != STATUS_OK || !of->host_folder) return status;
     if (snprintf(path, sizeof path, "%s/%s", of->config->publish.video, of->host_folder) >= (int)sizeof path)
@@ -258,23 +260,18 @@ Status video_prepare(const Config *config)
 Status consume_video(Consumer **out, const VideoOf *of)
 {
     const unsigned to     = of->to & video_wanted(of->config);
-    const bool     single = to & VIDEO_TO_FILE && video_kind(of->config->publish.video) > VIDEO_FOLDER;
-    if (of->host_folder && (single || to & VIDEO_TO_STREAM)) {
-        log_error("video: several hosts do not fit into one %s; choose one --host, or --video FOLDER",
-                  single ? "file" : "stream");
-        return STATUS_UNSUPPORTED;
-    }
+    if (of->host_folder && video_hosts_check(of->config, 2) != STATUS_OK) return STATUS_UNSUPPORTED;
     Video *v = calloc(1, sizeof *v);
     if (!v) return STATUS_NO_MEMORY;
-    v->consumer = (Consumer){WANT_DISPLAY, put, NULL, close_video, "video"};
+    v->consumer = (Consumer){WANT_DISPLAY, put, NULL, close_video, "video", begin};
     v->of       = *of;
+    v->of.to    = to;
     v->found    = (KlvDetections){.from = of->detections};
     v->to       = to;
     v->klv      = strcmp(of->config->publish.klv, "async") == 0  ? KLV_ASYNCHRONOUS
                   : strcmp(of->config->publish.klv, "sync") == 0 ? KLV_SYNCHRONOUS
                                                                  : KLV_NONE;
-    Status status = to & VIDEO_TO_FILE ? make_folder(of) : STATUS_OK;
-    if (status == STATUS_OK) status = add_channels(v);
+    const Status status = add_channels(v);
     for (int i = 0; i < v->channels; i++)
         if (v->channel[i].klv) v->consumer.wants |= WANT_FOOTPRINT;
     if (v->consumer.wants & WANT_FOOTPRINT && strcmp(of->config->publish.vmti, "truth") == 0)

@@ -1,8 +1,8 @@
 /* sensor/publish/video/video_file.c: a video's file, cut back to its last whole frame when a write fails. */
 #include "sensor/publish/video/video_file.h"
+#include "pitviper_output.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -21,9 +21,9 @@ Status video_file_open(VideoFile **out, const char *path)
     VideoFile *f = calloc(1, sizeof *f);
     if (!f) return STATUS_NO_MEMORY;
     f->fd = snprintf(f->path, sizeof f->path, "%s", path) < (int)sizeof f->path
-                ? open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666) : (errno = ENAMETOOLONG, -1);
+                ? output_open(path, 0) : (errno = ENAMETOOLONG, -1);
     if (f->fd < 0) {
-        log_error("video: cannot write %s: %s; choose another name with --video", path, strerror(errno));
+        log_error("video: cannot write %s: %s; choose another name with --video", path, output_reason(errno));
         free(f);
         return STATUS_IO;
     }

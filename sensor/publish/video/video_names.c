@@ -38,6 +38,15 @@ unsigned video_wanted(const Config *config)
     return (*config->publish.stream ? VIDEO_TO_STREAM : 0u) | (*config->publish.video ? VIDEO_TO_FILE : 0u);
 }
 
+Status video_hosts_check(const Config *config, int hosts)
+{
+    const bool single = video_kind(config->publish.video) > VIDEO_FOLDER;
+    if (hosts <= 1 || (!single && !*config->publish.stream)) return STATUS_OK;
+    log_error("video: several hosts do not fit into one %s; choose one --host, or --video FOLDER",
+              single ? "file" : "stream");
+    return STATUS_UNSUPPORTED;
+}
+
 static bool exists(char found[video_path_size], const char *path)
 {
     struct stat about;

@@ -20,6 +20,9 @@ int  video_folder_kinds(VideoKind kind[2], const Config *config);
 /* Of one band among those of the run. False: there is no stream. */
 bool video_stream_url(StreamUrl *out, const Config *config, unsigned bands, Band band);
 
+/* STATUS_UNSUPPORTED, logged: several hosts, and a video that is one file, or a stream. */
+Status video_hosts_check(const Config *config, int hosts);
+
 /* Whether a video that this run would replace exists, and its path. */
 bool video_earlier(char found[video_path_size], const Config *config, unsigned bands, const char *host_folder);
 
