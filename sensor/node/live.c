@@ -24,6 +24,7 @@
 #include <unistd.h>
 
 static const double  flush_s = 0.5, show_s = 1;
+static const double  enough_share = 0.5; /* of the frames asked for: fewer are worth a warning */
 static const int64_t check_ns = 100000000; /* a signal may be delivered to another thread: polled at this interval */
 
 typedef struct Live {
@@ -321,6 +322,12 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
         flush_recording(l);
         check_health(l, session);
     }
+    if (status == STATUS_OK && last >= 0 && over(l)) { /* those that were due while the last one was made */
+        const double ended_s = fmin(player_time_s(player, dis_unix_s(dis_udp_now_ns())), isnan(to_s) ? INFINITY : to_s);
+        const double newest  = floor(ended_s * grid->rate_hz) - grid->origin;
+        if (newest > last) l->counters.frames_late += (uint64_t)(newest - last);
+    }
+    l->counters.rate_hz = grid->rate_hz;
     log_status(NULL);
     snprintf(l->host, sizeof l->host, "%s", session_host(session));
     l->health.sample.entities = session_entities(session);
@@ -391,13 +398,27 @@ static void say_summary(const Live *l)
     log_info("run: %llu datagrams heard, %llu of them our own; lost %llu; frames made %llu, left out %llu%s",
              (unsigned long long)c->datagrams, (unsigned long long)l->run.own, (unsigned long long)lost(c),
              (unsigned long long)l->health.sample.frames, (unsigned long long)c->frames_late, sent);
+    const uint64_t frames = l->health.sample.frames;
+    const double   share  = live_kept_share(c, frames);
+    if (frames > 0 && share < enough_share)
+        log_warn("run: kept %.3g of %g frames a second, fewer than half: lower sensor.rate_hz (--rate), the size, or the "
+                 "quality (quality.budget, sensor.samples), or render fewer bands", share * c->rate_hz, c->rate_hz);
+    else if (frames > 0)
+        log_info("run: kept %.3g of %g frames a second", share * c->rate_hz, c->rate_hz);
     if (c->files_failed || c->files_left_out)
         log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or "
                  "--no-files leaves more time", (unsigned long long)c->files_left_out,
                  (unsigned long long)c->files_failed);
 }
 
-/* A run without any result of one requested kind is a failure: no frame, no file of any frame, no PDU of any. */
+/* There was nothing to render so far, and nothing is wrong. */
+static bool idle(HealthReason reason)
+{
+    return reason == HEALTH_NOTHING || reason == HEALTH_NO_ENTITY || reason == HEALTH_NO_MUNITION || reason == HEALTH_EARLY;
+}
+
+/* A run without any result of one requested kind is a failure: no frame, no file of any frame, no PDU of any. One that
+ * is stopped while it waits is none. */
 static Status verdict(Live *l)
 {
     HealthSample *s = &l->health.sample;
@@ -406,7 +427,12 @@ static Status verdict(Live *l)
     if (*l->host) names.host = l->host;
     s->now_s = wall_clock_s();
     if (s->frames == 0) {
-        health_text(text, health_final(s), s, &names);
+        const HealthReason reason = health_final(s);
+        health_text(text, reason, s, &names);
+        if (stop_asked() && idle(reason)) {
+            log_info("run: stopped before the first frame, while it waited: %s", health_name(reason));
+            return STATUS_OK;
+        }
         log_error("run: ended before the first frame: %s", text);
         return STATUS_IO;
     }
@@ -445,6 +471,8 @@ static Status run_node(Live *l)
         if (status == STATUS_OK) status = run_host(&l->run, NULL);
     } else {
         conclude(l);
+        l->run.stopped = stop_asked();
+        if (status == STATUS_OK) status = run_unheard(&l->run);
     }
     say_summary(l);
     return status == STATUS_OK ? verdict(l) : status;
