@@ -388,3 +388,17 @@ done:
     landscape_destroy(&landscape);
     return status;
 }
+
+Status run_unheard(Run *run)
+{
+    static const WoodsChoice   woods  = {0};
+    static const DisCounters   heard  = {0};
+    static const SessionResult result = {0};
+    const Options             *o      = &run->options;
+    char                       earlier[frame_path_size];
+    if (frame_files_earlier(earlier, o->out)) return STATUS_OK;
+    const Status status = frame_files_folder(o->out);
+    return status == STATUS_OK ? write_run(run, o->out, o->config.exercise.host, &run->choices, &result, &heard, &woods,
+                                           run->stopped ? "stopped" : "failed")
+                               : status;
+}

@@ -55,6 +55,9 @@ Status run_survey(Run *run, const DisLog *heard);
 Status run_check(Run *run, const DisEntityId *host);
 /* One host: its own ground and frame, its own folder when there are several. host: NULL: as configured, or chosen. */
 Status run_host(Run *run, const DisEntityId *host);
+/* run.json of a live run that ended before it heard an entity, without a frame; nothing where an earlier run's products
+ * are, which stay until a first frame. */
+Status run_unheard(Run *run);
 void   run_close(Run *run);
 /* The folder for the products of one host. */
 enum { run_folder_size = 4096 };

@@ -24,6 +24,7 @@
 #include <unistd.h>
 
 static const double  flush_s = 0.5, show_s = 1;
+static const double  enough_share = 0.5; /* of the frames asked for: fewer are worth a warning */
 static const int64_t check_ns = 100000000; /* a signal may be delivered to another thread: polled at this interval */
 
 typedef struct Live {
@@ -45,7 +46,6 @@ typedef struct Live {
     double       begun_s, flushed_s, shown_s;
     uint64_t     shown_frames;      /* by then */
     int64_t      due_ns;            /* Unix time of the present frame */
-    double       rate_hz;           /* of frames, asked; 0: not known yet */
     double       latency_s;         /* from then until it was rendered, the worst since shown_s; NaN: none */
 } Live;
 
@@ -297,8 +297,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     const double from_s = fmax(plan->start_s, span_time_s(o->config.exercise.from, plan->start_s, NAN)); /* NaN: none */
     const double   to_s   = span_time_s(o->config.exercise.to, plan->start_s, NAN);
     const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
-    l->player  = player;
-    l->rate_hz = grid->rate_hz;
+    l->player = player;
     health_making(&l->health, wall_clock_s());
     l->health.sample.host = plan->any_munition                      ? HEALTH_MUNITION
                             : dis_entity_id_is_none(plan->host) ? HEALTH_OBSERVER
@@ -323,6 +322,12 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
         flush_recording(l);
         check_health(l, session);
     }
+    if (status == STATUS_OK && last >= 0 && over(l)) { /* those that were due while the last one was made */
+        const double ended_s = fmin(player_time_s(player, dis_unix_s(dis_udp_now_ns())), isnan(to_s) ? INFINITY : to_s);
+        const double newest  = floor(ended_s * grid->rate_hz) - grid->origin;
+        if (newest > last) l->counters.frames_late += (uint64_t)(newest - last);
+    }
+    l->counters.rate_hz = grid->rate_hz;
     log_status(NULL);
     snprintf(l->host, sizeof l->host, "%s", session_host(session));
     l->health.sample.entities = session_entities(session);
@@ -390,22 +395,30 @@ static void say_summary(const Live *l)
     if (l->health.sample.publishes)
         snprintf(sent, sizeof sent, "; PDUs sent %llu, not sent %llu", (unsigned long long)c->sent,
                  (unsigned long long)c->send_failed);
-    const uint64_t frames = l->health.sample.frames, due = frames + c->frames_late;
     log_info("run: %llu datagrams heard, %llu of them our own; lost %llu; frames made %llu, left out %llu%s",
              (unsigned long long)c->datagrams, (unsigned long long)l->run.own, (unsigned long long)lost(c),
-             (unsigned long long)frames, (unsigned long long)c->frames_late, sent);
-    if (c->frames_late > 0 && frames > 0 && l->rate_hz > 0)
-        (2 * frames < due ? log_warn : log_info)("run: kept %.2g of %g frames a second%s", l->rate_hz * (double)frames / (double)due,
-                                                 l->rate_hz, 2 * frames < due ? ": too slow for this machine; a smaller --size, a "
-                                                 "lower --rate, fewer --bands or quality.frame_ms" : "");
+             (unsigned long long)l->health.sample.frames, (unsigned long long)c->frames_late, sent);
+    const uint64_t frames = l->health.sample.frames;
+    const double   share  = live_kept_share(c, frames);
+    if (frames > 0 && share < enough_share)
+        log_warn("run: kept %.3g of %g frames a second, fewer than half: lower sensor.rate_hz (--rate), the size, or the "
+                 "quality (quality.budget, sensor.samples), or render fewer bands", share * c->rate_hz, c->rate_hz);
+    else if (frames > 0)
+        log_info("run: kept %.3g of %g frames a second", share * c->rate_hz, c->rate_hz);
     if (c->files_failed || c->files_left_out)
         log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or "
                  "--no-files leaves more time", (unsigned long long)c->files_left_out,
                  (unsigned long long)c->files_failed);
 }
 
-/* A run without any result of one requested kind is a failure: no frame, no file of any frame, no PDU of any. A node that
- * was stopped while it heard nothing has not failed. */
+/* There was nothing to render so far, and nothing is wrong. */
+static bool idle(HealthReason reason)
+{
+    return reason == HEALTH_NOTHING || reason == HEALTH_NO_ENTITY || reason == HEALTH_NO_MUNITION || reason == HEALTH_EARLY;
+}
+
+/* A run without any result of one requested kind is a failure: no frame, no file of any frame, no PDU of any. One that
+ * is stopped while it waits is none. */
 static Status verdict(Live *l)
 {
     HealthSample *s = &l->health.sample;
@@ -413,12 +426,13 @@ static Status verdict(Live *l)
     HealthNames   names = names_of(l, NULL);
     if (*l->host) names.host = l->host;
     s->now_s = wall_clock_s();
-    if (s->frames == 0 && stop_asked() && l->counters.datagrams == 0) { /* idle, and told to stop */
-        log_info("run: stopped before the first frame: nothing was heard");
-        return STATUS_OK;
-    }
     if (s->frames == 0) {
-        health_text(text, health_final(s), s, &names);
+        const HealthReason reason = health_final(s);
+        health_text(text, reason, s, &names);
+        if (stop_asked() && idle(reason)) {
+            log_info("run: stopped before the first frame, while it waited: %s", health_name(reason));
+            return STATUS_OK;
+        }
         log_error("run: ended before the first frame: %s", text);
         return STATUS_IO;
     }
@@ -457,6 +471,8 @@ static Status run_node(Live *l)
         if (status == STATUS_OK) status = run_host(&l->run, NULL);
     } else {
         conclude(l);
+        l->run.stopped = stop_asked();
+        if (status == STATUS_OK) status = run_unheard(&l->run);
     }
     say_summary(l);
     return status == STATUS_OK ? verdict(l) : status;

@@ -286,7 +286,13 @@ static json_t *libraries_json(void)
     return libraries;
 }
 
-static json_t *live_json(const LiveCounters *c)
+double live_kept_share(const LiveCounters *c, uint64_t frames)
+{
+    const uint64_t due = frames + c->frames_late;
+    return due ? (double)frames / (double)due : 1;
+}
+
+static json_t *live_json(const LiveCounters *c, uint64_t frames)
 {
     json_t *live = json_object();
     set_count(live, "datagrams", c->datagrams);
@@ -296,6 +302,10 @@ static json_t *live_json(const LiveCounters *c)
     set_count(live, "send_failed", c->send_failed);
     set_count(live, "record_failed", c->record_failed);
     set_count(live, "frames_late", c->frames_late);
+    if (c->rate_hz > 0) {
+        json_object_set_new(live, "rate_hz", json_real(c->rate_hz));
+        json_object_set_new(live, "kept_share", json_real(live_kept_share(c, frames)));
+    }
     set_count(live, "files_failed", c->files_failed);
     set_count(live, "files_left_out", c->files_left_out);
     return live;
@@ -342,7 +352,7 @@ static json_t *counters_json(const RunRecord *r)
     set_count(counters, "stamps_doubted", r->dis->stamps_doubted);
     set_count(counters, "packets_without_datagram", r->link_dropped);
     set_count(counters, "own", r->own);
-    if (r->live) json_object_set_new(counters, "live", live_json(r->live));
+    if (r->live) json_object_set_new(counters, "live", live_json(r->live, (uint64_t)r->frames));
     if (r->answers) json_object_set_new(counters, "answers", answers_json(r->answers));
     json_object_set_new(counters, "frames_at_gimbal_limit", json_integer(r->at_limit));
     set_if_any(counters, "frames_without_radar", (uint64_t)r->radar_left_out);

@@ -55,7 +55,10 @@ Status record_write_text(FILE *file, const char *text, const LatencyLine *latenc
 typedef struct LiveCounters {
     uint64_t datagrams, lost_kernel, lost_queue, sent, send_failed, record_failed;
     uint64_t frames_late, files_failed, files_left_out;
+    double   rate_hz; /* asked for; 0: it ended before that was known */
 } LiveCounters;
+/* Of the frames that were due, those that were made; 1 where none was due. */
+double live_kept_share(const LiveCounters *counters, uint64_t frames);
 
 /* Plants of a run. */
 typedef struct WoodsRecord {

@@ -84,6 +84,8 @@ static const ReferenceField fields[] = {
     {"counters.live.send_failed", "integer", "", "", "", "Data PDUs that could not be sent"},
     {"counters.live.record_failed", "integer", "", "", "", "datagrams that --record could not write"},
     {"counters.live.frames_late", "integer", "", "", "", "frames dropped because they were too late"},
+    {"counters.live.rate_hz", "number", "Hz", "", "without a frame", "frames asked for"},
+    {"counters.live.kept_share", "number", "", "0 .. 1", "without a frame", "of the frames that were due, those that were made"},
     {"counters.live.files_failed", "integer", "", "", "", "frames whose files could not be written"},
     {"counters.live.files_left_out", "integer", "", "", "", "frames without files because the disk was too slow"},
     {"counters.answers", "object", "", "", "without publish.detections_port", "datagrams of a recogniser"},

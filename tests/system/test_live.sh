@@ -36,8 +36,9 @@ else
 fi
 heard_by told 'listening on'
 stop told
-check "told to stop before anything was heard: ends with 0" [ $code = 0 ]
-check "told to stop: says that it had not begun" grep -q 'before the first frame' "$tmp/told.out"
+check "told to stop before anything was heard: no failure ($code)" [ $code = 0 ]
+check "told to stop: its last line says that it had not begun" eval 'tail -n 1 "$tmp/told.out" | grep -q "before the first frame.*nothing heard"'
+check "told to stop: run.json, stopped, without a frame" grep -q '"status": *"stopped"' "$tmp/told/run.json"
 
 # the one with files until it has some: those that it has no time for are left out
 pictures() { [ "$(frames "$tmp/chosen" lwir)" -ge 3 ] && [ "$(frames "$tmp/chosen" optical)" -ge 3 ]; }
@@ -46,6 +47,10 @@ kill -INT "${node[chosen]}" 2>/dev/null
 for name in "${nodes[@]}"; do
     ended $name
     check "$name: ends well" [ $code = 0 ]
+    check "$name: says how many of the frames it kept" grep -qE 'kept [0-9.]+ of [0-9.]+ frames a second' "$tmp/$name.out"
+    check "$name: so does run.json" python3 -c 'import json, sys
+run = json.load(open(sys.argv[1])); live = run["counters"]["live"]
+assert live["rate_hz"] > 0 and abs(live["kept_share"] - run["frames"] / (run["frames"] + live["frames_late"])) < 1e-9, live' "$tmp/$name/run.json"
     check "$name: run.json counts what was lost: nothing" [ "$(live_counter "$tmp/$name" lost_kernel)$(live_counter "$tmp/$name" lost_queue)" = 00 ]
 done
 end_sender
@@ -96,7 +101,7 @@ fi
 
 check "silence: is said" heard_by silent '^pitviper: warning: run: nothing heard'
 stop silent
-check "silence: stopped, it has not failed" [ $code = 0 ]
+check "silence, and told to stop: no failure ($code)" [ $code = 0 ]
 check "silence: said once, with port and next step" [ "$(grep -c "^pitviper: warning: run: nothing heard.*port $silent_port.*--port" "$tmp/silent.out")" = 1 ]
 for name in "${nodes[@]}"; do [ "$failures" = 0 ] || { echo "-- $name"; tail -n 8 "$tmp/$name.out"; }; done
 finish
