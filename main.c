@@ -17,6 +17,7 @@
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
 #include "sensor/regress/regress.h"
+#include "sensor/settings/next_option.h"
 #include "terrain/probe.h"
 
 #include <errno.h>
@@ -75,22 +76,22 @@ static void probe_usage(FILE *to)
 static int probe_command(int argc, char **argv)
 {
     size_t state[2] = {0};
-    if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
-        probe_usage(argc < 2 ? stderr : stdout);
-        return argc < 2 ? 2 : 0;
-    }
-    for (const Probe *probe; (probe = next_probe(state));) {
-        if (strcmp(argv[1], probe->name) != 0) continue;
-        if (!probe->arguments && argc > 2) {
-            text_print(stderr, "pitviper probe: %s takes no argument, but `%s` was given; rows are read from standard "
-                               "input\n",
-                    probe->name, argv[2]);
-            return 2;
+    if (argc < 2) return wrong_line("probe", "no probe is named: usage: pitviper probe WHAT [ARGUMENT ...] < rows.csv");
+    WordMeant meant = word_meant(argv[1]);
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+            probe_usage(stdout);
+            return 0;
         }
+    for (const Probe *probe; (probe = next_probe(state));) {
+        word_consider(&meant, probe->name);
+        if (strcmp(argv[1], probe->name) != 0) continue;
+        if (!probe->arguments && argc > 2)
+            return wrong_line("probe", "%s takes no argument, but '%s' was given; rows are read from standard input",
+                              probe->name, argv[2]);
         return probe_run(probe, argc - 1, argv + 1, stdin, stdout) == STATUS_OK ? 0 : 1;
     }
-    text_print(stderr, "pitviper probe: no such probe: %s; `pitviper probe --help` lists them\n", argv[1]);
-    return 2;
+    return wrong_line("probe", "no such %s: %s%s", argv[1][0] == '-' ? "option" : "probe", argv[1], word_hint(&meant));
 }
 
 static int run_bench(int argc, char **argv) { return bench_command(argc, argv, bench_next_suite); }
@@ -124,7 +125,9 @@ enum { command_count = sizeof commands / sizeof commands[0] };
 
 static const char common_help[] =
     "  -q, --quiet        only errors, warnings and requested output: no choices, progress, notices or summary\n"
-    "  -v, --verbose      also the tables, settings and models read, and where the time goes\n";
+    "  -v, --verbose      also the tables, settings and models read, and where the time goes\n"
+    "  -h, --help         print the help of the command\n"
+    "  -V, --version      print the version\n";
 
 static void usage(FILE *to)
 {
@@ -188,17 +191,36 @@ static bool take_verbosity(int *argc, char **argv)
         if (!q && !v) argv[kept++] = argv[i];
     }
     argv[*argc = kept] = NULL;
-    if (quiet && verbose) fputs("pitviper: --quiet and --verbose exclude each other\n", stderr);
+    if (quiet && verbose) log_error("--quiet and --verbose exclude each other; leave one out");
     else if (quiet) log_set_level(LOG_WARN);
     else if (verbose) log_set_level(LOG_DETAIL);
     return !(quiet && verbose);
 }
 
-static bool asks_for_help(int argc, char **argv)
+/* Whether an option is anywhere before `--`. */
+static bool asks_for(const char *name, const char *letter, int argc, char **argv)
 {
     for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) return true;
+        if (strcmp(argv[i], name) == 0 || strcmp(argv[i], letter) == 0) return true;
     return false;
+}
+
+static int unknown(const char *what, const char *typed, bool topics_too)
+{
+    char      topics[1024] = "";
+    WordMeant meant = word_meant(typed);
+    FILE     *list = topics_too ? fmemopen(topics, sizeof topics - 1, "w") : NULL;
+    for (int i = 0; i < command_count; i++) word_consider(&meant, commands[i].name);
+    word_consider(&meant, "help");
+    if (typed[0] == '-') word_consider_list(&meant, "--help|--version", '|');
+    if (list) {
+        reference_list(list);
+        fclose(list);
+        word_consider_list(&meant, topics, ' ');
+    }
+    const char *hint = word_hint(&meant);
+    log_error("no such %s: %s%s `pitviper --help` lists them", what, typed, *hint ? hint : ";");
+    return 2;
 }
 
 static int run_named(int argc, char **argv)
@@ -206,7 +228,11 @@ static int run_named(int argc, char **argv)
     char called[64];
     for (int i = 0; i < command_count; i++) {
         if (strcmp(argv[0], commands[i].name) != 0) continue;
-        const bool help = asks_for_help(argc, argv);
+        const bool help = asks_for("--help", "-h", argc, argv);
+        if (asks_for("--version", "-V", argc, argv)) {
+            puts("pitviper " PITVIPER_VERSION);
+            return 0;
+        }
         if (!help && !environment_good(&commands[i], argc, argv)) return 1;
         snprintf(called, sizeof called, "pitviper %s", argv[0]);
         if (!commands[i].only_prints) stop_outlive_readers();
@@ -215,8 +241,7 @@ static int run_named(int argc, char **argv)
         if (help && code == 0) printf("\n%s", common_help);
         return code;
     }
-    text_print(stderr, "pitviper: no such command: %s; `pitviper --help` lists them\n", argv[0]);
-    return 2;
+    return unknown(argv[0][0] == '-' ? "option" : "command", argv[0], false);
 }
 
 /* `pitviper help` COMMAND, TOPIC, or --markdown. */
@@ -224,7 +249,7 @@ static int help_command(int argc, char **argv)
 {
     static char help[] = "--help";
     if (argc > 1) {
-        text_print(stderr, "pitviper help: takes one command or topic, not also `%s`\n", argv[1]);
+        log_error("help: takes one command or topic, not also '%s'", argv[1]);
         return 2;
     }
     for (int i = 0; i < command_count; i++)
@@ -234,8 +259,7 @@ static int help_command(int argc, char **argv)
         return 0;
     }
     if (reference_write(stdout, argv[0])) return 0;
-    text_print(stderr, "pitviper help: no such command or topic: %s; `pitviper --help` lists them\n", argv[0]);
-    return 2;
+    return unknown("command or topic", argv[0], true);
 }
 
 int main(int argc, char **argv)
@@ -244,7 +268,7 @@ int main(int argc, char **argv)
     thread_flush_denormals(); /* so that a probe computes as a frame does */
     if (!take_verbosity(&argc, argv)) return 2;
     if (argc < 2) {
-        usage(stderr);
+        log_error("no command is given; `pitviper --help` lists them, `pitviper replay LOG` renders a recording");
         return 2;
     }
     if (argc > 2 && strcmp(argv[1], "help") == 0) return printed(help_command(argc - 2, argv + 2));
@@ -252,7 +276,7 @@ int main(int argc, char **argv)
         usage(stdout);
         return printed(0);
     }
-    if (strcmp(argv[1], "--version") == 0) {
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
         puts("pitviper " PITVIPER_VERSION);
         return printed(0);
     }

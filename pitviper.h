@@ -43,6 +43,7 @@ typedef void LogSink(void *user, LogLevel level, const char *line);
  * log_suppress: suppresses messages of the calling thread only, until it is undone. */
 void log_set_sink(LogSink *sink, void *user);
 void log_set_level(LogLevel lowest);
+const char *log_head(LogLevel level); /* what precedes a line on stderr: "pitviper: error: "; of information "" */
 void log_suppress(bool hushed);
 /* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
  * stderr is no terminal, where information is hidden, and with a sink. Standard output: set it to NULL before. */
@@ -142,6 +143,18 @@ void text_show(char *out, size_t out_size, const char *text, bool lines);
 void text_print(FILE *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_vprint(FILE *to, const char *format, va_list arguments) __attribute__((format(printf, 2, 0)));
 
+/* The known word nearest to a mistyped one, by its edit distance: 2 at most, 1 in words of less than six letters, case
+ * aside. Start with word_meant, consider every known word, then ask for the hint. Words of at most 63 letters. */
+typedef struct WordMeant {
+    const char *typed;
+    int         least;
+    char        word[64], hint[96];
+} WordMeant;
+WordMeant   word_meant(const char *typed);
+void        word_consider(WordMeant *meant, const char *known);
+void        word_consider_list(WordMeant *meant, const char *list, char separator); /* "a|b|c" */
+const char *word_hint(WordMeant *meant); /* "; did you mean WORD?", or "" */
+
 /* A file of what put prints, by output_begin (pitviper_output.h): nobody reads half of it. STATUS_IO: logged as the
  * module's. */
 Status text_write_file(const char *module, const char *path, void (*put)(FILE *to, const void *user), const void *user);
@@ -170,11 +183,12 @@ const char *etc_own(const char *name);
 
 typedef enum SettingType {
     SETTING_DOUBLE, SETTING_INT, SETTING_LONG /* long long */, SETTING_BOOL, SETTING_TEXT /* char[] */,
+    SETTING_WORDS,   /* char[]: words separated by commas, blanks around them dropped; in YAML a list too */
     SETTING_NUMBERS, /* NumberList; in YAML a list of numbers, or of lists of numbers, which become one row */
     /* char[], the names of files. In a file of settings they are relative to that file's folder, on a command line to
      * the current one: after reading, *out has usable paths. */
     SETTING_PATH,
-    SETTING_PATHS,        /* several, separated by commas */
+    SETTING_PATHS,        /* several, separated by commas; in YAML a list too */
     SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is kept unchanged */
     /* Read by the table's own function, in files alone; choices: what is accepted, for messages */
     SETTING_OWN,          /* one text; a list is its words with blanks between */
@@ -233,7 +247,7 @@ enum { settings_file_octets = 1 << 20 };
 Status yaml_check(const char *module, const char *path, const char *text, size_t octets);
 
 /* Overwrites *out. Absent keys keep their values; what is unknown, given twice, of the wrong kind or out of range
- * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line. given[row], may be NULL,
+ * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line; each of them, up to 50. given[row], may be NULL,
  * is set for each key at the top level. On failure *out is half filled: read into a copy. */
 Status settings_read(void *out, bool *given, const SettingTable *table, const char *path);
 /* The same from memory; path is for the messages. */

@@ -54,6 +54,11 @@ bool log_is_verbose(void) { return lowest_shown() <= LOG_DETAIL; }
 
 void log_suppress(bool hushed) { suppressed_here = hushed; }
 
+const char *log_head(LogLevel level)
+{
+    return level == LOG_ERROR ? "pitviper: error: " : level == LOG_WARN ? "pitviper: warning: " : "";
+}
+
 static void log_line(LogLevel level, const char *format, va_list arguments)
 {
     char raw[1024], line[4 * sizeof raw];
@@ -65,8 +70,7 @@ static void log_line(LogLevel level, const char *format, va_list arguments)
         if (log_sink)
             log_sink(log_user, level, line);
         else
-            fprintf(stderr, "%s%s%s\n%s", *status_line ? "\r\x1b[K" : "",
-                    level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "", line, status_line);
+            fprintf(stderr, "%s%s%s\n%s", *status_line ? "\r\x1b[K" : "", log_head(level), line, status_line);
     }
     pthread_mutex_unlock(&log_lock);
 }

@@ -1,6 +1,8 @@
 /* pitviper_settings.c: one value by its row of a table: ranges, units, choices, and the messages for invalid values. */
 #include "pitviper_settings_private.h"
 
+#include <stdlib.h>
+
 int settings_find(const SettingTable *table, const char *name)
 {
     for (int i = 0; i < table->count; i++)
@@ -8,54 +10,26 @@ int settings_find(const SettingTable *table, const char *name)
     return -1;
 }
 
-/* Edit distance of two words: insertions, deletions, substitutions and transpositions. At most 63 letters. */
-enum { word_size = 64 };
-static int slips(const char *a, const char *b)
+/* The nearest key; or the same key of another section. */
+static WordMeant key_meant(const SettingTable *table, const char *name)
 {
-    int       row[3][word_size], n = (int)strlen(b);
-    const int m = (int)strlen(a);
-    if (m >= word_size || n >= word_size) return word_size;
-    for (int j = 0; j <= n; j++) row[0][j] = j;
-    for (int i = 1; i <= m; i++) {
-        int *now = row[i % 3];
-        const int *above = row[(i + 2) % 3], *before = row[(i + 1) % 3];
-        now[0] = i;
-        for (int j = 1; j <= n; j++) {
-            const int other = above[j - 1] + (a[i - 1] != b[j - 1]), missing = above[j] + 1, more = now[j - 1] + 1;
-            now[j] = other < missing ? other : missing;
-            if (more < now[j]) now[j] = more;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && before[j - 2] + 1 < now[j])
-                now[j] = before[j - 2] + 1;
-        }
-    }
-    return row[m % 3][n];
-}
-
-/* Suggestion for a mistyped key: the nearest at edit distance 2 at most, 1 in short words; or the same key of another
- * section. */
-static const char *meant(const SettingTable *table, const char *name)
-{
-    const char *best = NULL, *point = strrchr(name, '.'), *last = point ? point + 1 : name;
-    int         least = strlen(name) < 6 ? 2 : 3;
-    for (int i = 0; i < table->count + table->list_count; i++) {
-        const char *key = i < table->count ? table->row[i].name : table->list[i - table->count].name;
-        const int   n   = slips(name, key);
-        if (n < least) {
-            least = n;
-            best  = key;
-        }
-    }
-    for (int i = 0; !best && i < table->count; i++) {
+    WordMeant   meant = word_meant(name);
+    const char *point = strrchr(name, '.'), *last = point ? point + 1 : name;
+    for (int i = 0; i < table->count; i++) word_consider(&meant, table->row[i].name);
+    for (int i = 0; i < table->list_count; i++) word_consider(&meant, table->list[i].name);
+    for (int i = 0; !*meant.word && i < table->count; i++) {
         const char *dot = strchr(table->row[i].name, '.');
-        if (strcmp(last, dot ? dot + 1 : table->row[i].name) == 0) best = table->row[i].name;
+        if (strcmp(last, dot ? dot + 1 : table->row[i].name) == 0)
+            snprintf(meant.word, sizeof meant.word, "%s", table->row[i].name);
     }
-    return best;
+    return meant;
 }
 
 Status settings_say_unknown(const SettingTable *table, const char *source, const char *name)
 {
     char        shown[160];
-    const char *best = meant(table, name);
+    WordMeant   meant = key_meant(table, name);
+    const char *best = *meant.word ? meant.word : NULL;
     text_escape(shown, sizeof shown, name, strlen(name));
     log_error("%s: %s: no such key: %s%s%s%s%s%s", table->module, source, settings_prefix(table), shown,
               best ? "; did you mean " : table->all_keys ? "; all keys: " : "", best ? settings_prefix(table) : "",
@@ -81,7 +55,7 @@ void settings_accepted(char *out, size_t out_size, const Setting *row)
     if (row->type == SETTING_OWN || row->type == SETTING_EACH || row->type == SETTING_MAP)
         snprintf(out, out_size, "%s", row->choices);
     else if (row->choices) snprintf(out, out_size, "one of %s", row->choices);
-    else if (row->type == SETTING_TEXT || settings_is_path(row))
+    else if (row->type == SETTING_TEXT || row->type == SETTING_WORDS || settings_is_path(row))
         snprintf(out, out_size, "text of at most %zu characters", row->size - 1);
     else if (row->type == SETTING_BOOL) snprintf(out, out_size, "true or false");
     else if (isnan(row->low)) snprintf(out, out_size, "%s", kind);
@@ -93,12 +67,15 @@ void settings_accepted(char *out, size_t out_size, const Setting *row)
 static void report_bad(const SettingTable *table, const char *source, const Setting *row, const char *value)
 {
     char       shown[160], accepted[512];
-    const bool long_text = !row->choices && (row->type == SETTING_TEXT || settings_is_path(row));
+    const bool long_text =
+        !row->choices && (row->type == SETTING_TEXT || row->type == SETTING_WORDS || settings_is_path(row));
+    WordMeant meant = word_meant(value);
     text_escape(shown, sizeof shown, value, strnlen(value, sizeof shown));
     if (long_text) snprintf(accepted, sizeof accepted, "longer than %zu characters", row->size - 1);
     else settings_accepted(accepted, sizeof accepted, row);
-    log_error("%s: %s: %s%s: '%s' is %s%s", table->module, source, settings_prefix(table), row->name, shown,
-              long_text ? "" : "not ", accepted);
+    if (row->choices) word_consider_list(&meant, row->choices, '|');
+    log_error("%s: %s: %s%s: '%s' is %s%s%s", table->module, source, settings_prefix(table), row->name, shown,
+              long_text ? "" : "not ", accepted, word_hint(&meant));
 }
 
 bool settings_number(double *out, const Setting *row, const char *value)
@@ -125,6 +102,33 @@ static bool numbers_of(NumberList *out, const Setting *row, const char *value)
     }
     *out = list;
     return true;
+}
+
+/* `a, b` without the blanks. False: it does not fit. */
+static bool words_into(char *out, size_t out_size, const char *value)
+{
+    const size_t octets = strlen(value);
+    char        *made = calloc(octets + 1, 1);
+    size_t       n = 0;
+    if (!made) return false;
+    for (const char *at = value; *at;) {
+        at += strspn(at, " \t");
+        size_t       length = strcspn(at, ",");
+        const size_t step = length + (at[length] == ',');
+        const bool   more = at[length] == ',';
+        while (length > 0 && strchr(" \t", at[length - 1])) length--;
+        memcpy(made + n, at, length);
+        n += length;
+        if (more) made[n++] = ',';
+        at += step;
+    }
+    const bool fits = n < out_size;
+    if (fits) {
+        memset(out, 0, out_size);
+        memcpy(out, made, n);
+    }
+    free(made);
+    return fits;
 }
 
 /* ---- one value, stored ----------------------------------------------------------------------- */
@@ -160,6 +164,9 @@ Status settings_store(void *out, const SettingTable *table, const Setting *row, 
     case SETTING_PATHS:
     case SETTING_NAME_OR_PATH:
         if (!settings_place_paths(at, row->size, row->type, value, file)) break;
+        return STATUS_OK;
+    case SETTING_WORDS:
+        if (!words_into(at, row->size, value)) break;
         return STATUS_OK;
     case SETTING_TEXT:
         if (strlen(value) >= row->size || (row->choices && !is_choice(row->choices, value))) break;

@@ -10,9 +10,18 @@
 typedef struct Reading {
     const char      *path, *file; /* file: paths are relative to its folder */
     yaml_document_t *document;
+    int             *wrong;       /* values refused so far: all are reported, up to most_wrong */
 } Reading;
 
-enum { key_size = 160, source_size = 512, words_size = 512 };
+enum { key_size = 160, source_size = 512, words_size = 512, list_size = 4096, most_wrong = 50 };
+
+/* Whether reading goes on after a value with this status. *worst becomes the status of the whole. */
+static bool goes_on(Status *worst, const Reading *r, Status status)
+{
+    if (status == STATUS_OK) return true;
+    *worst = status;
+    return status == STATUS_BAD_VALUE && ++*r->wrong < most_wrong;
+}
 
 static int line_of(const yaml_node_t *node) { return (int)node->start_mark.line + 1; }
 
@@ -112,13 +121,14 @@ static Status fill_own(void *out, const Reading *r, const SettingTable *table, c
         return say_own(r, table, row, value, NULL);
     if (map) {
         for (const yaml_node_pair_t *pair = value->data.mapping.pairs.start;
-             pair < value->data.mapping.pairs.top && status == STATUS_OK; pair++)
-            status = fill_one(out, r, table, row, yaml_document_get_node(r->document, pair->key),
-                              yaml_document_get_node(r->document, pair->value), NULL);
+             pair < value->data.mapping.pairs.top &&
+             goes_on(&status, r, fill_one(out, r, table, row, yaml_document_get_node(r->document, pair->key),
+                                          yaml_document_get_node(r->document, pair->value), NULL)); pair++) {}
     } else if (list && row->type == SETTING_EACH) {
         for (const yaml_node_item_t *item = value->data.sequence.items.start;
-             item < value->data.sequence.items.top && status == STATUS_OK; item++)
-            status = fill_one(out, r, table, row, NULL, yaml_document_get_node(r->document, *item), NULL);
+             item < value->data.sequence.items.top &&
+             goes_on(&status, r, fill_one(out, r, table, row, NULL, yaml_document_get_node(r->document, *item), NULL));
+             item++) {}
     } else {
         status = fill_one(out, r, table, row, NULL, value, list ? words : NULL);
     }
@@ -127,6 +137,33 @@ static Status fill_own(void *out, const Reading *r, const SettingTable *table, c
 
 /* ---- keys ---------------------------------------------------------------------------------------- */
 
+/* `[a, b]` of a key that takes `a,b`: its texts with commas between. */
+static Status fill_listed(void *out, const Reading *r, const SettingTable *table, const Setting *row,
+                          const yaml_node_t *sequence, const char *source)
+{
+    char   list[list_size] = "";
+    size_t n = 0;
+    for (const yaml_node_item_t *item = sequence->data.sequence.items.start; item < sequence->data.sequence.items.top;
+         item++) {
+        const yaml_node_t *node = yaml_document_get_node(r->document, *item);
+        const char        *text = node->type == YAML_SCALAR_NODE ? text_of(node) : "";
+        if (!*text || strchr(text, ',')) {
+            char said[64];
+            text_escape(said, sizeof said, shown(node), strnlen(shown(node), 60));
+            log_error("%s: %s: %s%s: '%s' is not one item: a list is [a, b], or a,b", table->module, source,
+                      settings_prefix(table), row->name, said);
+            return STATUS_BAD_VALUE;
+        }
+        n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", n ? "," : "", text);
+        if (n >= sizeof list) {
+            log_error("%s: %s: %s%s: the list is longer than %zu characters", table->module, source,
+                      settings_prefix(table), row->name, sizeof list - 1);
+            return STATUS_BAD_VALUE;
+        }
+    }
+    return settings_store(out, table, row, list, source, r->file);
+}
+
 static Status fill_value(void *out, const Reading *r, const SettingTable *table, const Setting *row,
                          const yaml_node_t *value, const char *source)
 {
@@ -134,8 +171,14 @@ static Status fill_value(void *out, const Reading *r, const SettingTable *table,
         return fill_own(out, r, table, row, value);
     if (row->type == SETTING_NUMBERS && value->type == YAML_SEQUENCE_NODE)
         return fill_numbers(out, r, table, row, value, source);
+    if ((row->type == SETTING_WORDS || row->type == SETTING_PATHS) && value->type == YAML_SEQUENCE_NODE)
+        return fill_listed(out, r, table, row, value, source);
     if (value->type != YAML_SCALAR_NODE) {
-        log_error("%s: %s: %s%s needs one value", table->module, source, settings_prefix(table), row->name);
+        char accepted[512], said[64];
+        settings_accepted(accepted, sizeof accepted, row);
+        text_escape(said, sizeof said, shown(value), strlen(shown(value)));
+        log_error("%s: %s: %s%s needs one value, not '%s': %s", table->module, source, settings_prefix(table), row->name,
+                  said, accepted);
         return STATUS_BAD_VALUE;
     }
     return settings_store(out, table, row, text_of(value), source, r->file);
@@ -149,6 +192,7 @@ static Status fill_list(void *out, const Reading *r, const SettingTable *table, 
                         const yaml_node_t *sequence)
 {
     const yaml_node_item_t *at = sequence->data.sequence.items.start, *end = sequence->data.sequence.items.top;
+    Status                  worst = STATUS_OK;
     for (; at < end; at++) {
         const yaml_node_t *node = yaml_document_get_node(r->document, *at);
         if (node->type != YAML_MAPPING_NODE) {
@@ -168,9 +212,9 @@ static Status fill_list(void *out, const Reading *r, const SettingTable *table, 
         if (list->item->line_at) *(int *)((char *)item + list->item->line_at) = line_of(node);
         const Status status = fill_mapping(item, NULL, seen, r, list->item, "", node);
         free(seen);
-        if (status != STATUS_OK) return status;
+        if (!goes_on(&worst, r, status)) return worst;
     }
-    return STATUS_OK;
+    return worst;
 }
 
 /* Which list a key names; -1: none. */
@@ -226,13 +270,14 @@ static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r,
                            const char *section, const yaml_node_t *mapping)
 {
     const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start, *end = mapping->data.mapping.pairs.top;
+    Status                  worst = STATUS_OK;
     for (; pair < end; pair++) {
         const Status status = fill_key(out, given, seen, r, table, section,
                                        yaml_document_get_node(r->document, pair->key),
                                        yaml_document_get_node(r->document, pair->value));
-        if (status != STATUS_OK) return status;
+        if (!goes_on(&worst, r, status)) return worst;
     }
-    return STATUS_OK;
+    return worst;
 }
 
 /* ---- a file --------------------------------------------------------------------------------------- */
@@ -258,7 +303,8 @@ static Status fill_document(void *out, bool *given, const SettingTable *table, c
                             yaml_document_t *document)
 {
     const yaml_node_t *root = yaml_document_get_root_node(document);
-    const Reading      reading = {path, file, document};
+    int                wrong = 0;
+    const Reading      reading = {path, file, document, &wrong};
     if (!root) return STATUS_OK;
     if (root->type != YAML_MAPPING_NODE) {
         log_error("%s: %s:%d: expected %s", table->module, path, line_of(root),
@@ -268,6 +314,9 @@ static Status fill_document(void *out, bool *given, const SettingTable *table, c
     bool *seen = calloc((size_t)(table->count + table->list_count), sizeof *seen);
     if (!seen) return STATUS_NO_MEMORY;
     const Status status = fill_mapping(out, given, seen, &reading, table, "", root);
+    if (wrong >= most_wrong)
+        log_error("%s: %s: too many errors; correct these first, the rest of the file has not been read",
+                  table->module, path);
     free(seen);
     return status;
 }

@@ -21,6 +21,7 @@ static int value_text(char *out, size_t out_size, const Setting *row, const void
         return snprintf(out, out_size, "%lld", whole);
     case SETTING_BOOL: return snprintf(out, out_size, "%s", *(const bool *)at ? "true" : "false");
     case SETTING_TEXT:
+    case SETTING_WORDS:
     case SETTING_PATH:
     case SETTING_PATHS:
     case SETTING_NAME_OR_PATH: return snprintf(out, out_size, "%s", at);
@@ -97,7 +98,8 @@ void settings_write(FILE *to, const SettingTable *table, const void *from, const
         fprintf(to, "%s# %s", indent, row->help);
         if (row->choices) fprintf(to, "%s%s", *row->help ? "; " : "", row->choices);
         else if (row->type == SETTING_BOOL) fprintf(to, "%strue or false", *row->help ? "; " : "");
-        else if (row->type != SETTING_TEXT && !settings_is_path(row) && !isnan(row->low))
+        else if (row->type != SETTING_TEXT && row->type != SETTING_WORDS && !settings_is_path(row) &&
+                 !isnan(row->low))
             fprintf(to, "%s%g .. %g%s%s", *row->help ? "; " : "", row->low, row->high, *row->unit ? " " : "",
                     row->unit);
         else if (*row->unit) fprintf(to, "%s%s", *row->help ? "; " : "", row->unit);
@@ -107,7 +109,7 @@ void settings_write(FILE *to, const SettingTable *table, const void *from, const
         if (row->type == SETTING_DOUBLE) memcpy(&number, (const char *)from + row->offset, sizeof number);
         const bool unset = isnan(number), hidden = unset || (shown && !shown[i]);
         fprintf(to, "%s%s%s:%s", indent, hidden ? "# " : "", key, unset ? "" : " ");
-        if ((row->type == SETTING_TEXT || settings_is_path(row)) && !is_plain(value)) put_quoted(to, value);
+        if ((row->type == SETTING_TEXT || row->type == SETTING_WORDS || settings_is_path(row)) && !is_plain(value)) put_quoted(to, value);
         else fputs(unset ? "" : value, to);
         fputc('\n', to);
     }

@@ -102,6 +102,9 @@ void delay_line_add(DelayLine *line, double x_s, double y_s)
 
 void delay_trend_add(DelayTrend *t, double x_s, double y_s)
 {
+    if (t->points > 0 && x_s == t->latest_x_s && y_s == t->latest_y_s) return;
+    t->latest_x_s = x_s;
+    t->latest_y_s = y_s;
     if (t->points++ == 0) t->first_x_s = t->last_x_s = x_s;
     const double dx = x_s - t->mean_x_s, dy = y_s - t->mean_y_s, share = 1 / (double)t->points;
     t->mean_x_s += dx * share;
@@ -113,20 +116,31 @@ void delay_trend_add(DelayTrend *t, double x_s, double y_s)
     t->last_x_s  = fmax(t->last_x_s, x_s);
 }
 
+static const double tick2_s2 = 4e-12; /* of stamps and arrivals */
+
+/* Sum of squares about the line. */
+static double about_line_s2(const DelayTrend *t)
+{
+    return fmax(t->yy - (t->xx > tick2_s2 ? t->xy * t->xy / t->xx : 0), (double)t->points * tick2_s2);
+}
+
 bool delay_trend_slope(double *slope, double *error, const DelayTrend *t)
 {
-    static const double tick2_s2 = 4e-12; /* of stamps and arrivals */
     if (t->points < 3 || !(t->xx > tick2_s2)) return false;
-    const double n = (double)t->points;
     *slope = t->xy / t->xx;
-    *error = sqrt(fmax(t->yy - *slope * t->xy, n * tick2_s2) / (n - 2) / t->xx);
+    *error = sqrt(about_line_s2(t) / (double)(t->points - 2) / t->xx);
     return true;
+}
+
+double delay_trend_scatter(const DelayTrend *t)
+{
+    return t->points < 3 ? INFINITY : sqrt(about_line_s2(t) / (double)(t->points - 2));
 }
 
 double delay_trend_critical(uint64_t points)
 {
-    /* Student's t, two-sided, 0.1 %, from n - 2 degrees of freedom on */
-    static const double t[] = {636.6, 31.6, 12.92, 8.61, 6.87, 5.96, 5.41};
+    /* Student's t, two-sided, 0.01 %, from one degree of freedom on */
+    static const double t[] = {6366, 100, 28.0, 15.5, 11.2, 9.08, 7.88, 7.12};
     if (points < 3) return INFINITY;
-    return points - 3 < sizeof t / sizeof t[0] ? t[points - 3] : 5;
+    return points - 3 < sizeof t / sizeof t[0] ? t[points - 3] : 6.6;
 }

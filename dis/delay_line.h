@@ -37,13 +37,16 @@ double delay_line_edge(double *span_s, double *middle_s, const DelayLine *line);
 typedef struct DelayTrend {
     uint64_t points;
     double   first_x_s, last_x_s;
+    double   latest_x_s, latest_y_s; /* of the latest added */
     double   mean_x_s, mean_y_s, xx, xy, yy;
 } DelayTrend;
 
+/* PDUs of one datagram with one stamp are one point. */
 void delay_trend_add(DelayTrend *trend, double x_s, double y_s);
 /* Slope and its standard error; false: fewer than three points, or all of one stamp. */
 bool delay_trend_slope(double *slope, double *error, const DelayTrend *trend);
-/* By how much larger than its standard error the slope of that many points must be: chance makes one in a thousand. */
+double delay_trend_scatter(const DelayTrend *trend); /* standard deviation about the line, s */
+/* By how much larger than its standard error the slope of that many points must be: chance makes one in ten thousand. */
 double delay_trend_critical(uint64_t points);
 
 #endif

@@ -21,6 +21,7 @@ enum {
     votes_needed = 2,     /* consecutive, for a new or rejected sender */
     most_failures = 5,    /* the validation time is doubled at most this often: 2 minutes */
     switches_needed = 6,  /* from one clock to another and back, to be two senders */
+    points_again = 30,    /* before a trend is judged that begins amid stamps that were right */
     points_known = 8,     /* a new sender with that many stamps in order may have one that is not */
     segment_limit = 1 << 20,
 };
@@ -31,6 +32,9 @@ static const double capture_limit_s = 1e11; /* the year 5138: beyond it a double
 
 /* What stamps at another rate must have gained before they are rejected; and the drift of clocks, s a second. */
 static const double gain_s = 0.15, drift = 1e-4;
+/* Of PDUs in the order of their arrival the latest stamps are of those that were quick: that is a trend too, over as long a
+ * time as the jitter. So a trend is one where it exceeds the scatter about it by this. */
+static const double trend_over_scatter = 12;
 /* A stamp that far behind its sender's latest is of a reordered datagram, not of a counter. */
 static const double overtaken_s = 0.1;
 static const double vote_s = 2.0, longest_vote_s = 32.0; /* spans over which the rate of stamps is checked */
@@ -60,11 +64,12 @@ typedef struct Sender {
     bool     used, founds; /* its delays are those of its scale */
     uint8_t  standing, scale;
     uint8_t  failures; /* number of rejections, most_failures at most */
-    uint8_t  odd;      /* consecutive reports that deviate from the reference or are constant */
+    uint8_t  odd;      /* consecutive reports that deviate from the reference */
     uint8_t  agree;    /* consecutive passed checks, votes_needed at most */
     uint8_t  switches; /* consecutive, from one of two clocks to the other */
     bool     shared;   /* reported as two senders */
     bool     on_other;
+    bool     renewed;  /* the trend is not of all PDUs since the tie */
     int      doubt;    /* index into the clock's anomalies; -1: never rejected, or list full */
     uint32_t segment, next_segment; /* next: of PDUs that may begin it; 0: none */
     uint32_t latest_stamp;
@@ -80,6 +85,7 @@ typedef struct Sender {
 typedef struct Memory {
     uint64_t key_plus_1; /* 0: none */
     Moment   last;
+    int      repeats;    /* consecutive reports with the stamp of the one before */
 } Memory;
 
 /* A time over which a sender's stamps were valid. */
@@ -122,8 +128,8 @@ void exercise_clock_destroy(ExerciseClock *clock)
 
 const ExerciseClockAnomalies *exercise_clock_anomalies(const ExerciseClock *clock) { return &clock->doubts; }
 
-/* NULL when the table is full and this one is not in it. */
-static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key)
+/* NULL when the table is full and this one is not in it, or it is not and none may be added. */
+static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key, bool add)
 {
     /* multiplicative hashing: 2^32 / golden ratio */
     uint32_t i = (key * 2654435769u) >> 19;
@@ -133,7 +139,7 @@ static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key)
         Sender *sender = &clock->slot[i];
         if (sender->used && sender->key == key) return sender;
         if (sender->used) continue;
-        if (clock->senders == sender_limit) return NULL;
+        if (!add || clock->senders == sender_limit) return NULL;
         clock->senders++;
         *sender = (Sender){.key = key, .used = true, .doubt = -1};
         *is_new = true;
@@ -194,6 +200,7 @@ static void tie_sender(ExerciseClock *clock, Sender *sender, Moment now, double 
     }
     sender->segment = sender->next_segment ? sender->next_segment : ++clock->segments;
     sender->next_segment = 0;
+    sender->renewed = false;
     sender->trend   = (DelayTrend){0};
     delay_trend_add(&sender->trend, sender->tie.t_s, ruler_s - sender->tie.t_s);
     sender->mark_s  = now.capture_s;
@@ -208,7 +215,7 @@ static void keep_segment(ExerciseClock *clock, const Sender *sender)
     if (clock->valid_count == clock->valid_capacity) {
         const int larger = clock->valid_capacity ? 2 * clock->valid_capacity : 64;
         Segment  *grown  = realloc(clock->valid, (size_t)larger * sizeof *grown);
-        if (!grown) return; /* its PDUs keep the time they were given */
+        if (!grown) return; /* out of memory: its PDUs count from their arrival */
         clock->valid          = grown;
         clock->valid_capacity = larger;
     }
@@ -224,19 +231,20 @@ static double gained_s(Moment since, Moment now)
     return gained - whole_hours(gained);
 }
 
-/* Whether an entity's stamps are constant between two of its reports; remembers this one. */
-static bool stands_still(ExerciseClock *clock, uint64_t entity_key, Moment now)
+/* How many reports of an entity in a row have the stamp of the one before: one may be a datagram twice, of a bundle as many
+ * entities; two are a clock that stands still. Remembers this one. */
+static int stands_still(ExerciseClock *clock, uint64_t entity_key, Moment now)
 {
     Memory      *memory = &clock->memory[(entity_key * 0x9E3779B97F4A7C15u) >> 50];
     _Static_assert(memory_slots == 1 << (64 - 50), "the hash has as many bits as there are slots");
     const double passed_s = now.capture_s - memory->last.capture_s;
     const bool   known = memory->key_plus_1 == entity_key + 1;
-    if (known && passed_s >= 0 && passed_s < still_least_s) return false;
+    if (known && passed_s >= 0 && passed_s < still_least_s) return 0;
     const double step_s = fabs(dis_timestamp_step_s(memory->last.stamp, now.stamp));
     const bool   stands = known && passed_s >= 0 && passed_s < still_most_s && step_s <= still_rate * passed_s &&
                         (step_s <= still_step_s || passed_s > leave_s);
-    *memory = (Memory){entity_key + 1, now};
-    return stands;
+    *memory = (Memory){entity_key + 1, now, stands ? memory->repeats + (memory->repeats < odd_limit) : 0};
+    return memory->repeats;
 }
 
 static bool is_overtaken(const Sender *sender, uint32_t stamp)
@@ -275,7 +283,7 @@ static bool is_utc(const Sender *sender, Moment now)
 static bool is_undecided(const Sender *sender, Moment now)
 {
     const double gained = gained_s(sender->first, now);
-    return sender->trend.points == 2 && fabs(gained) > gain_s + drift * fabs(now.capture_s - sender->first.capture_s);
+    return sender->pdus == 2 && fabs(gained) > gain_s + drift * fabs(now.capture_s - sender->first.capture_s);
 }
 
 static int list_doubt(ExerciseClock *clock, const Sender *sender, ExerciseClockReason reason)
@@ -310,9 +318,11 @@ static bool runs_wrong(const Sender *sender)
 {
     const DelayTrend *trend = &sender->trend;
     double            slope, error, edge_span_s, middle_s;
+    if (sender->renewed && trend->points < points_again) return false;
     if (!delay_trend_slope(&slope, &error, trend) || fabs(slope) <= 3 * drift ||
         fabs(slope) * (trend->last_x_s - trend->first_x_s) <= gain_s ||
-        fabs(slope) <= delay_trend_critical(trend->points) * error)
+        fabs(slope) <= delay_trend_critical(trend->points) * error ||
+        fabs(slope) * (trend->last_x_s - trend->first_x_s) <= trend_over_scatter * delay_trend_scatter(trend))
         return false;
     if (sender->standing != SENDER_PROVEN) return true;
     const double edge = delay_line_edge(&edge_span_s, &middle_s, &sender->line);
@@ -333,6 +343,7 @@ static void vote(ExerciseClock *clock, Sender *sender, Moment now, double t_s, d
     if (now.capture_s < sender->mark_s) { /* the capture clock stepped back */
         sender->mark_s      = now.capture_s;
         sender->next_vote_s = now.capture_s + vote_s;
+        sender->renewed     = true;
         sender->trend       = (DelayTrend){0};
         delay_trend_add(&sender->trend, t_s, ruler_s - t_s);
     }
@@ -346,8 +357,9 @@ static void vote(ExerciseClock *clock, Sender *sender, Moment now, double t_s, d
     if (right && sender->agree < votes_needed) sender->agree++;
     if (sender->agree == votes_needed) sender->standing = SENDER_PROVEN;
     if (span_s >= longest_vote_s && (right || span_s >= 4 * longest_vote_s)) {
-        sender->mark_s = now.capture_s;
-        sender->trend  = (DelayTrend){0};
+        sender->mark_s  = now.capture_s;
+        sender->renewed = true;
+        sender->trend   = (DelayTrend){0};
         delay_trend_add(&sender->trend, t_s, ruler_s - t_s);
     }
     sender->next_vote_s = now.capture_s + (span_s >= longest_vote_s ? longest_vote_s : fmax(span_s, vote_s));
@@ -386,17 +398,18 @@ static ExerciseInstant judge(ExerciseClock *clock, Sender *sender, Moment now, i
     note_shared(clock, sender, now);
     if (!overtaken) sender->latest_stamp = now.stamp;
 
-    const bool   stands = entity >= 0 && stands_still(clock, (uint64_t)sender->key << 16 | (uint16_t)entity, now);
+    const int    repeats = entity < 0 ? 0 : stands_still(clock, (uint64_t)sender->key << 16 | (uint16_t)entity, now);
+    const bool   stands = repeats > 0;
     const double t_s = tied_time(&sender->tie, now.stamp, ruler_s);
     const bool   leaves = !(fabs(ruler_s - t_s - delay_line_at(&sender->line, t_s)) <= leave_s);
     const ExerciseClockReason reason = leaves ? EXERCISE_CLOCK_JUMP : EXERCISE_CLOCK_STILL;
     bool by_arrival = leaves;
 
-    sender->odd = stands || leaves ? sender->odd + 1 : 0;
+    sender->odd = leaves ? sender->odd + 1 : 0;
     if (leaves && !sender->next_segment) sender->next_segment = ++clock->segments;
     if (leaves && sender->standing != SENDER_PROVEN && sender->trend.points < points_known) {
         doubt(clock, sender, now, ruler_s, reason);
-    } else if (sender->odd >= odd_limit) {
+    } else if (sender->odd >= odd_limit || repeats >= odd_limit) {
         doubt(clock, sender, now, ruler_s, reason);
     } else if (stands) {
         by_arrival = leaves || (sender->standing != SENDER_PROVEN && !advances(sender, now));
@@ -406,7 +419,8 @@ static ExerciseInstant judge(ExerciseClock *clock, Sender *sender, Moment now, i
         by_arrival = sender->standing == SENDER_NEW && !overtaken && !is_utc(sender, now) && is_undecided(sender, now);
         vote(clock, sender, now, t_s, ruler_s);
     }
-    ExerciseInstant at = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = now.stamp, .segment = sender->segment};
+    ExerciseInstant at = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = now.stamp, .segment = sender->segment,
+                          .sender = (uint16_t)(sender - clock->slot)};
     if (leaves && sender->next_segment) at.segment = sender->next_segment;
     if (sender->standing == SENDER_INCONSISTENT) {
         note_inconsistent(clock, sender, now);
@@ -435,16 +449,15 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
     }
     const double ruler_s = clock->start_s + (capture_s - clock->start_capture_s);
     const Moment now = {timestamp, capture_s};
-    const ExerciseInstant arrival = {.t_s = ruler_s, .ruler_s = ruler_s};
+    const ExerciseInstant arrival = {.t_s = ruler_s, .ruler_s = ruler_s, .stamp = timestamp};
 
-    /* All bits zero: a sender that does not stamp. */
-    if (timestamp == 0) {
+    /* All bits zero: a sender that does not stamp, or one that does, on the hour. */
+    Sender *sender = find_sender(&is_new, clock, key, timestamp != 0);
+    if (timestamp == 0 && !sender) {
         clock->doubts.unstamped++;
         return arrival;
     }
     clock->doubts.stamped++;
-
-    Sender *sender = find_sender(&is_new, clock, key);
     if (!sender) { /* more senders than are checked: counted as rejected */
         clock->doubts.by_arrival++;
         return arrival;
@@ -456,7 +469,8 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
     if (entity >= 0) stands_still(clock, (uint64_t)key << 16 | (uint16_t)entity, now);
     tie_sender(clock, sender, now, ruler_s, true);
     return (ExerciseInstant){.t_s = shifted_time(clock, sender->scale, &sender->line, sender->tie.t_s), .ruler_s = ruler_s,
-                             .stamp = timestamp, .segment = sender->segment, .by_stamp = true};
+                             .stamp = timestamp, .segment = sender->segment, .by_stamp = true,
+                             .sender = (uint16_t)(sender - clock->slot)};
 }
 
 double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
@@ -488,22 +502,31 @@ static int by_number(const void *a, const void *b)
 
 void exercise_clock_whole(ExerciseClock *clock)
 {
+    clock->doubts.by_arrival = 0;
+    for (int i = 0; i < clock->doubts.count; i++) clock->doubts.sender[i].by_arrival = 0;
     for (int i = 0; i < slot_count; i++) {
         const Sender *sender = &clock->slot[i];
         const bool    known = sender->trend.points > 2 || fabs(sender->line.mean_y_s) <= gain_s;
+        if (sender->used && sender->doubt >= 0) clock->doubts.sender[sender->doubt].pdus = sender->pdus;
         if (sender->used && (sender->standing == SENDER_PROVEN || (sender->standing == SENDER_NEW && known)))
             keep_segment(clock, sender);
     }
     if (clock->valid_count > 1) qsort(clock->valid, (size_t)clock->valid_count, sizeof *clock->valid, by_number);
 }
 
-double exercise_clock_whole_time(const ExerciseClock *clock, const ExerciseInstant *at)
+void exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at)
 {
-    const Segment key = {.number = at->segment};
-    if (at->segment == 0 || clock->valid_count == 0) return at->t_s;
-    const Segment *s = bsearch(&key, clock->valid, (size_t)clock->valid_count, sizeof key, by_number);
-    if (!s) return at->ruler_s;
-    return shifted_time(clock, s->scale, &s->line, tied_time(&s->tie, at->stamp, at->ruler_s));
+    const Segment  key = {.number = at->segment};
+    const Segment *s = NULL;
+    if (!(fabs(at->ruler_s) < INFINITY) || (at->stamp == 0 && at->segment == 0)) return;
+    if (at->segment && clock->valid_count)
+        s = bsearch(&key, clock->valid, (size_t)clock->valid_count, sizeof key, by_number);
+    const bool same = at->by_stamp && at->t_s == at->ruler_s; /* as the first PDU of a sender */
+    at->t_s = s ? shifted_time(clock, s->scale, &s->line, tied_time(&s->tie, at->stamp, at->ruler_s)) : at->ruler_s;
+    if (s || same) return;
+    clock->doubts.by_arrival++;
+    const int doubted = at->segment ? clock->slot[at->sender].doubt : -1;
+    if (doubted >= 0) clock->doubts.sender[doubted].by_arrival++;
 }
 
 /* ---- reporting ------------------------------------------------------------------------------------- */

@@ -14,7 +14,8 @@
  * the arrival time is used instead, when
  *   - an entity's stamps are constant over three reports at least 0.1 s apart;
  *   - a sender deviates by 5 s from the least of its delays, a validated one in two consecutive PDUs (restart);
- *   - the delays of a sender have a trend of more than 0.15 s that chance makes once in a thousand times, of a validated one
+ *   - the delays of a sender have a trend of more than 0.15 s that chance makes once in ten thousand times and that
+ *     is twelve times their scatter about it, of a validated one
  *     their lower edge too: a clock at another rate. Jitter has none.
  * A sender's second PDU counts from its arrival when that is 0.15 s from its stamp: nothing tells the rate yet.
  * Rate checks over 2 s, 4 s, .. 32 s: two that know the rate, to 2 %, as that of the arrivals validate a sender, new or
@@ -44,7 +45,8 @@ static inline double exercise_clock_time(ExerciseClock *clock, uint16_t site, ui
 typedef struct ExerciseInstant {
     double   t_s, ruler_s; /* exercise time; that of the arrival */
     uint32_t stamp, segment;
-    bool     by_stamp;     /* t_s */
+    uint16_t sender;       /* its slot */
+    bool     by_stamp;     /* t_s, as the PDU came */
 } ExerciseInstant;
 
 ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
@@ -53,9 +55,10 @@ ExerciseInstant exercise_clock_instant(ExerciseClock *clock, uint16_t site, uint
 ExerciseInstant exercise_clock_pdu_instant(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu,
                                            double capture_s);
 
-/* After the last PDU of a recording, once: what is then known of each sender counts for all its PDUs. */
-void   exercise_clock_whole(ExerciseClock *clock);
-double exercise_clock_whole_time(const ExerciseClock *clock, const ExerciseInstant *at);
+/* After the last PDU of a recording, once: what is then known of each sender counts for all its PDUs. Then the second, once
+ * for each of them: sets its time, and counts those timed by arrival anew. */
+void exercise_clock_whole(ExerciseClock *clock);
+void exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at);
 
 /* The same by the PDU itself; NaN, and the clock unmoved, for one that names no sender. */
 double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu, double capture_s);

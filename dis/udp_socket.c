@@ -141,7 +141,7 @@ static Status read_config(Plan *plan, const DisUdpConfig *config)
     struct sockaddr_in6 *v6 = plan->to.any.sa_family == AF_INET6 ? &plan->to.v6 : NULL;
     if (v6 ? IN6_IS_ADDR_UNSPECIFIED(&v6->sin6_addr) || IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr)
            : plan->to.v4.sin_addr.s_addr == htonl(INADDR_ANY)) {
-        log_error("udp: address: `%s` is nobody's: nothing can be sent there; leave it empty to hear all and to send "
+        log_error("udp: address: nothing can be sent to `%s`; leave it empty to hear all and to send "
                   "to 255.255.255.255", address);
         return STATUS_BAD_VALUE;
     }

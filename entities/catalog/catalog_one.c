@@ -3,6 +3,7 @@
 #include "pitviper_output.h"
 
 #include "entities/import/model_import.h"
+#include "entities/parametric/parametric.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@ Status catalog_open_one(Catalog **out, int *model, const char *name, double sag_
     char   path[temp_path_size];
     char  *real = model_is_path(name) ? realpath(name, NULL) : NULL;
     Status status = STATUS_IO;
+    if (!model_is_path(name) && !parametric_known(name)) return model_say_unknown(name);
     if (!temp_file(path, ".csv")) {
         free(real);
         return STATUS_IO;

@@ -101,7 +101,7 @@ static void print_parts(const Model *m)
     }
 }
 
-static int print_info(const char *name, const ModelSize *size, double sag_m)
+int model_info(const char *name, const ModelSize *size, double sag_m)
 {
     const bool sized = size->length_m > 0 || size->width_m > 0 || size->height_m > 0;
     Model model;
@@ -144,47 +144,4 @@ static int print_info(const char *name, const ModelSize *size, double sag_m)
     print_parts(&model);
     model_destroy(&model);
     return 0;
-}
-
-int model_info_command(int argc, char **argv)
-{
-    const char *name = NULL;
-    double sag_m = 0.005;
-    ModelSize size = {0};
-    for (int i = 2; i < argc; i++) {
-        double *const figure[3] = {&size.length_m, &size.width_m, &size.height_m};
-        static const char *const option[3] = {"--length", "--width", "--height"};
-        int which = 0;
-        while (which < 3 && strcmp(argv[i], option[which]) != 0) which++;
-        if (which < 3) {
-            if (i + 1 < argc && text_to_double(figure[which], argv[i + 1]) && *figure[which] >= 0.001 &&
-                *figure[which] <= 2000) {
-                i++;
-                continue;
-            }
-            text_print(stderr, "pitviper model: %s: '%s' is not a number in 0.001 .. 2000 m\n", argv[i],
-                    i + 1 < argc ? argv[i + 1] : "");
-            return 2;
-        }
-        if (strcmp(argv[i], "--sag") == 0) {
-            if (i + 1 < argc && text_to_double(&sag_m, argv[i + 1]) && sag_m >= 1e-5 && sag_m <= 0.1) {
-                i++;
-                continue;
-            }
-            text_print(stderr, "pitviper model: --sag: '%s' is not a number in 1e-05 .. 0.1 m\n",
-                    i + 1 < argc ? argv[i + 1] : "");
-            return 2;
-        }
-        if (argv[i][0] == '-' || name) {
-            text_print(stderr, "pitviper model: %s: %s\n", argv[i][0] == '-' ? "no such option" : "one model at a time",
-                    argv[i]);
-            return 2;
-        }
-        name = argv[i];
-    }
-    if (!name) {
-        fputs("usage: pitviper model info NAME|FILE; see `pitviper model --help`\n", stderr);
-        return 2;
-    }
-    return print_info(name, &size, sag_m);
 }

@@ -5,8 +5,9 @@
 
 #include "entities/catalog/catalog.h"
 
-/* argv[1] is "info". 0: done; 1: the model cannot be had; 2: wrong usage. */
-int model_info_command(int argc, char **argv);
+/* Prints what a built-in model or a file holds; size: of a file it is compared with, 0: not given. Exit code: 0, or 1
+ * when the model cannot be had, which is logged. */
+int model_info(const char *name, const ModelSize *size, double sag_m);
 /* Every built-in shape, then every row of the catalog that is not hidden by an earlier one, a line each. */
 Status model_list(FILE *to, const char *catalog_path);
 

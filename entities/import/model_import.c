@@ -474,12 +474,18 @@ Status model_import(Model *out, ModelImport *report, const char *path)
     return status;
 }
 
+Status model_say_unknown(const char *name)
+{
+    WordMeant meant = word_meant(name);
+    for (int i = 0; i < parametric_count(); i++) word_consider(&meant, parametric_name(i));
+    log_error("model: no built-in model of this name: '%s'; `pitviper model list` lists them, a file's name has a dot or "
+              "a slash in it%s", name, word_hint(&meant));
+    return STATUS_UNSUPPORTED;
+}
+
 Status model_open(Model *out, ModelImport *report, bool *imported, const char *name, double sag_m)
 {
     *imported = model_is_path(name);
     if (*imported) return model_import(out, report, name);
-    const Status status = parametric_build(out, name, sag_m);
-    if (status == STATUS_UNSUPPORTED)
-        log_error("model: no built-in model of this name: '%s'; a file's name has a dot or a slash in it", name);
-    return status;
+    return parametric_known(name) ? parametric_build(out, name, sag_m) : model_say_unknown(name);
 }

@@ -64,6 +64,8 @@ Status model_import(Model *out, ModelImport *report, const char *path);
 
 /* Whether a name means a file: it has a slash or a dot. */
 bool   model_is_path(const char *name);
+/* Logs that there is no built-in model of this name, with the nearest one. Returns STATUS_UNSUPPORTED. */
+Status model_say_unknown(const char *name);
 /* Parametric by its name, or imported by its path (*imported: which of them). sag_m: of parametric_build. Logs. */
 Status model_open(Model *out, ModelImport *report, bool *imported, const char *name, double sag_m);
 

@@ -1,5 +1,6 @@
 /* entities/survey/survey.c: one pass over all PDUs of a log: tracks, shots, clocks, counters. */
 #include "entities/survey/survey.h"
+#include "dis/log_clock.h"
 #include "dis/datagram.h"
 #include "dis/enumerations.h"
 #include "entities/motion/dead_reckoning.h"
@@ -27,7 +28,8 @@ typedef struct TrackBuild {
 
 typedef struct Building {
     Survey        *survey;
-    ExerciseClock *clock;
+    DisLogTimes    times;
+    size_t         next; /* of them */
     DisPdu         pdu;   /* the log that is read */
     EntityIndex    index;
     int            track_capacity;
@@ -255,14 +257,14 @@ static Status receive_datagram(Building *b, int d, const DisDatagram *datagram, 
             survey->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
             continue;
         }
-        const uint64_t doubted = exercise_clock_anomalies(b->clock)->by_arrival;
-        const double   t_s     = exercise_clock_pdu_time(b->clock, &header, pdu, datagram->capture_s);
+        const ExerciseInstant *instant = &b->times.pdu[b->next++];
+        const double           t_s     = instant->t_s;
         if (isnan(t_s)) continue; /* of unknown type, and without a sender */
         if (d < survey_times_most && isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
         if (!(survey->first_s <= t_s)) survey->first_s = t_s;
         if (!(survey->last_s >= t_s)) survey->last_s = t_s;
         Status status = STATUS_OK;
-        if (exercise_clock_anomalies(b->clock)->by_arrival == doubted)
+        if (instant->by_stamp || instant->stamp == 0)
             status = receive_time_stamp(b, header.timestamp, datagram->capture_s, t_s);
         const Status refused = dis_decode(&b->pdu, pdu, header.length);
         if (refused != STATUS_OK) dis_count_refused(&survey->counters, header.type, refused);
@@ -321,7 +323,7 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
     Building b = {.survey = &survey};
     b.date_is_credible = log->count > 0 && !(fabs(log->datagram[0].capture_s - invented_epoch_s) <= 1);
 
-    Status status = exercise_clock_create(&b.clock);
+    Status status = dis_log_times(&b.times, log, exercise);
     if (status == STATUS_OK) status = entity_index_create(&b.index, 512);
     const int times = log->count < survey_times_most ? log->count : survey_times_most;
     survey.datagram_s = calloc((size_t)times + 1, sizeof *survey.datagram_s);
@@ -337,7 +339,7 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
     if (status == STATUS_OK) status = end_flights(&b);
     if (status == STATUS_OK) status = settle_date(&b);
     if (status == STATUS_OK) {
-        survey.doubts                  = *exercise_clock_anomalies(b.clock);
+        survey.doubts                  = b.times.doubts;
         survey.counters.stamps_doubted = survey.doubts.by_arrival;
         drop_empty_tracks(&survey);
         if (survey.track_count > 1) qsort(survey.track, (size_t)survey.track_count, sizeof *survey.track, track_order);
@@ -347,7 +349,7 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
                   survey.track_count, (unsigned long long)b.points);
         survey_destroy(&survey);
     }
-    exercise_clock_destroy(b.clock);
+    dis_log_times_release(&b.times);
     entity_index_destroy(&b.index);
     free(b.build);
     free(b.warfare);

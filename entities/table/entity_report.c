@@ -1,6 +1,8 @@
 /* entities/table/entity_report.c: applies an Entity State or its Update to the entity's slot. */
 #include "entities/table/entity_table_private.h"
 
+#include "dis/exercise_clock.h"
+
 /* Shorter than any reuse of an id by a launcher. */
 static const double after_detonation_s = 1;
 
@@ -90,6 +92,24 @@ static void close_interval(EntitySlot *slot, const double p_next_ecef[3], const 
     if (slot->reported.algorithm == 1) slot->distance_m += entity_slot_forward(slot, p_next_ecef, r_next);
     else slot->distance_m += entity_slot_forward(slot, motion.p_ecef, motion.r_ecef_from_body);
     if (!isfinite(slot->distance_m) || fabs(slot->distance_m) > 1e9) slot->distance_m = 0;
+}
+
+/* By how much a report's time has moved against its sender's stamps since the last one, so that the pose goes on from where
+ * it was shown. Below 0.1 ms: as it comes; beyond 5 s the sender began anew. */
+static void take_shift(const EntityTable *table, EntitySlot *slot, uint32_t stamp, bool is_first, double t_s)
+{
+    static const double least_s = 1e-4, most_s = 5;
+    const uint32_t      before = slot->stamp;
+    slot->stamp = stamp;
+    if (is_first || isnan(table->arrival_s) || !before || !stamp || !table->by_stamp) {
+        slot->shift_s = 0;
+        return;
+    }
+    const double left_s = entity_shift_left(slot->shift_s, table->arrival_s - slot->shift_from_s);
+    const double moved_s = t_s - slot->report_s - dis_timestamp_step_s(before, stamp);
+    const double shift_s = (slot->shift_s != 0 ? left_s : 0) + (fabs(moved_s) >= least_s ? moved_s : 0);
+    slot->shift_s      = fabs(shift_s) <= most_s ? shift_s : 0;
+    slot->shift_from_s = table->arrival_s;
 }
 
 /* Position, velocity and attitude, common to both kinds of report. */
@@ -190,6 +210,7 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
     memcpy(slot->marking, pdu->marking, sizeof pdu->marking);
 
     take_place(table, slot, pdu->p_ecef, pdu->velocity_mps, euler_rad, is_first, t_s);
+    take_shift(table, slot, pdu->header.timestamp, is_first, t_s);
     slot->reported.algorithm = pdu->dead_reckoning >= 1 && pdu->dead_reckoning <= 9 ? pdu->dead_reckoning : 1;
     if (!sanitize(slot->reported.a_mps2, pdu->acceleration_mps2, largest_acceleration_mps2))
         table->counters.motion_refused++;
@@ -220,6 +241,7 @@ Status entity_table_entity_state_update(EntityTable *table, const DisEntityState
     entity_eviction_rank(table, slot, pdu->p_ecef, t_s);
     entity_marks_before(table, slot, t_s);
     take_place(table, slot, pdu->p_ecef, pdu->velocity_mps, euler_rad, false, t_s);
+    take_shift(table, slot, pdu->header.timestamp, false, t_s);
     take_state(table, slot, pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count, false, t_s);
     return STATUS_OK;
 }

@@ -42,6 +42,7 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
 
     table->config = *config;
     table->catalog = catalog;
+    table->arrival_s = NAN;
     const int slots = config->capacity + 1;
     table->slot = calloc((size_t)slots, sizeof *table->slot);
     table->free_slot = calloc((size_t)slots, sizeof *table->free_slot);
@@ -291,6 +292,12 @@ static Status take_report(EntityTable *table, const DisPdu *pdu, double t_s, Dis
     }
     return update ? entity_table_entity_state_update(table, &pdu->update, t_s)
                   : entity_table_entity_state(table, &pdu->entity_state, t_s);
+}
+
+void entity_table_arrival(EntityTable *table, double now_s, bool by_stamp)
+{
+    table->arrival_s = now_s;
+    table->by_stamp  = by_stamp;
 }
 
 void entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters)

@@ -75,6 +75,10 @@ void   entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_
 /* Removes those silent for too long at t_s. */
 void   entity_table_expire(EntityTable *table, double t_s);
 
+/* For PDUs in order of arrival: the next one arrived at now_s, and t_s is by its sender's stamps. The sender's clock may then
+ * have been set since an entity's last report: the pose does not jump for that, but comes round within seconds, at most
+ * half as fast again or half as slow. Not called: poses are those of t_s. */
+void   entity_table_arrival(EntityTable *table, double now_s, bool by_stamp);
 /* Any decoded PDU: checked, and passed to the function above of its type; types that the table does not need are
  * ignored, and an instant that is not finite. Every drop is counted. This is what replay and the node call. */
 void   entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters);

@@ -36,6 +36,8 @@ typedef struct EntitySlot {
     bool          reports_on; /* the Stop/Freeze lets it go on reporting: a report does not end it */
     double        stop_s;
     double        paused_s;   /* spent stopped since the report */
+    uint32_t      stamp;      /* of its last report */
+    double        shift_s, shift_from_s; /* ahead of its time by this at that time, and less and less since */
     double        spin_s, spin_from_s; /* running clock at spin_from_s */
     double        distance_m; /* distance travelled forward, at the report */
     double        missed_m, missed_rad, missed_s; /* by how much its last report set the extrapolation of the one before
@@ -92,6 +94,8 @@ struct EntityTable {
     EntitySlot       *slot;        /* [config.capacity + 1]: a newcomer's too; used below slot_end */
     int              *free_slot;   /* stack of those below slot_end that are free */
     int               slot_end, free_count, count, stopped_count;
+    double            arrival_s;   /* entity_table_arrival; NaN: not called */
+    bool              by_stamp;
     Tombstones       *tombstones;
     EntityRate       *rate;
     EntityCounters    counters;
@@ -108,11 +112,32 @@ static inline bool entity_slot_silent(const EntitySlot *slot, double t_s)
     return !slot->stopped && t_s - slot->paused_s - slot->report_s > slot->timeout_s;
 }
 
+/* What is left of a shift of its time after dt_s: it falls at a rate of half a second per second, then by e in half a
+ * second, at last of 20 ms per second. */
+static inline double entity_shift_left(double shift_s, double dt_s)
+{
+    static const double fast = 0.5, fall_s = 0.5, slow = 0.02;
+    const double high_s = fast * fall_s, low_s = slow * fall_s, sign = shift_s < 0 ? -1 : 1;
+    double       left_s = fabs(shift_s), rest_s = fmax(dt_s, 0);
+    if (left_s > high_s) {
+        const double took_s = fmin((left_s - high_s) / fast, rest_s);
+        left_s -= fast * took_s;
+        rest_s -= took_s;
+    }
+    if (left_s > low_s && rest_s > 0) {
+        const double took_s = fmin(fall_s * log(left_s / low_s), rest_s);
+        left_s *= exp(-took_s / fall_s);
+        rest_s -= took_s;
+    }
+    return sign * fmax(left_s - slow * rest_s, 0);
+}
+
 /* Its own time: exercise time less the pauses since its report, still while it is frozen or stopped. */
 static inline double entity_slot_time(const EntitySlot *slot, double t_s)
 {
     if (entity_slot_frozen(slot)) return slot->report_s;
-    return (slot->stopped ? fmin(t_s, slot->stop_s) : t_s) - slot->paused_s;
+    const double own_s = (slot->stopped ? fmin(t_s, slot->stop_s) : t_s) - slot->paused_s;
+    return slot->shift_s == 0 ? own_s : own_s + entity_shift_left(slot->shift_s, t_s - slot->shift_from_s);
 }
 
 /* How far to extrapolate the report for t_s. */

@@ -29,6 +29,7 @@ typedef struct BenchSuite {
     const char *options;           /* in addition to those of every bench, for the usage text: "size=WxH,model=FILE";
                                     * NULL */
     Status    (*run)(Bench *bench);/* logs the reason of a failure */
+    Status    (*check)(const Bench *bench); /* of the options' values, before anything is set up; logged. NULL: none */
     const char *reads; /* how to read its table, one sentence for a report; NULL: as the others of this name */
 } BenchSuite;
 

@@ -6,6 +6,7 @@
  * rows changed alike the cause is the machine: the median of all ratios is reported. An error is the same on the
  * same inputs: a tenth is a change. */
 #include "sensor/bench/bench_private.h"
+#include "sensor/settings/next_option.h"
 
 #include <stdlib.h>
 
@@ -361,11 +362,6 @@ static void show_drift(FILE *page, const Run *a, const Run *b)
     free(ratio);
 }
 
-static void usage(FILE *to)
-{
-    fputs("usage: pitviper bench compare A.csv B.csv [--report FILE] [--slower FACTOR]\n", to);
-}
-
 int bench_compare(int argc, char **argv)
 {
     Run         a = {.count = 0}, b = {.count = 0};
@@ -374,25 +370,27 @@ int bench_compare(int argc, char **argv)
     Tally       tally = {0};
     FILE       *page = NULL;
     char        text[256];
-    int         paths = 0;
-    for (int i = 1; i < argc; i++) {
-        const bool to_report = strcmp(argv[i], "--report") == 0, to_slower = strcmp(argv[i], "--slower") == 0;
-        if (strcmp(argv[i], "--help") == 0) return usage(stdout), 0;
-        if (to_report && i + 1 < argc) {
-            report = argv[++i];
-        } else if (to_slower && i + 1 < argc) {
-            if (!text_to_double(&slower, argv[++i]) || !(slower >= 1)) {
-                log_error("bench: --slower: '%s' is not a factor from 1 up", argv[i]);
-                return 2;
-            }
-        } else if (argv[i][0] != '-' && paths < 2) {
-            path[paths++] = argv[i];
-        } else {
-            log_error("bench: compare: cannot make sense of '%s'", argv[i]);
-            return usage(stderr), 2;
+    enum { REPORT = 256, LIMIT, HELP };
+    static const struct option options[] = {
+        {"report", 1, NULL, REPORT}, {"slower", 1, NULL, LIMIT}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+    static char called[] = "pitviper bench";
+    argv[0] = called; /* of messages */
+    optind  = 0;      /* restart getopt */
+    for (int option; (option = next_option(argc, argv, "", options)) != -1;)
+        switch (option) {
+        case REPORT: report = optarg; break;
+        case LIMIT:
+            if (!text_to_double(&slower, optarg) || !(slower >= 1))
+                return wrong_line("bench", "--slower: '%s' is not a factor from 1 up", optarg);
+            break;
+        case HELP:
+            fputs("usage: pitviper bench compare A.csv B.csv [--report FILE] [--slower FACTOR]\n", stdout);
+            return 0;
+        default: return 2; /* reported by next_option */
         }
-    }
-    if (paths < 2) return usage(stderr), 2;
+    if (argc - optind != 2)
+        return wrong_line("bench", "compare needs two tables: pitviper bench compare A.csv B.csv");
+    for (int k = 0; k < 2; k++) path[k] = argv[optind + k];
     Status status = run_read(&a, path[0]);
     if (status == STATUS_OK) status = run_read(&b, path[1]);
     if (status == STATUS_NO_MEMORY) log_error("bench: out of memory for the tables");

@@ -1,6 +1,7 @@
 /* sensor/bench/run.c: the bench command: the selected suites, the machine, and the results. */
 #include "sensor/bench/bench_private.h"
 #include "pitviper_output.h"
+#include "sensor/settings/next_option.h"
 
 #include <errno.h>
 #include <time.h>
@@ -28,6 +29,28 @@ static bool is_first(const BenchSuite *suite, BenchNext *next)
     return true;
 }
 
+static const char common_options[] =
+    "  --csv FILE       the table for machines, and for compare\n"
+    "  --report FILE    the tables and plots as one HTML page\n"
+    "  --plots DIR      each approximation's settings as NAME.svg: run time against error\n"
+    "  --quick          few rounds and small scenes: seconds\n"
+    "  --threads N      default: one for each processor\n";
+
+static void usage_parts(FILE *to, const char *name, BenchNext *next)
+{
+    size_t state[2] = {0};
+    fprintf(to, "\n  %s\n", name);
+    for (const BenchSuite *part; (part = next(state));)
+        if (strcmp(part->name, name) == 0) usage_suite(to, part);
+}
+
+/* Of one bench. */
+static void usage_of(FILE *to, const char *name, BenchNext *next)
+{
+    fprintf(to, "usage: pitviper bench %s [options]\n\n%s", name, common_options);
+    usage_parts(to, name, next);
+}
+
 static void usage(FILE *to, BenchNext *next)
 {
     size_t state[2] = {0};
@@ -36,46 +59,17 @@ static void usage(FILE *to, BenchNext *next)
           "       pitviper bench compare A.csv B.csv [--report FILE] [--slower FACTOR]\n\n"
           "Speed of this build on this machine, each figure with its error beside it. Ratios are of runs in turn.\n"
           "compare says what two runs' tables have in common and what became faster, slower or worse; it ends with 1\n"
-          "when an error went beyond its limit, or a row is slower than by this factor.\n\n"
-          "  --csv FILE       the table for machines, and for compare\n"
-          "  --report FILE    the tables and plots as one HTML page\n"
-          "  --plots DIR      each approximation's settings as NAME.svg: run time against error\n"
-          "  --quick          few rounds and small scenes: seconds\n"
-          "  --threads N      default: one for each processor\n", to);
-    for (const BenchSuite *suite; (suite = next(state));) {
-        if (!is_first(suite, next)) continue;
-        fprintf(to, "\n  %s\n", suite->name);
-        size_t part_state[2] = {0};
-        for (const BenchSuite *part; (part = next(part_state));)
-            if (strcmp(part->name, suite->name) == 0) usage_suite(to, part);
-    }
-}
-
-static bool suite_has_option(const BenchSuite *suite, const char *name)
-{
-    const size_t length = strlen(name);
-    for (const char *at = suite->options; at && *at;) {
-        if (strncmp(at, name, length) == 0 && at[length] == '=') return true;
-        at += strcspn(at, ",");
-        at += *at == ',';
-    }
-    return false;
-}
-
-/* Of any selected suite. */
-static bool has_option(const Bench *bench, const char *name, BenchNext *next)
-{
-    size_t state[2] = {0};
+          "when an error went beyond its limit, or a row is slower than by this factor.\n\n", to);
+    fputs(common_options, to);
     for (const BenchSuite *suite; (suite = next(state));)
-        if ((bench->all || strcmp(suite->name, bench->suite) == 0) && suite_has_option(suite, name)) return true;
-    return false;
+        if (is_first(suite, next)) usage_parts(to, suite->name, next);
 }
 
 static bool parse_threads(int *out, const char *value)
 {
     long long number;
     if (!text_to_long(&number, value) || number < 1 || number > 256) {
-        log_error("bench: --threads: '%s' is not a whole number in 1 .. 256", value);
+        wrong_line("bench", "--threads: '%s' is not a whole number in 1 .. 256", value);
         return false;
     }
     *out = (int)number;
@@ -86,39 +80,75 @@ typedef struct Outputs {
     const char *csv, *report;
 } Outputs;
 
-/* False when the line is not an option of this bench; logs why. */
-static bool parse(Bench *bench, Outputs *out, int argc, char **argv, BenchNext *next)
+enum { CSV = 256, REPORT, PLOTS, QUICK, THREADS, HELP, OF_SUITE, list_most = bench_options_max + 8 };
+
+/* The options of every bench, then those of the suites that are to run; their names go into bench->option. */
+static void list_options(struct option list[list_most], Bench *bench, BenchNext *next)
 {
-    for (int i = 1; i < argc; i++) {
-        const char *name = strncmp(argv[i], "--", 2) == 0 ? argv[i] + 2 : "";
-        const char *value = i + 1 < argc ? argv[i + 1] : NULL;
-        const char **to = strcmp(name, "csv") == 0 ? &out->csv : strcmp(name, "report") == 0 ? &out->report
-                        : strcmp(name, "plots") == 0 ? &bench->plots : NULL;
-        const bool threads = strcmp(name, "threads") == 0;
-        if (strcmp(name, "quick") == 0) {
-            bench->quick = true;
-            continue;
+    static const struct option common[] = {{"csv", 1, NULL, CSV},     {"report", 1, NULL, REPORT},
+                                           {"plots", 1, NULL, PLOTS}, {"quick", 0, NULL, QUICK},
+                                           {"threads", 1, NULL, THREADS}, {"help", 0, NULL, HELP}};
+    enum { count = sizeof common / sizeof *common };
+    size_t state[2] = {0};
+    memcpy(list, common, sizeof common);
+    for (const BenchSuite *suite; (suite = next(state));)
+        for (const char *at = bench->all || strcmp(suite->name, bench->suite) == 0 ? suite->options : NULL; at && *at;) {
+            BenchOption *option = &bench->option[bench->options];
+            if (bench->options == bench_options_max) break;
+            snprintf(option->name, sizeof option->name, "%.*s", (int)strcspn(at, "="), at);
+            list[count + bench->options] = (struct option){option->name, 1, NULL, OF_SUITE + bench->options};
+            bench->options++;
+            at += strcspn(at, ",");
+            at += *at == ',';
         }
-        if ((!to && !threads && !has_option(bench, name, next)) || strlen(name) >= sizeof bench->option->name) {
-            log_error("bench: %s has no option %s; `pitviper bench --help` lists them", bench->suite, argv[i]);
-            return false;
+    list[count + bench->options] = (struct option){NULL, 0, NULL, 0};
+}
+
+/* 0: go on; else exit with this code - 1. */
+static int parse(Bench *bench, Outputs *out, int argc, char **argv, BenchNext *next)
+{
+    static char   called[] = "pitviper bench";
+    struct option list[list_most];
+    list_options(list, bench, next);
+    argv[0] = called; /* of messages */
+    optind  = 0;      /* restart getopt */
+    for (int option; (option = next_option(argc, argv, "", list)) != -1;)
+        switch (option) {
+        case CSV: out->csv = optarg; break;
+        case REPORT: out->report = optarg; break;
+        case PLOTS: bench->plots = optarg; break;
+        case QUICK: bench->quick = true; break;
+        case THREADS:
+            if (!parse_threads(&bench->threads, optarg)) return 1 + 2;
+            break;
+        case HELP:
+            if (bench->all) usage(stdout, next);
+            else usage_of(stdout, bench->suite, next);
+            return 1 + 0;
+        case '?': return 1 + 2; /* reported by next_option */
+        default: bench->option[option - OF_SUITE].value = optarg;
         }
-        if (!value || bench->options == bench_options_max) {
-            log_error("bench: --%s needs a value", name);
-            return false;
-        }
-        i++;
-        if (to) {
-            *to = value;
-        } else if (threads) {
-            if (!parse_threads(&bench->threads, value)) return false;
-        } else {
-            BenchOption *option = &bench->option[bench->options++];
-            strcpy(option->name, name);
-            option->value = value;
-        }
+    if (optind < argc) return 1 + wrong_line("bench", "%s takes no '%s'", bench->suite, argv[optind]);
+    return 0;
+}
+
+/* What would be refused only after minutes: values of options, files that cannot be written. 0: good; else the exit
+ * code. */
+static int check(const Bench *bench, const Outputs *out, BenchNext *next)
+{
+    size_t state[2] = {0};
+    for (const BenchSuite *suite; (suite = next(state));)
+        if ((bench->all || strcmp(suite->name, bench->suite) == 0) && suite->check && suite->check(bench) != STATUS_OK)
+            return 2;
+    if (out->report && output_check(out->report, OUTPUT_STREAM) != 0) {
+        log_error("bench: --report: cannot write %s: %s; choose another place", out->report, output_reason(errno));
+        return 1;
     }
-    return true;
+    if (bench->plots && output_folder(bench->plots) != 0) {
+        log_error("bench: --plots: cannot make the folder %s: %s; choose another place", bench->plots, output_reason(errno));
+        return 1;
+    }
+    return 0;
 }
 
 /* ---- a run ------------------------------------------------------------------------------------ */
@@ -175,11 +205,15 @@ static void run_all(Bench *bench, const char *only, BenchNext *next)
     log_status(NULL);
 }
 
-static bool known_suite(const char *name, BenchNext *next)
+static bool known_suite(WordMeant *meant, const char *name, BenchNext *next)
 {
     size_t state[2] = {0};
-    for (const BenchSuite *suite; (suite = next(state));)
+    *meant = word_meant(name);
+    word_consider_list(meant, "all|compare", '|');
+    for (const BenchSuite *suite; (suite = next(state));) {
         if (strcmp(suite->name, name) == 0) return true;
+        word_consider(meant, suite->name);
+    }
     return false;
 }
 
@@ -209,21 +243,25 @@ int bench_command(int argc, char **argv, BenchNext *next)
     Outputs      out = {NULL, NULL};
     char         line[512];
     const double begun_s = wall_clock_s();
-    if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
-        usage(argc < 2 ? stderr : stdout, next);
-        return argc < 2 ? 2 : 0;
+    if (argc < 2) return wrong_line("bench", "no bench is named: usage: pitviper bench WHAT [options]");
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+        usage(stdout, next);
+        return 0;
     }
     if (strcmp(argv[1], "compare") == 0) return bench_compare(argc - 1, argv + 1);
     bench.suite = argv[1];
     bench.part  = part;
     bench.all   = strcmp(argv[1], "all") == 0;
-    if (!bench.all && !known_suite(argv[1], next)) {
-        text_print(stderr, "pitviper bench: no such bench: %s; `pitviper bench --help` lists them\n", bench.suite);
-        return 2;
-    }
-    if (!parse(&bench, &out, argc - 1, argv + 1, next)) return 2;
+    WordMeant meant;
+    if (!bench.all && !known_suite(&meant, argv[1], next))
+        return wrong_line("bench", "no such bench: %s%s", argv[1], word_hint(&meant));
+    const char *only = argv[1];
+    const int   stop = parse(&bench, &out, argc - 1, argv + 1, next);
+    if (stop) return stop - 1;
+    const int wrong = check(&bench, &out, next);
+    if (wrong) return wrong;
     if (out.csv && !(bench.csv = output_file(out.csv, OUTPUT_STREAM))) {
-        log_error("bench: cannot write %s: %s; choose another place with --csv", out.csv, output_reason(errno));
+        log_error("bench: --csv: cannot write %s: %s; choose another place", out.csv, output_reason(errno));
         return 1;
     }
     thread_flush_denormals();
@@ -231,7 +269,7 @@ int bench_command(int argc, char **argv, BenchNext *next)
     bench_machine_line(line, &machine);
     puts(line);
     if (bench.csv) csv_head(&bench, &machine, line);
-    run_all(&bench, argv[1], next);
+    run_all(&bench, only, next);
     const double took_s = wall_clock_s() - begun_s;
     const bool   spoilt = bench.csv && ferror(bench.csv);
     if (bench.csv && (fclose(bench.csv) != 0 || spoilt)) {

@@ -256,10 +256,15 @@ static bool check_file(const char *path)
     Config    *config = &run.options.config;
     run  = (Run){0};
     *config = config_default();
-    if (config_read(config, path) != STATUS_OK) return false;
+    const Status read = config_read_checked(config, path);
+    if (read != STATUS_OK && read != STATUS_BAD_VALUE) return false;
     const Config given = *config; /* a preset changes keys that were not given */
     Check        c = {.path = path, .config = config};
-    if (config_check(config) != STATUS_OK || run_prepare(&run) != STATUS_OK || !tables_are_valid(&c)) {
+    /* all of it, so that one run reports everything */
+    bool good = read == STATUS_OK;
+    good &= run_prepare(&run) == STATUS_OK;
+    good &= tables_are_valid(&c);
+    if (!good) {
         log_error("check: %s: not valid", path);
         return false;
     }
@@ -279,16 +284,12 @@ int check_command(int argc, char **argv)
             fputs(help, stdout);
             return 0;
         }
-        if (option == '?') {
-            fputs("see `pitviper check --help`\n", stderr);
-            return 2;
-        }
+        if (option == '?') return 2; /* reported by next_option */
         defaults = true;
     }
-    if (defaults ? optind != argc : optind == argc) {
-        fputs("usage: pitviper check FILE ... | --default; see `pitviper check --help`\n", stderr);
-        return 2;
-    }
+    if (defaults && optind != argc) return wrong_line("check", "--default takes no file, not '%s'", argv[optind]);
+    if (!defaults && optind == argc)
+        return wrong_line("check", "no FILE is named: usage: pitviper check FILE ... | --default");
     if (defaults) {
         const Config config = config_default();
         config_write(stdout, &config);

@@ -10,6 +10,7 @@
 #include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <netdb.h>
 #include <stdio.h>
@@ -156,7 +157,7 @@ static int parse(Options *o, int argc, char **argv)
         case INTERFACE:
             ok = optarg[0] && strlen(optarg) < sizeof o->udp.interface;
             if (ok) strcpy(o->udp.interface, optarg);
-            else log_error("exercise: --interface: '%s' is no name of an interface; `ip link` lists them", optarg);
+            else log_error("exercise: --interface: '%s' is not the name of an interface; `ip link` lists them", optarg);
             break;
         case TTL: ok = whole(&o->udp.ttl, "ttl", optarg, 0, 255); break;
         case SPEED: ok = parse_speed(&o->speed, optarg); break;
@@ -164,15 +165,12 @@ static int parse(Options *o, int argc, char **argv)
         case HELP: fputs(help, stdout); return 1;
         default: ok = false; break; /* reported by next_option */
         }
-        if (!ok) {
-            fputs("see `pitviper exercise --help`\n", stderr);
-            return 1 + 2;
-        }
+        if (!ok) return 1 + 2;
     }
-    if (optind + 1 != argc || !(o->out || o->send || o->datagrams)) {
-        fputs("usage: pitviper exercise SCENARIO (-o LOG | --send ADDRESS); see `pitviper exercise --help`\n", stderr);
-        return 1 + 2;
-    }
+    if (optind + 1 < argc) return 1 + wrong_line("exercise", "one SCENARIO at a time, not also '%s'", argv[optind + 1]);
+    if (optind == argc || !(o->out || o->send || o->datagrams))
+        return 1 + wrong_line("exercise", "%s: usage: pitviper exercise SCENARIO (-o LOG | --send ADDRESS)",
+                              optind == argc ? "no SCENARIO is named" : "neither -o LOG nor --send ADDRESS is given");
     if (of_sending && !o->send) {
         log_error("exercise: --%s is of datagrams that are sent: give --send ADDRESS too, or leave it out", of_sending);
         return 1 + 2;
@@ -201,6 +199,24 @@ static bool is_file(const char *path)
     return stat(path, &about) == 0 && !S_ISDIR(about.st_mode);
 }
 
+/* Of the scenarios that come with the program. */
+static WordMeant scenario_meant(const char *name)
+{
+    WordMeant meant = word_meant(name);
+    char      folder[path_size];
+    DIR      *there = etc_path(folder, sizeof folder, "scenarios") ? opendir(folder) : NULL;
+    for (struct dirent *entry; there && (entry = readdir(there));) {
+        char  known[256];
+        char *dot;
+        snprintf(known, sizeof known, "%s", entry->d_name);
+        if (!(dot = strrchr(known, '.')) || strcmp(dot, ".yaml") != 0) continue;
+        *dot = 0;
+        word_consider(&meant, known);
+    }
+    if (there) closedir(there);
+    return meant;
+}
+
 /* A file, or the name of a scenario that comes with the program; a folder of that name is neither. */
 static Status read_scenario(Scenario *scenario, const Options *o)
 {
@@ -210,8 +226,9 @@ static Status read_scenario(Scenario *scenario, const Options *o)
         snprintf(name, sizeof name, "scenarios/%s.yaml", o->scenario);
         char bundled[path_size];
         if (!etc_path(bundled, sizeof bundled, name) || !is_file(bundled)) {
-            log_error("exercise: there is no file '%s' and no scenario of that name; `pitviper exercise --help` lists "
-                      "them", o->scenario);
+            WordMeant meant = scenario_meant(o->scenario);
+            log_error("exercise: there is no file '%s' and no scenario of that name%s `pitviper exercise --help` lists "
+                      "them", o->scenario, *word_hint(&meant) ? meant.hint : ";");
             return STATUS_BAD_VALUE;
         }
         memcpy(path, bundled, sizeof path);

@@ -61,21 +61,17 @@ static int parse(FrameOptions *o, int argc, char **argv)
         case FORCE: o->forced = true; break;
         case THREADS:
             if (!text_to_long(&number, optarg) || number < 1 || number > 256) {
-                log_error("frame: --threads: '%s' is not a whole number in 1 .. 256", optarg);
-                return 3;
+                return 1 + wrong_line("frame", "--threads: '%s' is not a whole number in 1 .. 256", optarg);
             }
             o->threads = (int)number;
             break;
         case HELP:
         case 'h': fputs(help, stdout); return 1;
-        default: return 3;
+        default: return 1 + 2; /* reported by next_option */
         }
     }
-    if (argc - optind != 1) {
-        log_error("frame: %s; `pitviper frame --help` says more",
-                  argc == optind ? "no FILE is named" : "one FILE at a time");
-        return 3;
-    }
+    if (argc == optind) return 1 + wrong_line("frame", "no FILE is named");
+    if (argc - optind > 1) return 1 + wrong_line("frame", "one FILE at a time, not also '%s'", argv[optind + 1]);
     o->path = argv[optind];
     return 0;
 }

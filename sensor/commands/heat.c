@@ -3,6 +3,7 @@
 
 #include "sensor/commands/heat_day.h"
 #include "sensor/commands/output_files.h"
+#include "sensor/settings/next_option.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -38,8 +39,7 @@ typedef struct HeatOptions {
 
 static int refuse(const char *option, const char *what)
 {
-    text_print(stderr, "pitviper heat: %s: %s; see `pitviper heat --help`\n", option, what);
-    return 2;
+    return 1 + wrong_line("heat", "%s: %s", option, what);
 }
 
 static bool in_range(double *out, const char *text, double low, double high)
@@ -70,48 +70,54 @@ static bool read_drive(HeatOptions *o, const char *text)
     return o->course.drive_from_s < o->course.drive_to_s && o->course.drive_to_s <= 86400;
 }
 
-/* 0: valid; else the exit code. */
+/* 0: valid; else exit with this code - 1. */
 static int parse(HeatOptions *o, int argc, char **argv)
 {
+    enum { OUT = 'o', AT = 256, DAY, DRIVE, HEADING, STEP, OVERWRITE, HELP };
+    static const struct option options[] = {
+        {"out", 1, NULL, OUT},         {"at", 1, NULL, AT},     {"day", 1, NULL, DAY},
+        {"drive", 1, NULL, DRIVE},     {"heading", 1, NULL, HEADING}, {"step", 1, NULL, STEP},
+        {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     double heading_deg = 270;
     *o = (HeatOptions){.day = "2026-06-21", .lat_deg = 48, .lon_deg = 11, .course = {.step_s = 60}};
-    for (int i = 1; i < argc; i++) {
-        const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
-        if (strcmp(option, "--overwrite") == 0) {
-            o->overwrite = true;
-            continue;
+    optind = 0; /* restart getopt */
+    for (int option; (option = next_option(argc, argv, "o:", options)) != -1;) {
+        const char *second = NULL;
+        switch (option) {
+        case OUT:
+            if (!*optarg) return refuse("--out", "needs a folder");
+            o->out = optarg;
+            break;
+        case AT: /* takes two words */
+            second = optind < argc ? argv[optind++] : NULL;
+            if (!in_range(&o->lat_deg, optarg, -90, 90) || !in_range(&o->lon_deg, second, -180, 180))
+                return refuse("--at", "needs a latitude in -90 .. 90 and a longitude in -180 .. 180 deg");
+            break;
+        case DAY:
+            if (!read_day(&o->begin_s, optarg, 0)) return refuse("--day", "needs a day in 1900 .. 2100, as 2026-06-21");
+            o->day = optarg;
+            break;
+        case DRIVE:
+            if (!read_drive(o, optarg))
+                return refuse("--drive", "needs hours of the day, the earlier first, as 06:00-07:30");
+            break;
+        case HEADING:
+            if (!in_range(&heading_deg, optarg, -360, 360))
+                return refuse("--heading", "needs an angle in -360 .. 360 deg");
+            break;
+        case STEP:
+            if (!in_range(&o->course.step_s, optarg, 1, heat_day_row_s) || fmod(heat_day_row_s, o->course.step_s) != 0)
+                return refuse("--step", "needs a divisor of 600 s, from 1 s");
+            break;
+        case OVERWRITE: o->overwrite = true; break;
+        case HELP: fputs(help, stdout); return 1 + 0;
+        default: return 1 + 2; /* reported by next_option */
         }
-        if (option[0] != '-') {
-            if (o->name) return refuse(option, "one model at a time");
-            o->name = option;
-            continue;
-        }
-        if (strcmp(option, "--out") == 0 || strcmp(option, "-o") == 0) {
-            if (!value || !*value) return refuse(option, "needs a folder");
-            o->out = value;
-        } else if (strcmp(option, "--at") == 0) {
-            const char *second = i + 2 < argc ? argv[i + 2] : NULL;
-            if (!in_range(&o->lat_deg, value, -90, 90) || !in_range(&o->lon_deg, second, -180, 180))
-                return refuse(option, "needs a latitude in -90 .. 90 and a longitude in -180 .. 180 deg");
-            i++;
-        } else if (strcmp(option, "--day") == 0) {
-            if (!read_day(&o->begin_s, value, 0)) return refuse(option, "needs a day in 1900 .. 2100, as 2026-06-21");
-            o->day = value;
-        } else if (strcmp(option, "--drive") == 0) {
-            if (!read_drive(o, value))
-                return refuse(option, "needs hours of the day, the earlier first, as 06:00-07:30");
-        } else if (strcmp(option, "--heading") == 0) {
-            if (!in_range(&heading_deg, value, -360, 360)) return refuse(option, "needs an angle in -360 .. 360 deg");
-        } else if (strcmp(option, "--step") == 0) {
-            if (!in_range(&o->course.step_s, value, 1, heat_day_row_s) || fmod(heat_day_row_s, o->course.step_s) != 0)
-                return refuse(option, "needs a divisor of 600 s, from 1 s");
-        } else {
-            return refuse(option, "no such option");
-        }
-        i++;
     }
-    if (!o->name) return refuse("heat", "needs a model: a built-in name, or a file");
-    if (!read_day(&o->begin_s, o->day, o->lon_deg)) 
+    if (optind == argc) return refuse("no model is named", "a built-in name, or a file");
+    o->name = argv[optind];
+    if (optind + 1 < argc) return refuse(argv[optind + 1], "one model at a time");
+    if (!read_day(&o->begin_s, o->day, o->lon_deg))
         return refuse("--day", "needs a day in 1900 .. 2100, as 2026-06-21");
     o->course.heading_rad = heading_deg * rad_per_deg;
     return 0;
@@ -194,17 +200,8 @@ int heat_command(int argc, char **argv)
     static OutputPath path[file_count];
     HeatOptions o;
     thread_flush_denormals();
-    for (int i = 1; i < argc; i++)
-        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
-            fputs(help, stdout);
-            return 0;
-        }
-    if (argc < 2) {
-        fputs(help, stderr);
-        return 2;
-    }
-    const int wrong = parse(&o, argc, argv);
-    if (wrong) return wrong;
+    const int stop = parse(&o, argc, argv);
+    if (stop) return stop - 1;
     ModelStage             stage = {0};
     HeatDay                day = {0};
     HeatImages             images = {0};

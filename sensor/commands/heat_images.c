@@ -79,7 +79,7 @@ static void write_labels(uint8_t *rgb, const char *band, DetectorLevel level)
         snprintf(text, sizeof text, "%02d h", i * heat_day_image_s / 3600);
         letters_write(rgb, width, height, i % columns * tile_width + 10, i / columns * tile_height + 8, text);
     }
-    snprintf(text, sizeof text, "%s apparent temperature  black %.0f k  white %.0f k", band, level.low, level.high);
+    snprintf(text, sizeof text, "%s apparent temperature  black %.0f K  white %.0f K", band, level.low, level.high);
     letters_write(rgb, width, height, 10, rows * tile_height + 7, text);
 }
 

@@ -1,13 +1,14 @@
 /* sensor/commands/inspect.c: `pitviper inspect`: its options, the log, and which of the two formats is printed. */
 #include "sensor/commands/inspect.h"
 #include "sensor/commands/inspect_private.h"
+#include "sensor/settings/next_option.h"
 
 #include <stdio.h>
 
 static const char usage_text[] =
     "usage: pitviper inspect LOG [--pdus tsv [--full]] [--port N] [--exercise N]\n"
     "\n"
-    "LOG is a pcap or pcapng capture, also compressed (gzip, zstd, bzip2, xz). Without --pdus: a summary of\n"
+    "LOG is a pcap or pcapng capture, also compressed (gzip, zstd, bzip2, xz) or a pipe. Without --pdus: a summary of\n"
     "the exercise.\n"
     "\n"
     "  --pdus tsv    one line per Entity State PDU, with the columns and formats of\n"
@@ -23,65 +24,37 @@ typedef struct Options {
     long long   port, exercise; /* exercise -1: all */
 } Options;
 
-static bool read_number(long long *out, const char *name, const char *text, long long low, long long high)
+/* 0: go on; else exit with this code - 1. */
+static int read_options(Options *o, int argc, char **argv)
 {
-    long long value;
-    if (!text || !text_to_long(&value, text) || value < low || value > high) {
-        text_print(stderr, "pitviper inspect: %s wants a number %lld .. %lld, not `%s`\n", name, low, high,
-                text ? text : "");
-        return false;
-    }
-    *out = value;
-    return true;
-}
-
-/* 0: go on; else the exit code + 1. */
-static int read_options(Options *out, int argc, char **argv)
-{
-    Options o = {.port = dis_port_default, .exercise = -1};
-    bool    only_paths = false;
-    for (int i = 1; i < argc; i++) {
-        const char *arg = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
-        if (only_paths || arg[0] != '-' || !arg[1]) {
-            if (o.path) {
-                text_print(stderr, "pitviper inspect: one log at a time: `%s` and `%s`\n", o.path, arg);
-                return 3;
-            }
-            o.path = arg;
-        } else if (strcmp(arg, "--") == 0) {
-            only_paths = true;
-        } else if (strcmp(arg, "--help") == 0 || strcmp(arg, "-h") == 0) {
-            fputs(usage_text, stdout);
-            return 1;
-        } else if (strcmp(arg, "--full") == 0) {
-            o.full = true;
-        } else if (strcmp(arg, "--pdus") == 0) {
-            if (!value || strcmp(value, "tsv") != 0) {
-                text_print(stderr, "pitviper inspect: --pdus knows `tsv`, not `%s`\n", value ? value : "");
-                return 3;
-            }
-            o.tsv = true;
-            i++;
-        } else if (strcmp(arg, "--port") == 0) {
-            if (!read_number(&o.port, arg, value, 0, 65535)) return 3;
-            i++;
-        } else if (strcmp(arg, "--exercise") == 0) {
-            if (!read_number(&o.exercise, arg, value, 0, 255)) return 3;
-            i++;
-        } else {
-            text_print(stderr, "pitviper inspect: unknown option `%s`; see pitviper inspect --help\n", arg);
-            return 3;
+    enum { PDUS = 256, FULL, PORT, EXERCISE, HELP };
+    static const struct option options[] = {
+        {"pdus", 1, NULL, PDUS}, {"full", 0, NULL, FULL}, {"port", 1, NULL, PORT}, {"exercise", 1, NULL, EXERCISE},
+        {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+    *o = (Options){.port = dis_port_default, .exercise = -1};
+    optind = 0; /* restart getopt */
+    for (int option; (option = next_option(argc, argv, "", options)) != -1;)
+        switch (option) {
+        case PDUS:
+            if (strcmp(optarg, "tsv") != 0) return 1 + wrong_line("inspect", "--pdus: '%s' is not tsv", optarg);
+            o->tsv = true;
+            break;
+        case FULL: o->full = true; break;
+        case PORT:
+            if (!text_to_long(&o->port, optarg) || o->port < 0 || o->port > 65535)
+                return 1 + wrong_line("inspect", "--port: '%s' is not a whole number in 0 .. 65535", optarg);
+            break;
+        case EXERCISE:
+            if (!text_to_long(&o->exercise, optarg) || o->exercise < 0 || o->exercise > 255)
+                return 1 + wrong_line("inspect", "--exercise: '%s' is not a whole number in 0 .. 255", optarg);
+            break;
+        case HELP: fputs(usage_text, stdout); return 1 + 0;
+        default: return 1 + 2; /* reported by next_option */
         }
-    }
-    if (!o.path) {
-        fputs(usage_text, stderr);
-        return 3;
-    }
-    if (o.full && !o.tsv) {
-        text_print(stderr, "pitviper inspect: --full goes with --pdus tsv\n");
-        return 3;
-    }
-    *out = o;
+    if (optind == argc) return 1 + wrong_line("inspect", "no LOG is named: usage: pitviper inspect LOG [options]");
+    o->path = argv[optind];
+    if (optind + 1 < argc) return 1 + wrong_line("inspect", "one LOG at a time, not also '%s'", argv[optind + 1]);
+    if (o->full && !o->tsv) return 1 + wrong_line("inspect", "--full applies to --pdus tsv only");
     return 0;
 }
 
@@ -113,7 +86,7 @@ int inspect_command(int argc, char **argv)
         return 1;
     }
     if (fflush(stdout) != 0 || ferror(stdout)) {
-        text_print(stderr, "pitviper inspect: cannot write the output; is the disk full or the pipe closed?\n");
+        log_error("inspect: cannot write the output; is the disk full or the pipe closed?");
         return 1;
     }
     return 0;

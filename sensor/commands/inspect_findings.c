@@ -1,6 +1,7 @@
 /* sensor/commands/inspect_findings.c: one pass over a log: every PDU decoded once, rows by id. */
 #include "sensor/commands/inspect_findings.h"
 
+#include "dis/log_clock.h"
 #include "dis/datagram.h"
 
 #include <math.h>
@@ -147,8 +148,9 @@ static Status note_pdu(Findings *f, const DisPdu *pdu, double t_s)
 Status findings_gather(Findings *f, const DisLog *log, int exercise)
 {
     static DisPdu  decoded; /* 11 KiB, and the command has one thread */
-    ExerciseClock *clock = NULL;
-    Status         status = exercise_clock_create(&clock);
+    DisLogTimes    times = {0};
+    size_t         next = 0;
+    Status         status = dis_log_times(&times, log, exercise);
     *f = (Findings){
         .entities.size = sizeof(EntityRow), .senders.size = sizeof(SenderRow), .events.size = sizeof(EventRow)};
     f->first_s = INFINITY;
@@ -165,7 +167,8 @@ Status findings_gather(Findings *f, const DisLog *log, int exercise)
                 continue;
             }
             f->version[header.version]++;
-            uint16_t sender[2];
+            const double t_s = times.pdu[next++].t_s;
+            uint16_t     sender[2];
             if (!dis_pdu_sender(sender, &header, pdu)) continue;
             SenderRow *row = row_of(&f->senders, (DisEntityId){sender[0], sender[1], 0});
             if (!row) {
@@ -176,7 +179,6 @@ Status findings_gather(Findings *f, const DisLog *log, int exercise)
             row->absolute += dis_timestamp_is_absolute(header.timestamp);
             row->unstamped += header.timestamp == 0;
             row->version[header.version] = true;
-            const double t_s = exercise_clock_pdu_time(clock, &header, pdu, d.capture_s);
             f->first_s = fmin(f->first_s, t_s);
             f->last_s = fmax(f->last_s, t_s);
             const Status refused = dis_decode(&decoded, pdu, header.length);
@@ -184,8 +186,8 @@ Status findings_gather(Findings *f, const DisLog *log, int exercise)
             else status = note_pdu(f, &decoded, t_s);
         }
     }
-    if (clock) f->doubts = *exercise_clock_anomalies(clock);
-    exercise_clock_destroy(clock);
+    f->doubts = times.doubts;
+    dis_log_times_release(&times);
     if (f->entities.count) qsort(f->entities.row, (size_t)f->entities.count, f->entities.size, compare_rows);
     if (f->senders.count) qsort(f->senders.row, (size_t)f->senders.count, f->senders.size, compare_rows);
     return status;

@@ -1,4 +1,4 @@
-/* sensor/commands/letters.h: words in pictures: digits, small letters and a few signs of five by seven dots. */
+/* sensor/commands/letters.h: words in pictures: digits, small letters, the capitals of units and a few signs of five by seven dots. */
 #ifndef SENSOR_COMMANDS_LETTERS_H
 #define SENSOR_COMMANDS_LETTERS_H
 

@@ -5,6 +5,7 @@
 #include "entities/catalog/model_info.h"
 #include "entities/import/sidecar.h"
 #include "sensor/settings/config.h"
+#include "sensor/settings/next_option.h"
 
 #include <strings.h>
 
@@ -32,40 +33,50 @@ static const char help[] =
     "  --config FILE      or -c: settings, whose models.catalog and models.materials are read\n"
     "  --keys             every key of a sidecar: type, unit, range, meaning\n";
 
-static int refuse(const char *option, const char *what)
-{
-    text_print(stderr, "pitviper model: %s: %s; see `pitviper model --help`\n", option, what);
-    return 2;
-}
-
 typedef struct ModelOptions {
     const char *name, *out, *config;
     double      sag_m;
+    ModelSize   size;
 } ModelOptions;
 
-/* Options of list and show. 0: valid; else the exit code. */
-static int parse(ModelOptions *o, int argc, char **argv)
+typedef enum Option { OUT = 256, CONFIG, SAG, LENGTH, WIDTH, HEIGHT, KEYS, HELP } Option;
+
+/* allowed: bits of the options that apply to the action. 0: valid; else exit with this code - 1. argv[0] is the
+ * action. */
+static int parse(ModelOptions *o, unsigned allowed, int argc, char **argv)
 {
-    *o = (ModelOptions){.sag_m = 0.005};
-    for (int i = 2; i < argc; i++) {
-        const char  *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
-        const char **text = strcmp(option, "--out") == 0                                          ? &o->out
-                            : strcmp(option, "--config") == 0 || strcmp(option, "-c") == 0 ? &o->config
-                                                                                           : NULL;
-        if (text) {
-            if (!value) return refuse(option, "needs an argument");
-            *text = value;
-            i++;
-        } else if (strcmp(option, "--sag") == 0) {
-            if (!value || !text_to_double(&o->sag_m, value) || o->sag_m < 1e-5 || o->sag_m > 0.1)
-                return refuse(option, "needs a number in 1e-05 .. 0.1 m");
-            i++;
-        } else if (option[0] == '-' || o->name) {
-            return refuse(option, option[0] == '-' ? "no such option" : "one model at a time");
-        } else {
-            o->name = option;
+    static const struct option options[] = {
+        {"out", 1, NULL, OUT},       {"config", 1, NULL, CONFIG}, {"sag", 1, NULL, SAG}, {"length", 1, NULL, LENGTH},
+        {"width", 1, NULL, WIDTH},   {"height", 1, NULL, HEIGHT}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+    double *const figure[] = {&o->size.length_m, &o->size.width_m, &o->size.height_m};
+    *o     = (ModelOptions){.sag_m = 0.005};
+    optind = 0; /* restart getopt */
+    for (int option; (option = next_option(argc, argv, "c:o:", options)) != -1;) {
+        if (option == 'c') option = CONFIG;
+        if (option == 'o') option = OUT;
+        if (option >= OUT && option < HELP && !(allowed >> (option - OUT) & 1))
+            return 1 + wrong_line("model", "--%s does not apply to %s", options[option - OUT].name, "this action");
+        switch (option) {
+        case OUT: o->out = optarg; break;
+        case CONFIG: o->config = optarg; break;
+        case SAG:
+            if (!text_to_double(&o->sag_m, optarg) || o->sag_m < 1e-5 || o->sag_m > 0.1)
+                return 1 + wrong_line("model", "--sag: '%s' is not a number in 1e-05 .. 0.1 m", optarg);
+            break;
+        case LENGTH:
+        case WIDTH:
+        case HEIGHT:
+            if (!text_to_double(figure[option - LENGTH], optarg) || *figure[option - LENGTH] < 0.001 ||
+                *figure[option - LENGTH] > 2000)
+                return 1 + wrong_line("model", "--%s: '%s' is not a number in 0.001 .. 2000 m",
+                                      options[option - OUT].name, optarg);
+            break;
+        case HELP: fputs(help, stdout); return 1 + 0;
+        default: return 1 + 2; /* reported by next_option */
         }
     }
+    if (optind < argc) o->name = argv[optind++];
+    if (optind < argc) return 1 + wrong_line("model", "one model at a time, not also '%s'", argv[optind]);
     return 0;
 }
 
@@ -80,9 +91,9 @@ static int list_command(int argc, char **argv)
 {
     ModelOptions o;
     char         catalog[4096];
-    const int    wrong = parse(&o, argc, argv);
-    if (wrong) return wrong;
-    if (o.name || o.out) return refuse(o.name ? o.name : "--out", "does not apply to list");
+    const int    stop = parse(&o, 1u << (CONFIG - OUT), argc, argv);
+    if (stop) return stop - 1;
+    if (o.name) return wrong_line("model", "list takes no model, not '%s'", o.name);
     if (take_config(o.config) != STATUS_OK || !etc_path(catalog, sizeof catalog, "catalog.csv")) return 1;
     return model_list(stdout, catalog) == STATUS_OK ? 0 : 1;
 }
@@ -91,10 +102,11 @@ static int show_command(int argc, char **argv)
 {
     ModelOptions o;
     char         out[256];
-    const int    wrong = parse(&o, argc, argv);
-    if (wrong) return wrong;
-    if (!o.name) return refuse("show", "needs a model: a built-in name, or a file");
-    if (o.out && strcasecmp(output_ending(o.out), ".png") != 0) return refuse(o.out, "the picture's name ends with .png");
+    const int    stop = parse(&o, 1u << (OUT - OUT) | 1u << (CONFIG - OUT) | 1u << (SAG - OUT), argc, argv);
+    if (stop) return stop - 1;
+    if (!o.name) return wrong_line("model", "show needs a model: a built-in name, or a file");
+    if (o.out && strcasecmp(output_ending(o.out), ".png") != 0)
+        return wrong_line("model", "%s: the picture's name ends with .png", o.out);
     if (take_config(o.config) != STATUS_OK) return 1;
     etc_own_set("catalog.csv", NULL); /* the model is shown whatever its entity types */
     const char *slash = strrchr(o.name, '/'), *last = slash ? slash + 1 : o.name;
@@ -102,27 +114,45 @@ static int show_command(int argc, char **argv)
     return model_show(o.name, o.sag_m, o.out ? o.out : out) == STATUS_OK ? 0 : 1;
 }
 
+static int info_command(int argc, char **argv)
+{
+    ModelOptions o;
+    const int    stop = parse(&o, 1u << (SAG - OUT) | 1u << (LENGTH - OUT) | 1u << (WIDTH - OUT) | 1u << (HEIGHT - OUT),
+                              argc, argv);
+    if (stop) return stop - 1;
+    if (!o.name) return wrong_line("model", "info needs a model: a built-in name, or a file");
+    return model_info(o.name, &o.size, o.sag_m);
+}
+
+static int keys_command(int argc, char **argv)
+{
+    if (argc > 1) return wrong_line("model", "--keys takes no '%s'", argv[1]);
+    sidecar_write_keys(stdout);
+    return 0;
+}
+
 int model_command(int argc, char **argv)
 {
+    static const struct {
+        const char *name;
+        int       (*run)(int argc, char **argv);
+    } actions[] = {{"info", info_command}, {"list", list_command}, {"show", show_command}, {"--keys", keys_command}};
     thread_flush_denormals();
-    for (int i = 1; i < argc; i++)
-        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
-            fputs(help, stdout);
-            return 0;
-        }
-    if (argc < 2) {
-        fputs(help, stderr);
-        return 2;
-    }
-    if (strcmp(argv[1], "info") == 0) return model_info_command(argc, argv);
-    if (strcmp(argv[1], "list") == 0) return list_command(argc, argv);
-    if (strcmp(argv[1], "show") == 0) return show_command(argc, argv);
-    if (strcmp(argv[1], "--keys") == 0) {
-        sidecar_write_keys(stdout);
+    if (argc < 2) return wrong_line("model", "no action: list, info NAME|FILE, show NAME|FILE or --keys");
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+        fputs(help, stdout);
         return 0;
     }
-    text_print(stderr, "pitviper model: no such action: %s; there are `model list`, `model info NAME|FILE`, `model "
-                       "show "
-            "NAME|FILE` and `model --keys`\n", argv[1]);
-    return 2;
+    WordMeant meant = word_meant(argv[1]);
+    for (size_t i = 0; i < sizeof actions / sizeof *actions; i++) {
+        if (strcmp(argv[1], actions[i].name) != 0) {
+            word_consider(&meant, actions[i].name);
+            continue;
+        }
+        static char called[] = "pitviper model";
+        argv[1] = called; /* of messages */
+        return actions[i].run(argc - 1, argv + 1);
+    }
+    return wrong_line("model", "no such action: %s%s", argv[1],
+                      *word_hint(&meant) ? meant.hint : "; there are list, info NAME|FILE, show NAME|FILE and --keys");
 }

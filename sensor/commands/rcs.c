@@ -4,6 +4,7 @@
 
 #include "sensor/commands/rcs_library.h"
 #include "sensor/commands/rcs_sweep.h"
+#include "sensor/settings/next_option.h"
 #include "sensor/commands/output_files.h"
 
 #include <errno.h>
@@ -52,8 +53,7 @@ typedef struct RcsOptions {
 
 static int refuse(const char *option, const char *what)
 {
-    text_print(stderr, "pitviper rcs: %s: %s; see `pitviper rcs --help`\n", option, what);
-    return 2;
+    return 1 + wrong_line("rcs", "%s: %s", option, what);
 }
 
 static bool in_range(double *out, const char *text, double low, double high)
@@ -110,69 +110,79 @@ static bool read_joint(RcsConfig *config, const char *text)
     return in_range(&joint->value, equals + 1, -3600, 3600);
 }
 
-/* 0: valid; else the exit code. */
+/* 0: valid; else exit with this code - 1. */
 static int parse(RcsOptions *o, int argc, char **argv)
 {
+    enum { OUT = 'o', FREQUENCY = 256, AZIMUTH, ELEVATION, RANGE, RAYS, SPLITS, WARP, JOINT, CELL, IMAGE, NO_EDGES,
+           NO_POLYGONS, OVERWRITE, LIBRARY, HELP };
+    static const struct option options[] = {
+        {"out", 1, NULL, OUT},       {"frequency", 1, NULL, FREQUENCY}, {"azimuth", 1, NULL, AZIMUTH},
+        {"elevation", 1, NULL, ELEVATION}, {"range", 1, NULL, RANGE},   {"rays", 1, NULL, RAYS},
+        {"splits", 1, NULL, SPLITS}, {"warp", 1, NULL, WARP},           {"joint", 1, NULL, JOINT},
+        {"cell", 1, NULL, CELL},     {"image", 1, NULL, IMAGE},         {"no-edges", 0, NULL, NO_EDGES},
+        {"no-polygons", 0, NULL, NO_POLYGONS}, {"overwrite", 0, NULL, OVERWRITE}, {"library", 1, NULL, LIBRARY},
+        {"help", 0, NULL, HELP},     {NULL, 0, NULL, 0}};
     RcsConfig *c = &o->config;
+    double     number;
     *o = (RcsOptions){.config = {.step_deg = 1, .looks = 361, .elevation_deg = 10, .range_m = INFINITY,
                                  .frequencies = 1, .frequency_hz = {10e9}, .image_deg = 30, .splits = -1}};
-    for (int i = 1; i < argc; i++) {
-        const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
-        if (strcmp(option, "--overwrite") == 0) {
-            o->overwrite = true;
-            continue;
-        }
-        if (strcmp(option, "--no-edges") == 0) {
-            c->no_edges = true;
-            continue;
-        }
-        if (strcmp(option, "--no-polygons") == 0) {
-            c->no_polygons = true;
-            continue;
-        }
-        if (option[0] != '-') {
-            if (c->name) return refuse(option, "one target at a time");
-            c->name = option;
-            continue;
-        }
-        if (strcmp(option, "--out") == 0 || strcmp(option, "-o") == 0) {
-            if (!value || !*value) return refuse(option, "needs a folder");
-            o->out = value;
-        } else if (strcmp(option, "--frequency") == 0) {
-            if (!read_frequencies(c, value))
-                return refuse(option, "needs 1 to 64 numbers in 0.1 .. 300 GHz, separated by commas");
-        } else if (strcmp(option, "--azimuth") == 0) {
-            if (!read_azimuth(c, value))
-                return refuse(option, "needs FROM:TO:STEP in deg, rising, at most 36001 looks, as 0:360:1");
-        } else if (strcmp(option, "--elevation") == 0) {
-            if (!in_range(&c->elevation_deg, value, -90, 90)) return refuse(option, "needs an angle in -90 .. 90 deg");
-        } else if (strcmp(option, "--range") == 0) {
-            if (!in_range(&c->range_m, value, 1e-3, 1e9)) return refuse(option, "needs a distance in 0.001 .. 1e9 m");
-        } else if (strcmp(option, "--rays") == 0) {
-            if (!in_range(&c->rays_per_wavelength, value, 0.25, 16))
-                return refuse(option, "needs a number in 0.25 .. 16");
-        } else if (strcmp(option, "--splits") == 0) {
-            double number;
-            if (!in_range(&number, value, 0, tubes_splits_most) || number != floor(number))
-                return refuse(option, "needs a whole number in 0 .. 5");
+    optind = 0; /* restart getopt */
+    for (int option; (option = next_option(argc, argv, "o:", options)) != -1;)
+        switch (option) {
+        case OUT:
+            if (!*optarg) return refuse("--out", "needs a folder");
+            o->out = optarg;
+            break;
+        case FREQUENCY:
+            if (!read_frequencies(c, optarg))
+                return refuse("--frequency", "needs 1 to 64 numbers in 0.1 .. 300 GHz, separated by commas");
+            break;
+        case AZIMUTH:
+            if (!read_azimuth(c, optarg))
+                return refuse("--azimuth", "needs FROM:TO:STEP in deg, rising, at most 36001 looks, as 0:360:1");
+            break;
+        case ELEVATION:
+            if (!in_range(&c->elevation_deg, optarg, -90, 90))
+                return refuse("--elevation", "needs an angle in -90 .. 90 deg");
+            break;
+        case RANGE:
+            if (!in_range(&c->range_m, optarg, 1e-3, 1e9)) return refuse("--range", "needs a distance in 0.001 .. 1e9 m");
+            break;
+        case RAYS:
+            if (!in_range(&c->rays_per_wavelength, optarg, 0.25, 16)) return refuse("--rays", "needs a number in 0.25 .. 16");
+            break;
+        case SPLITS:
+            if (!in_range(&number, optarg, 0, tubes_splits_most) || number != floor(number))
+                return refuse("--splits", "needs a whole number in 0 .. 5");
             c->splits = (int)number;
-        } else if (strcmp(option, "--warp") == 0) {
-            if (!in_range(&c->warp_mm, value, 0, 20)) return refuse(option, "needs a height in 0 .. 20 mm");
-        } else if (strcmp(option, "--joint") == 0) {
-            if (!read_joint(c, value))
-                return refuse(option, "needs NAME=VALUE, in -3600 .. 3600 deg or m, at most 32 times");
-        } else if (strcmp(option, "--cell") == 0) {
-            if (!in_range(&c->resolution_m, value, 0.01, 10)) return refuse(option, "needs a length in 0.01 .. 10 m");
-        } else if (strcmp(option, "--image") == 0) {
+            break;
+        case WARP:
+            if (!in_range(&c->warp_mm, optarg, 0, 20)) return refuse("--warp", "needs a height in 0 .. 20 mm");
+            break;
+        case JOINT:
+            if (!read_joint(c, optarg))
+                return refuse("--joint", "needs NAME=VALUE, in -3600 .. 3600 deg or m, at most 32 times");
+            break;
+        case CELL:
+            if (!in_range(&c->resolution_m, optarg, 0.01, 10)) return refuse("--cell", "needs a length in 0.01 .. 10 m");
+            break;
+        case IMAGE:
             c->image_deg = NAN;
-            if (!value || (strcmp(value, "none") != 0 && !in_range(&c->image_deg, value, -720, 720)))
-                return refuse(option, "needs an angle within 720 deg, or none");
-        } else {
-            return refuse(option, "no such option");
+            if (strcmp(optarg, "none") != 0 && !in_range(&c->image_deg, optarg, -720, 720))
+                return refuse("--image", "needs an angle within 720 deg, or none");
+            break;
+        case NO_EDGES: c->no_edges = true; break;
+        case NO_POLYGONS: c->no_polygons = true; break;
+        case OVERWRITE: o->overwrite = true; break;
+        case LIBRARY: break; /* taken by rcs_command */
+        case HELP:
+            printf("%s\n%s", help, rcs_library_help);
+            return 1 + 0;
+        default: return 1 + 2; /* reported by next_option */
         }
-        i++;
-    }
-    if (!c->name) return refuse("rcs", "needs a target: a built-in name, a file or a shape");
+    if (optind == argc) return refuse("no target is named", "a built-in name, a file or a shape");
+    c->name = argv[optind];
+    if (optind + 1 < argc) return refuse(argv[optind + 1], "one target at a time");
     if (given_signature_path(c->name)) c->image_deg = NAN;
     if (given_signature_path(c->name) && c->joints > 0) return refuse("--joint", "a given signature has no joints");
     if (fabs(c->elevation_deg) > 85 && !isnan(c->image_deg))
@@ -239,21 +249,10 @@ int rcs_command(int argc, char **argv)
     static OutputPath path[file_count];
     RcsOptions  o;
     thread_flush_denormals();
-    for (int i = 1; i < argc; i++)
-        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
-            fputs(help, stdout);
-            fputs("\n", stdout);
-            fputs(rcs_library_help, stdout);
-            return 0;
-        }
-    if (argc < 2) {
-        fputs(help, stderr);
-        return 2;
-    }
-    for (int i = 1; i < argc; i++)
-        if (strcmp(argv[i], "--library") == 0) return rcs_library_command(argc, argv);
-    const int wrong = parse(&o, argc, argv);
-    if (wrong) return wrong;
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) /* the options beside it are others */
+        if (strncmp(argv[i], "--library", 9) == 0 && (!argv[i][9] || argv[i][9] == '=')) return rcs_library_command(argc, argv);
+    const int stop = parse(&o, argc, argv);
+    if (stop) return stop - 1;
     RcsSweep     sweep = {0};
     const double begun_s = wall_clock_s();
     Status       status = rcs_sweep_open(&sweep, &o.config);

@@ -209,14 +209,14 @@ Status rcs_image_write(const RcsImage *image, const RcsSweep *sweep, const char 
                 paint(at, 1 + ((double)*dbsm - most) / shown_db);
             }
     for (int q = 0; q < 2; q++) {
-        snprintf(text, sizeof text, "%s %.1f m", q ? "hv" : "hh", image->side_m);
+        snprintf(text, sizeof text, "%s %.1f m", q ? "HV" : "HH", image->side_m);
         letters_write(rgb, width, height, q * (n + 8) + 10, 8, text);
     }
-    snprintf(text, sizeof text, "%.4g ghz azimuth %.4g elevation %.4g deg", image->frequency_hz * 1e-9,
+    snprintf(text, sizeof text, "%.4g GHz azimuth %.4g elevation %.4g deg", image->frequency_hz * 1e-9,
              image->middle_deg,
              sweep->config.elevation_deg);
     letters_write(rgb, width, height, 10, head + n + 6, text);
-    snprintf(text, sizeof text, "nose up  %.1f to %.1f dbsm  cell %.2f m", most - shown_db, most, image->resolution_m);
+    snprintf(text, sizeof text, "nose up  %.1f to %.1f dBsm  cell %.2f m", most - shown_db, most, image->resolution_m);
     letters_write(rgb, width, height, 10, head + n + 12 + letters_high, text);
     const Status status = image_write_png(path, rgb, width, height, 3, 8);
     free(rgb);

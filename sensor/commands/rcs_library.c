@@ -4,6 +4,7 @@
 #include "entities/scenario/scenario.h"
 #include "sensor/radar/seeker_radar.h"
 #include "sensor/radar/signature_library.h"
+#include "sensor/settings/next_option.h"
 
 #include <stdlib.h>
 
@@ -11,8 +12,8 @@ const char rcs_library_help[] =
     "usage: pitviper rcs MODEL --library FOLDER --preset NAME [--azimuth FROM:TO] [--elevation FROM:TO]\n"
     "                    [--range FROM:TO] [--joint NAME=VALUE]... [--damage N] [--warp MM]\n"
     "\n"
-    "Makes what the radar of radar.preset needs of a target in every bin of aspect (0.3 deg) and range (a factor of 1.19),\n"
-    "a file each, for radar.library of a run. Bins that are there are left as they are: stopped, it goes on where it was.\n"
+    "Computes the signatures of a target for a radar, one file for each bin of aspect (0.3 deg) and range (a factor of 1.19),\n"
+    "for radar.library of a run. Existing files are kept: after an interruption the same command continues.\n"
     "\n"
     "MODEL: an entity type as in the catalog (1.1.222.1.1.1.0), or a built-in name in the shape's own size.\n"
     "  --preset NAME        a row of etc/radars.csv: seeker_94\n"
@@ -50,8 +51,7 @@ typedef struct Work {
 
 static int refuse(const char *option, const char *what)
 {
-    text_print(stderr, "pitviper rcs: %s: %s; see `pitviper rcs --help`\n", option, what);
-    return 2;
+    return 1 + wrong_line("rcs", "%s: %s", option, what);
 }
 
 static bool number_in(double *out, const char *text, double low, double high)
@@ -70,41 +70,53 @@ static bool span_in(double out[2], const char *text, double low, double high)
     return number_in(&out[0], first, low, high) && number_in(&out[1], colon + 1, low, high) && out[0] <= out[1];
 }
 
-/* 0: valid; else the exit code. */
+/* 0: valid; else exit with this code - 1. */
 static int parse(LibraryOptions *o, int argc, char **argv)
 {
+    enum { LIBRARY = 256, PRESET, AZIMUTH, ELEVATION, RANGE, WARP, DAMAGE, JOINT, HELP };
+    static const struct option options[] = {
+        {"library", 1, NULL, LIBRARY},     {"preset", 1, NULL, PRESET}, {"azimuth", 1, NULL, AZIMUTH},
+        {"elevation", 1, NULL, ELEVATION}, {"range", 1, NULL, RANGE},   {"warp", 1, NULL, WARP},
+        {"damage", 1, NULL, DAMAGE},       {"joint", 1, NULL, JOINT},   {"help", 0, NULL, HELP},
+        {NULL, 0, NULL, 0}};
     *o = (LibraryOptions){.azimuth_deg = {0, 360}, .elevation_deg = {5, 10}, .range_m = {1000, 3000}, .warp_mm = 1};
-    for (int i = 1; i < argc; i++) {
-        const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
-        if (option[0] != '-') {
-            if (o->name) return refuse(option, "one target at a time");
-            o->name = option;
-            continue;
+    optind = 0; /* restart getopt */
+    for (int option; (option = next_option(argc, argv, "", options)) != -1;)
+        switch (option) {
+        case LIBRARY:
+            if (!*optarg) return refuse("--library", "needs a folder");
+            o->folder = optarg;
+            break;
+        case PRESET: o->preset = optarg; break;
+        case AZIMUTH:
+            if (!span_in(o->azimuth_deg, optarg, -720, 720))
+                return refuse("--azimuth", "needs FROM:TO in deg, rising, within 720");
+            break;
+        case ELEVATION:
+            if (!span_in(o->elevation_deg, optarg, -90, 90))
+                return refuse("--elevation", "needs FROM:TO in -90 .. 90 deg, rising");
+            break;
+        case RANGE:
+            if (!span_in(o->range_m, optarg, 10, 1e6)) return refuse("--range", "needs FROM:TO in 10 .. 1e6 m, rising");
+            break;
+        case WARP:
+            if (!number_in(&o->warp_mm, optarg, 0, 20)) return refuse("--warp", "needs a height in 0 .. 20 mm");
+            break;
+        case DAMAGE:
+            if (!number_in(&o->damage, optarg, 0, 3) || o->damage != floor(o->damage))
+                return refuse("--damage", "needs 0, 1, 2 or 3");
+            break;
+        case JOINT:
+            if (!strchr(optarg, '=') || o->joints == most_joints)
+                return refuse("--joint", "needs NAME=VALUE, at most 32 of them");
+            o->joint[o->joints++] = optarg;
+            break;
+        case HELP: fputs(rcs_library_help, stdout); return 1 + 0;
+        default: return 1 + 2; /* reported by next_option */
         }
-        if (strcmp(option, "--library") == 0) {
-            if (!value || !*value) return refuse(option, "needs a folder");
-            o->folder = value;
-        } else if (strcmp(option, "--preset") == 0) {
-            o->preset = value;
-        } else if (strcmp(option, "--azimuth") == 0) {
-            if (!span_in(o->azimuth_deg, value, -720, 720)) return refuse(option, "needs FROM:TO in deg, rising, within 720");
-        } else if (strcmp(option, "--elevation") == 0) {
-            if (!span_in(o->elevation_deg, value, -90, 90)) return refuse(option, "needs FROM:TO in -90 .. 90 deg, rising");
-        } else if (strcmp(option, "--range") == 0) {
-            if (!span_in(o->range_m, value, 10, 1e6)) return refuse(option, "needs FROM:TO in 10 .. 1e6 m, rising");
-        } else if (strcmp(option, "--warp") == 0) {
-            if (!number_in(&o->warp_mm, value, 0, 20)) return refuse(option, "needs a height in 0 .. 20 mm");
-        } else if (strcmp(option, "--damage") == 0) {
-            if (!number_in(&o->damage, value, 0, 3) || o->damage != floor(o->damage)) return refuse(option, "needs 0, 1, 2 or 3");
-        } else if (strcmp(option, "--joint") == 0) {
-            if (!value || !strchr(value, '=') || o->joints == most_joints) return refuse(option, "needs NAME=VALUE, at most 32 of them");
-            o->joint[o->joints++] = value;
-        } else {
-            return refuse(option, "no such option with --library");
-        }
-        i++;
-    }
-    if (!o->name) return refuse("rcs", "needs a target: an entity type or a built-in name");
+    if (optind == argc) return refuse("no target is named", "an entity type or a built-in name");
+    o->name = argv[optind];
+    if (optind + 1 < argc) return refuse(argv[optind + 1], "one target at a time");
     if (!o->preset) return refuse("--preset", "--library needs a row of etc/radars.csv, seeker_94 for one");
     return 0;
 }
@@ -120,7 +132,7 @@ static Status set_joints(Work *w)
         int          node = 0;
         while (node < w->of->node_count && (strlen(w->of->node[node].name) != length || strncmp(w->of->node[node].name, text, length) != 0)) node++;
         if (node == w->of->node_count || w->of->node[node].joint == JOINT_FIXED || !text_to_double(&value, equals + 1)) {
-            log_error("rcs: --joint %s: the model has no such joint, or that is no number; `pitviper model show` names them", text);
+            log_error("rcs: --joint %s: the model has no such joint, or the value is not a number; `pitviper model show` names them", text);
             return STATUS_BAD_VALUE;
         }
         w->joint[node] = w->of->node[node].joint == JOINT_ROTATION ? value * rad_per_deg : value;
@@ -221,8 +233,8 @@ static Status all_bins(Work *w, bool count)
 int rcs_library_command(int argc, char **argv)
 {
     static Work w;
-    const int   wrong = parse(&w.o, argc, argv);
-    if (wrong) return wrong;
+    const int   stop = parse(&w.o, argc, argv);
+    if (stop) return stop - 1;
     w.begun_s = wall_clock_s();
     Status status = open_work(&w);
     if (status == STATUS_OK) status = all_bins(&w, true);

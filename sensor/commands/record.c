@@ -75,18 +75,12 @@ static int parse(Options *o, int argc, char **argv)
             break;
         case OVERWRITE: o->overwrite = true; break;
         case HELP: fputs(help, stdout); return 1;
-        default: fputs("see `pitviper record --help`\n", stderr); return 1 + 2;
+        default: return 1 + 2; /* reported by next_option */
         }
         if (!ok) return 1 + 2;
     }
-    if (optind < argc) {
-        log_error("record: '%s': the log's name follows -o", argv[optind]);
-        return 1 + 2;
-    }
-    if (!o->out) {
-        fputs(help, stderr);
-        return 1 + 2;
-    }
+    if (optind < argc) return 1 + wrong_line("record", "'%s': the log's name follows -o", argv[optind]);
+    if (!o->out) return 1 + wrong_line("record", "no LOG is named: usage: pitviper record -o LOG [options]");
     if (!dis_recorder_name("record: -o", o->out)) return 1 + 2;
     return 0;
 }

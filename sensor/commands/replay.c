@@ -1,6 +1,7 @@
 /* sensor/commands/replay.c: replays a recorded exercise to images and truth. */
 #include "sensor/commands/replay.h"
 
+#include "dis/datagram.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/node/dis_network.h"
 #include "sensor/node/host_run.h"
@@ -60,9 +61,16 @@ static bool wanted(const Options *o, int *at, double n)
     return *at < o->only_count && o->only[*at] == n;
 }
 
-/* The part of a span that --only needs: up to the last frame it names; all of them must be in the span. */
+/* The part of a span that --only needs: up to the last frame it names; all of them, and those to be saved, must be in the
+ * span. */
 static Status take_only(double *last, const Options *o, double first)
 {
+    for (int i = 0, at = 0; i < o->save_count; i++)
+        if (o->save[i] < first || o->save[i] > *last || !wanted(o, &at, o->save[i])) {
+            log_error("replay: --save-frame: frame %d is not rendered: they go from %.0f to %.0f%s; see also --from, --to and --rate",
+                      o->save[i], first, *last, o->only_count ? ", those of --only" : "");
+            return STATUS_BAD_VALUE;
+        }
     if (o->only_count == 0) return STATUS_OK;
     const int low = o->only[0], high = o->only[o->only_count - 1];
     if (low < first || high > *last) {
@@ -211,6 +219,46 @@ static void hash_octets(void *user, const void *octets, size_t count)
     hash->good = hash->good && sha256_add(hash->digest, octets, count);
 }
 
+/* Why a log shows nothing: other exercises, what is malformed, or another port. */
+static void log_nothing(const Run *run, const DisLog *log)
+{
+    const char        *path = run->options.log;
+    const DisCounters *c = &run->survey.counters;
+    char               heard[128] = "";
+    size_t             n = 0;
+    int                why = 0;
+    if (c->dropped[DIS_DROP_OTHER_EXERCISE] > 0) {
+        bool        there[256] = {false};
+        int         first = -1;
+        DisCounters ignored = {0};
+        for (int i = 0; i < log->count; i++) {
+            const DisDatagram d = dis_log_datagram(log, i);
+            const uint8_t    *at = d.bytes, *pdu, *end = at + d.octets;
+            DisHeader         header;
+            while (dis_next_pdu(&header, &pdu, &at, end, &ignored)) there[header.exercise] = true;
+        }
+        for (int e = 0; e < 256 && n + 8 < sizeof heard; e++) {
+            if (!there[e] || e == run->exercise) continue;
+            n += (size_t)snprintf(heard + n, sizeof heard - n, "%s%d", n ? ", " : "", e);
+            if (first < 0) first = e;
+        }
+        log_error("replay: %s holds no Entity State with a usable position of exercise %d (%llu datagrams heard); it holds PDUs "
+                  "of exercise %s: --set exercise.exercise=%d takes that one, -2 all", path, run->exercise,
+                  (unsigned long long)c->datagrams, heard, first);
+        return;
+    }
+    for (int i = 1; i < DIS_DROP_COUNT; i++)
+        if (c->dropped[i] > c->dropped[why]) why = i;
+    if (c->dropped[why] > 0)
+        log_error("replay: %s holds no Entity State with a usable position (%llu datagrams heard); %llu PDUs are dropped, most for "
+                  "%s; `pitviper inspect %s` says what it holds", path, (unsigned long long)c->datagrams,
+                  (unsigned long long)c->dropped[why], dis_drop_cause((DisDrop)why), path);
+    else
+        log_error("replay: %s holds no Entity State with a usable position (%llu datagrams heard); "
+                  "`pitviper inspect %s` says what it holds, --set exercise.port=N takes another port", path,
+                  (unsigned long long)c->datagrams, path);
+}
+
 static Status open_log(Run *run, DisLog *log)
 {
     const Options *o = &run->options;
@@ -240,9 +288,7 @@ static Status open_log(Run *run, DisLog *log)
     status            = run_survey(run, &heard);
     if (status == STATUS_OK && dis_log_failed(log)) status = STATUS_IO;
     if (status == STATUS_OK && (!starts || run->survey.track_count == 0)) {
-        log_error("replay: %s holds no Entity State with a usable position (%llu datagrams heard); "
-                  "`pitviper inspect %s` says what it holds, --set exercise.port=N takes another port",
-                  o->log, (unsigned long long)run->survey.counters.datagrams, o->log);
+        log_nothing(run, log);
         return STATUS_BAD_VALUE;
     }
     return status;

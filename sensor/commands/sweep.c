@@ -343,6 +343,7 @@ static int run_child(const Options *o, const char *folder)
 /* The last error that the run logged. */
 static void find_reason(char *why, size_t size, const char *folder, int code)
 {
+    const char *const head = log_head(LOG_ERROR);
     char   path[path_size + 32], *text = NULL;
     size_t octets;
     if (code >= 0) snprintf(why, size, "exit code %d", code);
@@ -351,7 +352,8 @@ static void find_reason(char *why, size_t size, const char *folder, int code)
     if (access(path, R_OK) != 0 || text_read_file(&text, &octets, "sweep", path, 1 << 24) != STATUS_OK) return;
     for (char *line = text, *end; *line; line = end) {
         end = line + strcspn(line, "\n");
-        if (strncmp(line, "error: ", 7) == 0) text_escape(why, size, line + 7, (size_t)(end - line - 7));
+        if (strncmp(line, head, strlen(head)) == 0)
+            text_escape(why, size, line + strlen(head), (size_t)(end - line) - strlen(head));
         end += *end == '\n';
     }
     free(text);

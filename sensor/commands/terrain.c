@@ -47,8 +47,7 @@ static const char help[] =
 
 static int refuse(const char *option, const char *what)
 {
-    text_print(stderr, "pitviper terrain: %s: %s; see `pitviper terrain --help`\n", option, what);
-    return 2;
+    return wrong_line("terrain", "%s: %s", option, what);
 }
 
 typedef struct Wanted {
@@ -203,7 +202,7 @@ static int import_command(int argc, char **argv)
 
 int terrain_command(int argc, char **argv)
 {
-    static char called[] = "pitviper terrain import", called_info[] = "pitviper terrain info",
+    static char called[] = "pitviper terrain", called_info[] = "pitviper terrain info",
                 called_again[] = "pitviper terrain again";
     const bool  again = argc > 1 && strcmp(argv[1], "again") == 0;
     const bool  info = argc > 1 && strcmp(argv[1], "info") == 0; /* these have a help of their own */
@@ -212,10 +211,7 @@ int terrain_command(int argc, char **argv)
             fputs(help, stdout);
             return 0;
         }
-    if (argc < 2) {
-        fputs(help, stderr);
-        return 2;
-    }
+    if (argc < 2) return wrong_line("terrain", "no action: import or info");
     if (strcmp(argv[1], "import") == 0) {
         argv[1] = called; /* program name in getopt's messages */
         return import_command(argc - 1, argv + 1);
@@ -228,6 +224,8 @@ int terrain_command(int argc, char **argv)
         argv[1] = called_again;
         return terrain_again_command(argc - 1, argv + 1);
     }
-    text_print(stderr, "pitviper terrain: no such action: %s; there are import, info and again\n", argv[1]);
-    return 2;
+    WordMeant meant = word_meant(argv[1]);
+    word_consider_list(&meant, "import|info|again", '|');
+    return wrong_line("terrain", "no such action: %s%s", argv[1],
+                      *word_hint(&meant) ? meant.hint : "; there are import, info and again");
 }

@@ -2,6 +2,7 @@
 #include "sensor/commands/terrain_again.h"
 
 #include "sensor/node/stop.h"
+#include "sensor/settings/next_option.h"
 #include "terrain/import/terrain_import.h"
 
 #include <stdlib.h>
@@ -35,10 +36,7 @@ int terrain_again_command(int argc, char **argv)
         fputs(help, stdout);
         return 0;
     }
-    if (argc != 2 || argv[1][0] == '-') {
-        fputs(help, stderr);
-        return 2;
-    }
+    if (argc != 2 || argv[1][0] == '-') return wrong_line("terrain", "again takes one STORE");
     char *options = options_of(argv[1]);
     if (!options) return 1;
     stop_by_signals();

@@ -46,8 +46,7 @@ static int parse(Wanted *w, int argc, char **argv)
         w->store = argv[optind];
         return 0;
     }
-    text_print(stderr, "pitviper terrain info: needs one STORE; see `pitviper terrain info --help`\n");
-    return 2;
+    return wrong_line("terrain info", optind == argc ? "no STORE is named" : "one STORE at a time");
 }
 
 /* ---- words -------------------------------------------------------------------------------------------- */

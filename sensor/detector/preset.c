@@ -149,18 +149,20 @@ Status preset_read(SensorPreset *out, const char *path, const char *name)
     if (status != STATUS_OK) return status;
     const int column = need(&table, "name");
     int       row    = -1;
+    WordMeant meant  = word_meant(name);
     status           = STATUS_BAD_VALUE;
     for (int i = 0; column >= 0 && i < table.rows; i++) {
         const char  *here   = table_text(&table, i, column);
         const size_t length = strlen(known);
         if (strcmp(here, name) == 0 && row < 0) row = i;
         snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "", here);
+        word_consider(&meant, here);
     }
     if (row < 0 && etc_own("sensors.csv")) snprintf(before, sizeof before, " (nor in %s)", etc_own("sensors.csv"));
     if (row >= 0)
         status = read_row(out, &table, row);
     else if (column >= 0)
-        log_error("sensors: %s: no sensor named '%s'%s; there are: %s", path, name, before, known);
+        log_error("sensors: %s: no sensor named '%s'%s; there are: %s%s", path, name, before, known, word_hint(&meant));
     table_close(&table);
     return status;
 }

@@ -109,7 +109,7 @@ Status frame_file_parse(FrameFile *out, const uint8_t *bytes, size_t count, cons
     if (status == STATUS_OK && met != (1u << chunk_kinds) - 1) {
         int c = 0;
         while (met >> c & 1) c++;
-        log_error("frame: %s has no chunk `%s`; it is no whole frame file", path, chunks[c].name);
+        log_error("frame: %s has no chunk `%s`; it is not a complete frame file", path, chunks[c].name);
         return STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK && (source.fault = disagreement(out))) status = STATUS_BAD_VALUE;

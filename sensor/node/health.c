@@ -94,6 +94,14 @@ const char *health_name(HealthReason reason)
     return "";
 }
 
+static DisDrop most_dropped(const HealthSample *s)
+{
+    int most = 0;
+    for (int i = 1; i < DIS_DROP_COUNT; i++)
+        if (s->dropped[i] > s->dropped[most]) most = i;
+    return (DisDrop)most;
+}
+
 /* `2 (14 PDUs), 7 (1)`: the exercises with the most PDUs, and the first of them. */
 static int list_exercises(char *out, size_t size, const HealthSample *s)
 {
@@ -162,11 +170,15 @@ void health_text(char out[health_text_size], HealthReason reason, const HealthSa
                  (unsigned long long)s->own, n->where, n->site, n->application,
                  n->application < 65533 ? n->application + 1 : 1);
         break;
-    case HEALTH_JUNK:
-        snprintf(out, size, "only what is no DIS is heard on %s: %llu malformed datagrams; another port may carry "
-                 "the exercise (--port, --address); `pitviper record --for 10 -o heard.pcapng` keeps them to look at",
-                 n->where, (unsigned long long)s->junk);
+    case HEALTH_JUNK: {
+        const DisDrop why = most_dropped(s);
+        const bool    header = why != DIS_DROP_SHORT_HEADER && why != DIS_DROP_BAD_VERSION;
+        snprintf(out, size, "only what is %s is heard on %s: %llu malformed datagrams, most with %s; %s; `pitviper record "
+                 "--for 10 -o heard.pcapng` keeps them to look at", header ? "malformed DIS" : "no DIS", n->where,
+                 (unsigned long long)s->junk, dis_drop_cause(why),
+                 header ? "their sender is to set it right" : "another port may carry the exercise (--port, --address)");
         break;
+    }
     case HEALTH_NOTHING:
         snprintf(out, size, "nothing heard on %s for %.0f s; `pitviper record --for 5 -o heard.pcapng` shows "
                  "what comes at all; --port, --address and --interface say where", n->where, s->now_s - s->any_s);
@@ -240,7 +252,8 @@ void health_received(Health *h, const DisDatagram *datagram, int exercise, bool 
     DisHeader      header;
     const uint8_t *at = datagram->bytes, *pdu, *end = at + datagram->octets;
     bool           any = false, usable = false;
-    while (dis_next_pdu(&header, &pdu, &at, end, &h->ignored)) {
+    DisCounters    counters = {0};
+    while (dis_next_pdu(&header, &pdu, &at, end, &counters)) {
         any = true;
         if (exercise >= 0 && header.exercise != exercise) {
             s->other[header.exercise]++;
@@ -252,11 +265,13 @@ void health_received(Health *h, const DisDatagram *datagram, int exercise, bool 
     }
     s->any_s = now_s;
     s->junk += !any;
+    for (int i = 0; i < DIS_DROP_COUNT; i++) s->dropped[i] += counters.dropped[i];
     if (!usable) return;
     s->usable++;
     s->usable_s = now_s;
     s->junk = s->own = s->pdus = 0;
     memset(s->other, 0, sizeof s->other);
+    memset(s->dropped, 0, sizeof s->dropped);
 }
 
 void health_making(Health *h, double now_s)

@@ -43,6 +43,7 @@ typedef struct HealthSample {
     uint64_t   junk, own;       /* datagrams */
     uint64_t   pdus;            /* of the configured exercise */
     uint64_t   other[256];      /* PDUs of other exercises, by exercise */
+    uint64_t   dropped[DIS_DROP_COUNT]; /* of all datagrams, by reason */
     uint8_t    type;            /* of the latest PDU in pdus */
     bool       away;
     /* rendered */
@@ -92,7 +93,6 @@ typedef struct Health {
     HealthReason now[HEALTH_TOPICS], said[HEALTH_TOPICS]; /* said: the last one reported, other than HEALTH_FINE */
     double       said_s[HEALTH_TOPICS];
     bool         open[HEALTH_TOPICS]; /* its end has not been reported */
-    DisCounters  ignored;             /* of parsing */
 } Health;
 
 void health_begin(Health *health, double now_s);

@@ -365,7 +365,6 @@ Status run_host(Run *run, const DisEntityId *host)
     status = session_open(&session, &shared, &plan, player, out);
     if (status != STATUS_OK) goto done;
     status = run->frames(run, session, player, &plan, &grid);
-    if (status == STATUS_OK) status = player_status(player);
     if (status == STATUS_OK && dis_log_failed(&run->view)) status = STATUS_IO;
     snprintf(host_text, sizeof host_text, "%s", session_host(session));
     const Status closed = session_close(session, &result);

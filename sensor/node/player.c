@@ -8,12 +8,13 @@
 
 #include <stdlib.h>
 
-enum { shots_kept = 1024, munitions_kept = 256, read_ahead = 65536 /* events */ };
+enum { shots_kept = 1024, munitions_kept = 256 };
 
 typedef enum Where { IN_LOG, ON_DISK, KEPT } Where;
 
 typedef struct Event {
-    double         counts_s, t_s; /* time from which it counts; its own exercise time */
+    double          counts_s; /* time from which it counts */
+    ExerciseInstant instant;  /* its own exercise time */
     uint32_t       order;
     uint16_t       length;
     uint8_t        type, where;
@@ -22,12 +23,6 @@ typedef struct Event {
         uint64_t       at;     /* on disk, or in the stored octets */
     };
 } Event;
-
-/* How far datagrams have been heard, in the order of arrival. */
-typedef struct Hearing {
-    ExerciseClock *clock;
-    double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
-} Hearing;
 
 /* A munition unheard for this long is no host to go to. */
 static const double munition_silent_s = 4;
@@ -45,22 +40,15 @@ typedef struct Aimed {
 } Aimed;
 
 struct Player {
-    bool           causal, sorted;
-    int            exercise, count, next, capacity; /* events next .. count - 1 are to be fed */
+    bool           causal, sorted, whole;
+    int            exercise, count, next, capacity;
     uint32_t       order;
     Event         *event;
     uint8_t       *octets; /* of the octets stored until they are fed */
     size_t         octets_used, octets_capacity;
-    Hearing        heard;           /* of what was added */
-    /* A log was added as a whole, and is read again as far as it is fed: by stamp so far ahead that what comes later in
-     * the file counts later, too. */
-    const DisLog  *log;             /* NULL: none */
-    int            log_next;        /* next datagram */
-    Hearing        reading;
-    double         late_s;          /* no PDU is stamped earlier than this before one ahead of it in the file */
-    double         read_s;          /* the latest stamp read; causal: the latest arrival */
-    int            ahead;           /* events that are read before some are fed */
-    Status         status;
+    const DisLog  *log;    /* whose datagrams were added; NULL: none */
+    ExerciseClock *clock;
+    double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
     double         fed_s;           /* counts_s of the newest event fed */
     double         now_s;           /* until which it was fed */
     DisCounters    counters;
@@ -77,12 +65,11 @@ Status player_create(Player **out, int exercise, bool causal)
     if (!player) return STATUS_NO_MEMORY;
     player->exercise = exercise;
     player->causal   = causal;
-    player->heard    = player->reading = (Hearing){NULL, NAN, -INFINITY};
-    player->ahead    = read_ahead;
-    player->read_s   = -INFINITY;
+    player->tie_s    = NAN;
+    player->latest_s = -INFINITY;
     player->fed_s    = -INFINITY;
     player->now_s    = -INFINITY;
-    const Status status = exercise_clock_create(&player->heard.clock);
+    const Status status = exercise_clock_create(&player->clock);
     if (status == STATUS_OK) *out = player;
     else player_destroy(player);
     return status;
@@ -91,8 +78,7 @@ Status player_create(Player **out, int exercise, bool causal)
 void player_destroy(Player *player)
 {
     if (!player) return;
-    exercise_clock_destroy(player->heard.clock);
-    exercise_clock_destroy(player->reading.clock);
+    exercise_clock_destroy(player->clock);
     free(player->octets);
     free(player->event);
     free(player);
@@ -132,7 +118,7 @@ static Status keep_octets(size_t *at, Player *player, const uint8_t *pdu, size_t
 /* Counts stamps that are not a clock; of a live sender it is reported once, of a log by the survey. */
 static void note_anomalies(Player *player, bool say)
 {
-    const ExerciseClockAnomalies *doubts = exercise_clock_anomalies(player->heard.clock);
+    const ExerciseClockAnomalies *doubts = exercise_clock_anomalies(player->clock);
     char                       text[exercise_clock_anomaly_text_size];
     player->counters.stamps_doubted = doubts->by_arrival;
     for (; player->anomalies_reported < doubts->count; player->anomalies_reported++) {
@@ -144,43 +130,40 @@ static void note_anomalies(Player *player, bool say)
 
 static Status store(Player *player, Event *event, const DisDatagram *datagram, const uint8_t *pdu)
 {
-    Status         status = STATUS_OK;
-    const uint64_t within = (uint64_t)(pdu - datagram->bytes);
-    event->order = player->order++;
+    Status status = STATUS_OK;
+    event->order  = player->order++;
     if (event->where == KEPT) {
         size_t at = 0;
         status    = keep_octets(&at, player, pdu, event->length);
         event->at = at;
     } else if (event->where == ON_DISK) {
-        event->at += within;
+        event->at += (uint64_t)(pdu - datagram->bytes);
     } else {
         event->octets = pdu;
     }
     return status == STATUS_OK ? add_event(player, event) : status;
 }
 
-/* The PDUs of a datagram. place: of what it is stored as, type and octets being filled in; NULL: it is only counted. */
-static Status hear(Player *player, Hearing *h, const DisDatagram *datagram, const Event *place, DisCounters *counters)
+/* The PDUs of a datagram. place: where its octets are. */
+static Status hear(Player *player, const DisDatagram *datagram, const Event *place)
 {
     const uint8_t *at = datagram->bytes, *pdu;
     DisHeader      header;
-    counters->datagrams++;
-    while (dis_next_pdu(&header, &pdu, &at, datagram->bytes + datagram->octets, counters)) {
+    player->counters.datagrams++;
+    while (dis_next_pdu(&header, &pdu, &at, datagram->bytes + datagram->octets, &player->counters)) {
+        Event event = *place;
         if (player->exercise >= 0 && header.exercise != player->exercise) {
-            counters->dropped[DIS_DROP_OTHER_EXERCISE]++;
+            player->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
             continue;
         }
-        const double t_s = exercise_clock_pdu_time(h->clock, &header, pdu, datagram->capture_s);
-        if (isnan(t_s)) continue;
-        if (h == &player->heard) note_anomalies(player, place != NULL);
-        if (isnan(h->tie_s)) h->tie_s = t_s - datagram->capture_s;
-        h->latest_s = fmax(h->latest_s, datagram->capture_s + h->tie_s);
-        const double counts_s = player->causal ? h->latest_s : t_s;
-        if (!(counts_s >= player->read_s - player->late_s)) player->late_s = player->read_s - counts_s;
-        player->read_s = fmax(player->read_s, counts_s);
-        if (!place) continue;
-        Event event = *place;
-        event.t_s = t_s, event.counts_s = counts_s, event.length = header.length, event.type = header.type;
+        event.instant = exercise_clock_pdu_instant(player->clock, &header, pdu, datagram->capture_s);
+        if (isnan(event.instant.t_s)) continue;
+        note_anomalies(player, place->where == KEPT);
+        if (isnan(player->tie_s)) player->tie_s = event.instant.t_s - datagram->capture_s;
+        player->latest_s = fmax(player->latest_s, datagram->capture_s + player->tie_s);
+        event.counts_s   = player->causal ? player->latest_s : event.instant.t_s;
+        event.length     = header.length;
+        event.type       = header.type;
         const Status status = store(player, &event, datagram, pdu);
         if (status != STATUS_OK) return status;
     }
@@ -190,38 +173,20 @@ static Status hear(Player *player, Hearing *h, const DisDatagram *datagram, cons
 Status player_add(Player *player, const DisDatagram *datagram, bool keep)
 {
     const Event place = {.where = keep ? KEPT : IN_LOG};
-    return hear(player, &player->heard, datagram, &place, &player->counters);
+    return hear(player, datagram, &place);
 }
 
-/* One pass for the counters, the end, and how late a PDU may be; they are stored when they are fed. */
 Status player_add_log(Player *player, const DisLog *log)
 {
-    Status status = exercise_clock_create(&player->reading.clock);
+    Status status = STATUS_OK;
+    player->log = log;
     for (int i = 0; i < log->count && status == STATUS_OK; i++) {
-        const DisDatagram datagram = dis_log_datagram(log, i);
-        status = hear(player, &player->heard, &datagram, NULL, &player->counters);
-    }
-    player->log    = log;
-    player->late_s += 1e-6; /* what rounding leaves of it */
-    player->read_s = -INFINITY;
-    return status;
-}
-
-/* Datagrams of the log until every PDU that counts at or before t_s has been read, or some more events are there. Returns
- * the time up to which all that count have been read. */
-static double read_log(Player *player, double t_s)
-{
-    DisCounters    ignored = {0};
-    const DisLog  *log = player->log;
-    while (log && player->status == STATUS_OK && player->log_next < log->count && player->count - player->next < player->ahead &&
-           !(player->read_s - player->late_s > t_s)) {
-        const DisDatagram *entry = &log->datagram[player->log_next];
+        const DisDatagram *entry = &log->datagram[i], datagram = dis_log_datagram(log, i);
         const bool         disk = entry->packet & dis_datagram_on_disk;
-        const DisDatagram  datagram = dis_log_datagram(log, player->log_next++);
         const Event        place = {.where = disk ? ON_DISK : IN_LOG, .at = disk ? entry->at : 0};
-        player->status = hear(player, &player->reading, &datagram, &place, &ignored);
+        status = hear(player, &datagram, &place);
     }
-    return log && player->log_next < log->count ? player->read_s - player->late_s : INFINITY;
+    return status;
 }
 
 /* ---- output ------------------------------------------------------------------------------------- */
@@ -287,60 +252,57 @@ static void feed_event(Player *player, EntityTable *table, const Event *event)
     if (!octets) return; /* the log says so */
     const Status   status = dis_decode(pdu, octets, event->length);
     if (status != STATUS_OK) {
-        if (isfinite(event->t_s)) dis_count_refused(&player->counters, event->type, status);
+        if (isfinite(event->instant.t_s)) dis_count_refused(&player->counters, event->type, status);
         return;
     }
-    entity_table_pdu(table, pdu, event->t_s, &player->counters);
+    if (player->causal) entity_table_arrival(table, event->counts_s, event->instant.by_stamp);
+    entity_table_pdu(table, pdu, event->instant.t_s, &player->counters);
     if (pdu->type == dis_pdu_fire) note_fire(player, &pdu->fire);
     if (pdu->type == dis_pdu_entity_state) note_munition(player, &pdu->entity_state, event->counts_s);
     if (pdu->type == dis_pdu_detonation) note_detonation(player, &pdu->detonation);
 }
 
-static void feed_until(Player *player, EntityTable *table, double t_s)
+/* All of a recording is here: its senders' clocks are known. */
+static void settle_times(Player *player)
 {
-    const size_t left = (size_t)(player->count - player->next);
-    if (!player->sorted && !player->causal && left > 1)
-        qsort(player->event + player->next, left, sizeof *player->event, compare_events);
+    player->whole = true;
+    exercise_clock_whole(player->clock);
+    for (int i = 0; i < player->count; i++) {
+        exercise_clock_whole_time(player->clock, &player->event[i].instant);
+        player->event[i].counts_s = player->event[i].instant.t_s;
+    }
+    player->counters.stamps_doubted = exercise_clock_anomalies(player->clock)->by_arrival;
+}
+
+void player_feed(Player *player, EntityTable *table, double t_s)
+{
+    if (!player->causal && !player->whole) settle_times(player);
+    if (!player->sorted && !player->causal && player->count > 1)
+        qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
     player->sorted = true; /* arrivals are ordered already */
     player->now_s  = fmax(player->now_s, t_s);
     for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++) {
         feed_event(player, table, &player->event[player->next]);
         player->fed_s = player->event[player->next].counts_s;
     }
-    if (player->next == player->count) { /* only what is not fed yet takes memory */
+    if (player->causal && player->next == player->count) { /* of a live node only datagrams not yet fed take memory */
         player->next = player->count = 0;
         player->octets_used          = 0;
-    } else if (player->log && player->next > player->count / 2) {
-        memmove(player->event, player->event + player->next, (size_t)(player->count - player->next) * sizeof *player->event);
-        player->count -= player->next;
-        player->next = 0;
-    }
-}
-
-void player_feed(Player *player, EntityTable *table, double t_s)
-{
-    for (bool more = true; more;) {
-        const double all_s = read_log(player, t_s);
-        more = !(all_s > t_s) && player->status == STATUS_OK;
-        const int had = player->count - player->next;
-        feed_until(player, table, fmin(t_s, all_s));
-        /* clocks that differ by more than what may be read ahead: the room grows */
-        if (more && had == player->count - player->next && player->ahead < 1 << 29) player->ahead *= 2;
     }
 }
 
 /* ---- queries ----------------------------------------------------------------------------------- */
 
-double player_time_s(const Player *player, double capture_s) { return capture_s + player->heard.tie_s; }
-double player_last_s(const Player *player) { return player->heard.latest_s; }
+double player_time_s(const Player *player, double capture_s) { return capture_s + player->tie_s; }
+double player_last_s(const Player *player) { return player->latest_s; }
 double player_fed_s(const Player *player) { return player->fed_s; }
 
 double player_arrival_s(const Player *player, double t_s)
 {
-    double capture_s = t_s - player->heard.tie_s;
+    double capture_s = t_s - player->tie_s;
     /* the difference is rounded; the sum decides */
-    while (capture_s + player->heard.tie_s > t_s) capture_s = nextafter(capture_s, -INFINITY);
-    for (double next_s; (next_s = nextafter(capture_s, INFINITY)) + player->heard.tie_s <= t_s;) capture_s = next_s;
+    while (capture_s + player->tie_s > t_s) capture_s = nextafter(capture_s, -INFINITY);
+    for (double next_s; (next_s = nextafter(capture_s, INFINITY)) + player->tie_s <= t_s;) capture_s = next_s;
     return capture_s;
 }
 
@@ -404,4 +366,3 @@ void player_forgotten(uint64_t *shots, uint64_t *munitions, const Player *player
 }
 
 const DisCounters *player_counters(const Player *player) { return &player->counters; }
-Status player_status(const Player *player) { return player->status; }

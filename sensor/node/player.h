@@ -18,8 +18,8 @@ void   player_destroy(Player *player);
 
 /* Next datagram in order of arrival. keep: its octets are copied, else they must outlive the player. */
 Status player_add(Player *player, const DisDatagram *datagram, bool keep);
-/* All datagrams of a log, which must outlive the player and is read again as it is fed: a PDU takes 32 octets from where the
- * log is read to until it is fed. */
+/* All datagrams of a log, which must outlive the player: a PDU takes 64 octets, and is read again from a log on
+ * disk when it is fed. */
 Status player_add_log(Player *player, const DisLog *log);
 
 /* Feeds everything that counts at or before t_s and was not fed before. Timed-out entities are removed by the
@@ -51,8 +51,6 @@ bool   player_munition(DisEntityId *munition, bool *guided, const Player *player
 /* Fire PDUs and munitions dropped for newer ones, since only the latest are stored. */
 void   player_forgotten(uint64_t *shots, uint64_t *munitions, const Player *player);
 
-/* STATUS_NO_MEMORY: there was no room for what was to be fed. */
-Status player_status(const Player *player);
 const DisCounters *player_counters(const Player *player); /* all PDUs added, and those of them that the table
                                                            * rejected */
 

@@ -143,11 +143,14 @@ Status radar_preset_read(RadarPreset *out, const char *path, const char *name)
         if (row < t.rows) {
             status = read_row(out, &t, row);
         } else {
+            WordMeant meant = word_meant(name);
             char   names[400] = "";
             size_t n = 0;
+            for (int i = 0; i < t.rows; i++) word_consider(&meant, table_text(&t, i, column));
+            word_consider(&meant, "none");
             for (int i = 0; i < t.rows && n + 40 < sizeof names; i++)
                 n += (size_t)snprintf(names + n, sizeof names - n, "%s%.32s", i ? ", " : "", table_text(&t, i, column));
-            log_error("radars: '%s' is no row of %s; it has %s", name, path, names);
+            log_error("radars: '%s' is no row of %s; it has %s%s", name, path, names, word_hint(&meant));
         }
     }
     table_close(&t);

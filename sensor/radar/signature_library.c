@@ -190,7 +190,7 @@ static void refused(SignatureLibrary *l, const char *path)
     const bool tell = !l->told;
     l->told = true;
     pthread_mutex_unlock(&l->lock);
-    if (tell) log_warn("radar: %s is damaged; its signature is made anew and the file replaced", path);
+    if (tell) log_warn("radar: %s is damaged; its signature is computed again and the file replaced", path);
 }
 
 /* The whole file; NULL: not there, or not of a length that one can have. */

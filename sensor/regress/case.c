@@ -160,6 +160,44 @@ bool case_path(char out[case_path_size], char reason[256], const Case *c, const 
     return false;
 }
 
+/* Every `from/` at the start of a path, which follows a quote, a comma or a blank, becomes to. */
+static Status replace_folder(char **text, const char *from, const char *to)
+{
+    const size_t length = strlen(from);
+    char        *made = NULL;
+    size_t       octets;
+    FILE        *file = length > 1 ? open_memstream(&made, &octets) : NULL;
+    if (length <= 1) return STATUS_OK;
+    if (!file) return STATUS_NO_MEMORY;
+    for (const char *at = *text; *at; at++) {
+        const bool starts = at > *text && strchr("\", '", at[-1]);
+        if (starts && strncmp(at, from, length) == 0 && at[length] == '/') {
+            fputs(to, file);
+            at += length;
+        } else {
+            fputc(*at, file);
+        }
+    }
+    if (fclose(file) != 0) {
+        free(made);
+        return STATUS_NO_MEMORY;
+    }
+    free(*text);
+    *text = made;
+    return STATUS_OK;
+}
+
+Status case_relative(char **text, const Case *c)
+{
+    const char *data = getenv("PITVIPER_DATA");
+    char       *folder = realpath(c->folder, NULL), *shared = data && *data ? realpath(data, NULL) : NULL;
+    Status      status = folder ? replace_folder(text, folder, "") : STATUS_OK;
+    if (status == STATUS_OK && shared) status = replace_folder(text, shared, "${PITVIPER_DATA}/");
+    free(folder);
+    free(shared);
+    return status;
+}
+
 void case_write_keys(FILE *to)
 {
     const Case plain = case_default();

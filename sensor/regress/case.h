@@ -67,6 +67,9 @@ Status case_read_file(Case *out, const char *path);
 /* Path of a file that the case names: ${NAME} from the environment, else relative to the folder. False, with the
  * reason, when that variable is not set or the path too long. */
 bool   case_path(char out[case_path_size], char reason[256], const Case *c, const char *name);
+/* Replaces, in text on the heap, absolute paths in the case's folder by relative ones and those in $PITVIPER_DATA by
+ * ${PITVIPER_DATA}/..., so that a baseline is the same wherever it was made. */
+Status case_relative(char **text, const Case *c);
 /* The keys of case.yaml with ranges and meaning: for --help. */
 void   case_write_keys(FILE *to);
 

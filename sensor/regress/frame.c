@@ -199,7 +199,7 @@ static Status read_profile_csv(RecordFrame *f, const char *path)
         }
         if (status == STATUS_OK) round_plane(f->profile[b], (size_t)f->bins, &profile_rounding);
     }
-    if (!whole) log_error("regress: %s: is no range profile as replay writes it", path);
+    if (!whole) log_error("regress: %s: is not a range profile as replay writes it", path);
     table_close(&table);
     return status;
 }

@@ -78,9 +78,9 @@ typedef struct Suite {
 
 static int refuse(const char *format, const char *text)
 {
-    log_error(format, text);
-    fputs("see `pitviper regress --help`\n", stderr);
-    return 1 + 2;
+    char line[512];
+    snprintf(line, sizeof line, format, text);
+    return 1 + wrong_line("regress", "%s", line);
 }
 
 static bool parse_count(int *out, const char *text)
@@ -109,35 +109,32 @@ static int parse(Options *o, int argc, char **argv)
         case WORK: o->work = optarg; break;
         case JOBS:
             if (!parse_count(&o->jobs, optarg))
-                return refuse("regress: --jobs: '%s' is not a whole number in 1 .. 256", optarg);
+                return refuse("--jobs: '%s' is not a whole number in 1 .. 256", optarg);
             break;
         case THREADS:
             if (!parse_count(&o->threads, optarg))
-                return refuse("regress: --threads: '%s' is not a whole number in 1 .. 256", optarg);
+                return refuse("--threads: '%s' is not a whole number in 1 .. 256", optarg);
             break;
         case ISA:
             if (strcmp(optarg, "avx2") != 0 && strcmp(optarg, "sse4.2") != 0 && strcmp(optarg, "avx512") != 0)
-                return refuse("regress: --isa: '%s' is not avx2, sse4.2 or avx512", optarg);
+                return refuse("--isa: '%s' is not avx2, sse4.2 or avx512", optarg);
             o->isa = optarg;
             break;
         case ALLOW: o->allow_missing = true; break;
         case KEYS: case_write_keys(stdout); return 1;
         case HELP: fputs(help, stdout); return 1;
-        default: fputs("see `pitviper regress --help`\n", stderr); return 1 + 2;
+        default: return 1 + 2; /* reported by next_option */
         }
     }
-    if (optind == argc) {
-        fputs("usage: pitviper regress CASE ... [options]; see `pitviper regress --help`\n", stderr);
-        return 1 + 2;
-    }
+    if (optind == argc) return refuse("no CASE is named: usage: pitviper regress CASE ... [options]%s", "");
     if (o->update && (!o->why || strspn(o->why, " \t\r\n") == strlen(o->why)))
-        return refuse("regress: --update needs --why TEXT: %s",
+        return refuse("--update needs --why TEXT: %s",
                       "one sentence why the baseline changes; card.md keeps it");
-    if (o->why && !o->update) return refuse("regress: --why needs --update; %s", "give both, or neither");
+    if (o->why && !o->update) return refuse("--why needs --update; %s", "give both, or neither");
     if (o->update && (o->junit || o->report))
-        return refuse("regress: --update makes no comparison, so --junit and --report do not apply; %s",
+        return refuse("--update makes no comparison, so --junit and --report do not apply; %s",
                       "run again without --update");
-    if (o->work && !*o->work) return refuse("regress: --work: the name of the folder is empty%s", "");
+    if (o->work && !*o->work) return refuse("--work: the name of the folder is empty%s", "");
     return 0;
 }
 

@@ -29,12 +29,11 @@ static void say(CaseResult *r, const char *text)
 void run_case_log(void *user, LogLevel level, const char *line)
 {
     (void)user;
-    const char *head = level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "";
     if (!case_here) {
-        fprintf(stderr, "%s%s\n", head, line);
+        fprintf(stderr, "%s%s\n", log_head(level), line);
         return;
     }
-    say(case_here, head);
+    say(case_here, log_head(level));
     say(case_here, line);
     say(case_here, "\n");
 }
@@ -43,8 +42,9 @@ void run_case_log(void *user, LogLevel level, const char *line)
 static void last_error(char *out, size_t out_size, const char *said)
 {
     const char *found = NULL;
-    for (const char *at = said; (at = strstr(at, "error: ")); at++)
-        if (at == said || at[-1] == '\n') found = at + 7;
+    const char *const head = log_head(LOG_ERROR);
+    for (const char *at = said; (at = strstr(at, head)); at++)
+        if (at == said || at[-1] == '\n') found = at + strlen(head);
     if (found) snprintf(out, out_size, "%.*s", (int)strcspn(found, "\n"), found);
     else snprintf(out, out_size, "no error message");
 }

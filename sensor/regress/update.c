@@ -34,8 +34,8 @@ static Status copy_file(const char *from_folder, const char *to_folder, const ch
     return status;
 }
 
-/* run.json without what differs in every run, so that an equal run gives an equal file. */
-static Status copy_run(const char *from_folder, const char *to_folder)
+/* run.json without what differs in every run and place, so that an equal run gives an equal file. */
+static Status copy_run(const char *from_folder, const char *to_folder, const Case *c)
 {
     static const char *const other[] = {"timings_ms", "threads"};
     char   path[path_size], *text, *same = NULL;
@@ -45,6 +45,7 @@ static Status copy_run(const char *from_folder, const char *to_folder)
     if (status != STATUS_OK) return status;
     status = json_text_without(&same, text, octets, other, 2, "regress", path);
     free(text);
+    if (status == STATUS_OK) status = case_relative(&same, c);
     snprintf(path, sizeof path, "%.4090s/run.json", to_folder);
     if (status == STATUS_OK) status = write_file(path, same, strlen(same));
     free(same);
@@ -88,7 +89,7 @@ static Status write_products(const CaseResult *r, const char *out, const char *t
         frame_free(&frame);
     }
     if (status == STATUS_OK) status = copy_file(out, to, "truth.jsonl");
-    if (status == STATUS_OK) status = copy_run(out, to);
+    if (status == STATUS_OK) status = copy_run(out, to, &r->c);
     return status;
 }
 

@@ -320,14 +320,14 @@ __attribute__((format(printf, 2, 3))) static void remark(Verdict *v, const char 
     va_end(arguments);
 }
 
-static Status read_json(JsonValues *out, const char *folder, const char *name)
+static Status read_json(JsonValues *out, const Case *c, const char *folder, const char *name)
 {
-    char   path[case_path_size + 32], *text;
+    char   path[case_path_size + 32], *text = NULL;
     size_t octets;
     snprintf(path, sizeof path, "%s/%s", folder, name);
     Status status = text_read_file(&text, &octets, "regress", path, file_most);
-    if (status != STATUS_OK) return status;
-    status = json_values_read(out, text, octets, "regress", path);
+    if (status == STATUS_OK) status = case_relative(&text, c);
+    if (status == STATUS_OK) status = json_values_read(out, text, strlen(text), "regress", path);
     free(text);
     return status;
 }
@@ -377,10 +377,10 @@ static bool has_group(const JsonValues *values, const char *head)
 /* Inputs: tables, settings, log. */
 static void remark_inputs(Verdict *v, const JsonValues *was, const JsonValues *is)
 {
-    int settings = 0;
     if (has_group(was, "tables_sha256.")) remark_group(v, was, is, "tables_sha256.", true);
-    if (has_group(was, "settings.")) settings = remark_group(v, was, is, "settings.", false);
-    if (settings == 0 && strcmp(text_of(was, "config_sha256"), text_of(is, "config_sha256")) != 0)
+    if (has_group(was, "settings.")) remark_group(v, was, is, "settings.", false);
+    /* where it lists them, their hash says no more: it is of absolute paths */
+    if (!has_group(was, "settings.") && strcmp(text_of(was, "config_sha256"), text_of(is, "config_sha256")) != 0)
         remark(v, "settings are not those of the baseline (config_sha256), which does not list them");
     v->other_log = strcmp(text_of(was, "log_sha256"), text_of(is, "log_sha256")) != 0;
     if (v->other_log) remark(v, "the log is not that of the baseline (log_sha256)");
@@ -514,8 +514,8 @@ Status verdict_of(Verdict *out, const Case *c, const char *record, const char *r
 {
     JsonValues was = {0}, is = {0};
     *out = (Verdict){.first = -1};
-    Status status = read_json(&was, record, "run.json");
-    if (status == STATUS_OK) status = read_json(&is, run, "run.json");
+    Status status = read_json(&was, c, record, "run.json");
+    if (status == STATUS_OK) status = read_json(&is, c, run, "run.json");
     if (status == STATUS_OK) {
         remark_runs(out, &was, &is);
         verdict_counters(out->channel, &was, &is);

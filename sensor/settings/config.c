@@ -6,6 +6,7 @@
 #include "pitviper_file.h"
 
 #include "dis/pdu.h"
+#include "sensor/settings/band_choice.h"
 #include "sensor/settings/memory_choice.h"
 #include "sensor/settings/plane_choice.h"
 #include "sensor/settings/span.h"
@@ -30,7 +31,7 @@ static const Setting keys[] = {
      "rays along each side of a pixel that differs from its neighbours; adaptive only"},
     {"sensor.target_samples", SETTING_INT, AT(sensor.target_samples), 8, 256, NULL, "",
      "rays along each side of the grid over a target below 16 px; adaptive only"},
-    {"sensor.bands", SETTING_TEXT, AT(sensor.bands), 0, 0, NULL, "",
+    {"sensor.bands", SETTING_WORDS, AT(sensor.bands), 0, 0, NULL, "",
      "any of optical,mwir,lwir,radar, and further channels of etc/channels.csv in the place of one of these: swir"},
     {"sensor.optical", SETTING_TEXT, AT(sensor.optical), 0, 0, "rgb|pan|nir", "",
      "three visible channels, one panchromatic, or one of 0.7-1.1 um"},
@@ -56,8 +57,8 @@ static const Setting keys[] = {
     {"sensor.mount_pitch_deg", SETTING_DOUBLE, AT(sensor.mount_pitch_deg), -90, 90, NULL, "deg", "then pitch, up"},
     {"sensor.mount_roll_deg", SETTING_DOUBLE, AT(sensor.mount_roll_deg), -180, 180, NULL, "deg",
      "roll of the stabilised image against upright, right side down"},
-    {"sensor.preset", SETTING_TEXT, AT(sensor.preset), 0, 0, NULL, "",
-     "none, or rows of etc/sensors.csv, one per band, comma separated: staring_lwir,staring_mwir,tv"},
+    {"sensor.preset", SETTING_WORDS, AT(sensor.preset), 0, 0, NULL, "",
+     "none, or rows of etc/sensors.csv, one per band, separated by commas, or a list: staring_lwir,staring_mwir,tv"},
     {"sensor.table", SETTING_PATH, AT(sensor.table), 0, 0, NULL, "",
      "a sensor's data sheet with FLIR92's entries (etc/sensors/example_flir2.sheet), which takes precedence over "
      "sensor.preset; or a .csv with the columns of etc/sensors.csv, whose rows sensor.preset may name"},
@@ -122,13 +123,13 @@ static const Setting keys[] = {
      "a .csv with the columns of etc/radars.csv, whose rows radar.preset names in place of those"},
     {"radar.ground", SETTING_BOOL, AT(radar.ground), 0, 1, NULL, "", "that radar's echoes of ground and plants; with a preset"},
     {"radar.ground_bounce", SETTING_BOOL, AT(radar.ground_bounce), 0, 1, NULL, "",
-     "the ground near entities mirrors that radar's waves to them and back; with a preset"},
+     "reflections of that radar's waves by the ground near entities, on the way in and out; with a preset"},
     {"radar.chaff_dipoles", SETTING_DOUBLE, AT(radar.chaff_dipoles), 0, 1e10, NULL, "",
      "dipoles in resonance with that radar in a cloud of chaff (type 8.*.*.1 or .3); 0: chaff is not seen"},
     {"radar.warp_mm", SETTING_DOUBLE, AT(radar.warp_mm), 0, 20, NULL, "mm",
-     "unevenness of entities' surfaces for that radar, rms over 0.5 m: models are planer than sheet metal; 0: as they are"},
+     "unevenness of entities' surfaces for that radar, rms over 0.5 m: models are flatter than real sheet metal; 0: unchanged"},
     {"radar.given", SETTING_PATH, AT(radar.given), 0, 0, NULL, "",
-     "CSV file of signatures for that radar, measured or from another program, that stand in for models; empty: none"},
+     "CSV file of signatures for that radar, measured or from another program, that replace those of models; empty: none"},
     {"radar.library", SETTING_PATH, AT(radar.library), 0, 0, NULL, "",
      "folder of targets' signatures for that radar (`pitviper rcs MODEL --library`), read and added to; it changes times, not bits"},
     {"radar.scan_deg", SETTING_DOUBLE, AT(radar.scan_deg), 0, 160, NULL, "deg",
@@ -170,7 +171,7 @@ static const Setting keys[] = {
     {"publish.files", SETTING_BOOL, AT(publish.files), 0, 1, NULL, "",
      "write image files; truth.jsonl and run.json are written without them, too"},
     {"publish.png", SETTING_BOOL, AT(publish.png), 0, 1, NULL, "", "write display images beside the EXR files"},
-    {"publish.planes", SETTING_TEXT, AT(publish.planes), 0, 0, NULL, "",
+    {"publish.planes", SETTING_WORDS, AT(publish.planes), 0, 0, NULL, "",
      "truth planes to write: all, none, or any of range,entity,part,material,temperature,normal,emissivity,instance,cover"},
     {"publish.pairs", SETTING_TEXT, AT(publish.pairs), 0, 0, "off|target|all", "",
      "replay only: render each frame also without its target, or without any entity, and both without noise"},
@@ -235,7 +236,7 @@ static const Setting keys[] = {
     {"weather.cloud", SETTING_DOUBLE, AT(weather.cloud), 0, 1, NULL, "",
      "mean share of the sky that clouds cover, which dim the sun and warm the sky"},
     {"weather.rain_mmh", SETTING_DOUBLE, AT(weather.rain_mmh), 0, 300, NULL, "mm/h",
-     "rain: weakens and returns what radar.preset sends, and wets the ground; other bands do not see it: lower "
+     "rain rate; attenuates and scatters the waves of radar.preset, and wets the ground; the other bands do not show it: lower "
      "weather.visibility_m for them"},
     {"heat.vehicle_step_s", SETTING_DOUBLE, AT(heat.vehicle_step_s), 1, 600, NULL, "s",
      "longest step of the heat of vehicles, people and buildings"},
@@ -260,7 +261,7 @@ static const Setting keys[] = {
     {"terrain.store", SETTING_PATH, AT(terrain.store), 0, 0, NULL, "",
      "terrain store of `pitviper terrain import`, instead of elevation, cover and orthophoto; empty: none"},
     {"terrain.elevation", SETTING_PATHS, AT(terrain.elevation), 0, 0, NULL, "",
-     "elevation files or folders, comma separated; empty: synthetic terrain"},
+     "elevation files or folders, separated by commas, or a list; empty: synthetic terrain"},
     {"terrain.vertical", SETTING_TEXT, AT(terrain.vertical), 0, 0, "auto|geoid|ellipsoid", "",
      "vertical datum of the files; auto: from their CRS, else the geoid"},
     {"terrain.geoid", SETTING_PATH, AT(terrain.geoid), 0, 0, NULL, "", "geoid grid (.gtx); empty: EGM96 of proj-data"},
@@ -288,7 +289,7 @@ static const Setting keys[] = {
     {"terrain.woods_leaves", SETTING_TEXT, AT(terrain.woods_leaves), 0, 0, "on|off", "",
      "leaves of deciduous trees; off: bare, as in winter"},
     {"terrain.woods_sway", SETTING_DOUBLE, AT(terrain.woods_sway), 0, 5, NULL, "",
-     "how far plants sway in the wind of weather.wind_mps: 1 as they do, 0 not at all"},
+     "amplitude of the sway of plants in the wind of weather.wind_mps: 1 realistic, 0 none"},
     {"terrain.woods_level1_px", SETTING_DOUBLE, AT(terrain.woods_level1_px), 0, 1000, NULL, "px",
      "plants lower than this in the image are traced with fewer, larger leaves; 0: none, all in full detail"},
     {"terrain.woods_low_m", SETTING_DOUBLE, AT(terrain.woods_low_m), 0, 1000, NULL, "m",
@@ -316,7 +317,7 @@ static const Setting keys[] = {
     {"entities.shown", SETTING_INT, AT(entities.shown), 1, 1000000, NULL, "",
      "most entities in a frame: those whose reports lie nearest the host's"},
     {"entities.new_per_s", SETTING_INT, AT(entities.new_per_s), 1, 1000000, NULL, "1/s",
-     "most entities that one sender may add, in a second and at once; what is over is counted"},
+     "most entities that one sender may add, in a second and at once; those beyond are counted"},
     {"quality.budget", SETTING_TEXT, AT(quality.budget), 0, 0, "off|on", "",
      "each frame's estimate of its own error, in truth.jsonl; changes no image"},
     {"quality.radiance_rmse_percent", SETTING_DOUBLE, AT(quality.radiance_rmse_percent), 0.01, 1000, NULL, "%",
@@ -467,12 +468,14 @@ ConfigKind config_kind(const char *name)
 
 Status config_set(Config *config, const char *name, const char *value, const char *source)
 {
-    return settings_set(config, config->given, &table, name, value, source);
+    return config_set_from(config, name, value, source, NULL);
 }
 
 Status config_set_from(Config *config, const char *name, const char *value, const char *source, const char *file)
 {
-    return settings_set_from(config, config->given, &table, name, value, source, file);
+    const Status status = settings_set_from(config, config->given, &table, name, value, source, file);
+    if (status == STATUS_OK) config->later[settings_find(&table, name)] = true;
+    return status;
 }
 
 int config_line(const char *name, const char *path) { return settings_line(&table, name, path); }
@@ -514,8 +517,32 @@ Status config_read_as(Config *config, const char *path, const char *file)
 {
     Config       filled = *config;
     const Status status = settings_read_as(&filled, filled.given, &table, path, file);
-    if (status == STATUS_OK) *config = filled;
+    if (status != STATUS_OK) return status;
+    *config = filled;
+    memset(config->later, 0, sizeof config->later);
+    snprintf(config->file, sizeof config->file, "%s", strlen(path) < sizeof config->file ? path : "");
+    return STATUS_OK;
+}
+
+Status config_read_checked(Config *config, const char *path)
+{
+    Status status = settings_read_as(config, config->given, &table, path, path);
+    snprintf(config->file, sizeof config->file, "%s", strlen(path) < sizeof config->file ? path : "");
+    if ((status == STATUS_OK || status == STATUS_BAD_VALUE) && config_check(config) != STATUS_OK) status = STATUS_BAD_VALUE;
+    log_suppress(true);
+    if (!bands_check(config->sensor.bands, "")) /* reported: what follows is checked with all bands */
+        strcpy(config->sensor.bands, config_default().sensor.bands);
+    log_suppress(false);
     return status;
+}
+
+const char *config_where(const Config *config, const char *key)
+{
+    static _Thread_local char text[sizeof config->file + 16];
+    const int row = settings_find(&table, key);
+    const int line = *config->file && config->given[row] && !config->later[row] ? config_line(key, config->file) : 0;
+    snprintf(text, sizeof text, "%s:%d: ", config->file, line);
+    return line > 0 ? text : "";
 }
 
 /* A store has all of the ground: nothing else can be named beside it, and it is not fitted to an exercise. */
@@ -544,15 +571,21 @@ static bool store_alone(const Config *config)
 
 Status config_check(const Config *config)
 {
-    if (!settings_paths_good(config, &table, "publish.video,record.path")) return STATUS_BAD_VALUE;
+    bool good = settings_paths_good(config, &table, "publish.video,record.path");
+    good &= bands_check(config->sensor.bands, config_where(config, "sensor.bands"));
     if (config->detector.bits != 8 && config->detector.bits != 16) {
-        log_error("config: detector.bits: %d is not 8 or 16", config->detector.bits);
-        return STATUS_BAD_VALUE;
+        log_error("config: %sdetector.bits: %d is not 8 or 16", config_where(config, "detector.bits"), config->detector.bits);
+        good = false;
     }
-    if (!(config->detector.lwir_low_k < config->detector.lwir_high_k) ||
-        !(config->detector.mwir_low_k < config->detector.mwir_high_k)) {
-        log_error("config: detector: the low level must be below the high one");
-        return STATUS_BAD_VALUE;
+    if (!(config->detector.lwir_low_k < config->detector.lwir_high_k)) {
+        log_error("config: %sdetector.lwir_low_k: %g is not below detector.lwir_high_k, %g K",
+                  config_where(config, "detector.lwir_low_k"), config->detector.lwir_low_k, config->detector.lwir_high_k);
+        good = false;
+    }
+    if (!(config->detector.mwir_low_k < config->detector.mwir_high_k)) {
+        log_error("config: %sdetector.mwir_low_k: %g is not below detector.mwir_high_k, %g K",
+                  config_where(config, "detector.mwir_low_k"), config->detector.mwir_low_k, config->detector.mwir_high_k);
+        good = false;
     }
     static const char *const of_preset[] = {"detector.f_number", "detector.obscuration", "detector.integration_ms",
                                             "detector.jitter_px", "detector.bad_share", "detector.ac_per_line",
@@ -560,94 +593,108 @@ Status config_check(const Config *config)
     for (size_t i = 0; i < sizeof of_preset / sizeof *of_preset; i++)
         if (strcmp(config->sensor.preset, "none") == 0 && !*config_sheet(config) &&
             config_given(config, of_preset[i])) {
-            log_error("config: %s: overrides a sensor preset; choose one with sensor.preset or sensor.table",
-                      of_preset[i]);
-            return STATUS_BAD_VALUE;
+            log_error("config: %s%s: overrides a sensor preset; choose one with sensor.preset or sensor.table",
+                      config_where(config, of_preset[i]), of_preset[i]);
+            good = false;
         }
     if (table_has_rows(config) && strcmp(config->sensor.preset, "none") == 0) {
-        log_error("config: sensor.table: %s is a table of sensors; choose one of its rows with sensor.preset",
-                  config->sensor.table);
-        return STATUS_BAD_VALUE;
+        log_error("config: %ssensor.table: %s is a table of sensors; choose one of its rows with sensor.preset",
+                  config_where(config, "sensor.table"), config->sensor.table);
+        good = false;
     }
-    if (!store_alone(config)) return STATUS_BAD_VALUE;
+    good = store_alone(config) && good;
     if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&
         !(config->terrain.spacing_m >= 1 && config->terrain.spacing_m <= 30)) {
-        log_error("config: terrain.spacing_m: %g is not 0 or 1 .. 30 m for synthetic terrain",
-                  config->terrain.spacing_m);
-        return STATUS_BAD_VALUE;
+        log_error("config: %sterrain.spacing_m: %g is not 0 or 1 .. 30 m for synthetic terrain",
+                  config_where(config, "terrain.spacing_m"), config->terrain.spacing_m);
+        good = false;
     }
-    if (!*config->terrain.elevation && (*config->terrain.cover || *config->terrain.orthophoto)) {
-        log_error("config: terrain.%s needs terrain.elevation: synthetic terrain does not match real land cover",
+    if (!*config->terrain.elevation && !*config->terrain.store &&
+        (*config->terrain.cover || *config->terrain.orthophoto)) {
+        log_error("config: %sterrain.%s needs terrain.elevation: synthetic terrain does not match real land cover",
+                  config_where(config, *config->terrain.cover ? "terrain.cover" : "terrain.orthophoto"),
                   *config->terrain.cover ? "cover" : "orthophoto");
-        return STATUS_BAD_VALUE;
+        good = false;
     }
     const bool pairs = strcmp(config->publish.pairs, "off") != 0;
     if ((pairs || config->publish.coco) && !config->publish.files) {
-        log_error("config: publish.%s: needs image files; set publish.files: true", pairs ? "pairs" : "coco");
-        return STATUS_BAD_VALUE;
+        log_error("config: %spublish.%s: needs image files; set publish.files: true",
+                  config_where(config, pairs ? "publish.pairs" : "publish.coco"), pairs ? "pairs" : "coco");
+        good = false;
     }
     DisEntityId id;
     double      unix_s;
     unsigned    planes;
     if (!plane_choice_parse(&planes, config->publish.planes)) {
-        log_error("config: publish.planes: '%s' is not all, none, or a list of range, entity, part, material, "
-                  "temperature, "
-                  "normal, emissivity, instance, cover, for example range,entity", config->publish.planes);
-        return STATUS_BAD_VALUE;
+        char why[200];
+        plane_choice_why(why, sizeof why, config->publish.planes);
+        log_error("config: %spublish.planes: '%s' is not all, none, or a list of range, entity, part, material, "
+                  "temperature, normal, emissivity, instance, cover, each once, for example range,entity%s",
+                  config_where(config, "publish.planes"), config->publish.planes, why);
+        good = false;
     }
     const unsigned of_woods = 1u << PLANE_INSTANCE | 1u << PLANE_COVER;
     if (planes != planes_all && planes & of_woods && strcmp(config->terrain.woods, "on") != 0) {
-        log_error("config: publish.planes: instance and cover are of a world with plants: terrain.woods: on");
-        return STATUS_BAD_VALUE;
+        log_error("config: %spublish.planes: instance and cover are of a world with plants: terrain.woods: on",
+                  config_where(config, "publish.planes"));
+        good = false;
     }
     if (config->heat.facets % 2 == 0) {
-        log_error("config: heat.facets: %d is even; odd, 3 .. 17, so that one of them is level", config->heat.facets);
-        return STATUS_BAD_VALUE;
+        log_error("config: %sheat.facets: %d is even; odd, 3 .. 17, so that one of them is level",
+                  config_where(config, "heat.facets"), config->heat.facets);
+        good = false;
     }
     if (!strpbrk(config->weather.day, "/.") && strcmp(config->weather.day, "clear") != 0 &&
         strcmp(config->weather.day, "constant") != 0) {
-        log_error("config: weather.day: '%s' is neither clear nor constant nor the path of a weather file: ./%s",
-                  config->weather.day, config->weather.day);
-        return STATUS_BAD_VALUE;
+        WordMeant meant = word_meant(config->weather.day);
+        word_consider_list(&meant, "clear|constant", '|');
+        log_error("config: %sweather.day: '%s' is neither clear nor constant nor the path of a weather file: ./%s%s",
+                  config_where(config, "weather.day"), config->weather.day, config->weather.day, word_hint(&meant));
+        good = false;
     }
     if (!*config->sensor.mount) {
-        log_error("config: sensor.mount: is empty; auto, or a part of the host such as `primary turret`");
-        return STATUS_BAD_VALUE;
+        log_error("config: %ssensor.mount: is empty; auto, or a part of the host such as `primary turret`",
+                  config_where(config, "sensor.mount"));
+        good = false;
     }
     if (*config->exercise.host && strcmp(config->exercise.host, "munition") != 0 &&
         strcmp(config->exercise.host, "observer") != 0 && !dis_entity_id_parse(&id, config->exercise.host)) {
-        log_error("config: exercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor munition "
-                  "nor observer", config->exercise.host);
-        return STATUS_BAD_VALUE;
+        WordMeant meant = word_meant(config->exercise.host);
+        word_consider_list(&meant, "munition|observer", '|');
+        log_error("config: %sexercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor "
+                  "munition nor observer%s", config_where(config, "exercise.host"), config->exercise.host, word_hint(&meant));
+        good = false;
     }
     if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {
-        log_error("config: exercise.aim: '%s' is not site:application:entity, for example 1:3001:82",
-                  config->exercise.aim);
-        return STATUS_BAD_VALUE;
+        log_error("config: %sexercise.aim: '%s' is not site:application:entity, for example 1:3001:82",
+                  config_where(config, "exercise.aim"), config->exercise.aim);
+        good = false;
     }
     if (*config->exercise.utc && !text_to_unix_s(&unix_s, config->exercise.utc)) {
-        log_error("config: exercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100",
-                  config->exercise.utc);
-        return STATUS_BAD_VALUE;
+        log_error("config: %sexercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100",
+                  config_where(config, "exercise.utc"), config->exercise.utc);
+        good = false;
     }
     const char *const moment[2] = {config->exercise.from, config->exercise.to};
+    bool good_spans = true;
     for (int i = 0; i < 2; i++)
         if (!span_good(moment[i])) {
-            log_error("config: exercise.%s: '%s' is not a number of seconds: 3471.5 is exercise time, +12 is from the "
-                      "recording's start, -5 from its end", i ? "to_s" : "from_s", moment[i]);
-            return STATUS_BAD_VALUE;
+            good_spans = false;
+            log_error("config: %sexercise.%s: '%s' is not a number of seconds: 3471.5 is exercise time, +12 is from the "
+                      "recording's start, -5 from its end", config_where(config, i ? "exercise.to_s" : "exercise.from_s"),
+                      i ? "to_s" : "from_s", moment[i]);
+            good = false;
         }
-    if (span_backward(config->exercise.from, config->exercise.to)) {
-        log_error("config: exercise.from_s: %s is after exercise.to_s: %s", config->exercise.from, config->exercise.to);
-        return STATUS_BAD_VALUE;
+    if (good_spans && span_backward(config->exercise.from, config->exercise.to)) {
+        log_error("config: %sexercise.from_s: %s is after exercise.to_s: %s", config_where(config, "exercise.from_s"), config->exercise.from, config->exercise.to);
+        good = false;
     }
-    if (*config->record.path && !dis_recorder_name("config: record.path", config->record.path)) return STATUS_BAD_VALUE;
-    const Status status = video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,
-                              config->sensor.bands);
+    good &= !*config->record.path || dis_recorder_name("config: record.path", config->record.path);
+    good &= video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,
+                              config->sensor.bands) == STATUS_OK;
     const bool sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config);
-    return status == STATUS_OK
-               ? memory_choice_check(config->publish.memory, config->publish.memory_planes, sensor)
-               : status;
+    good &= memory_choice_check(config->publish.memory, config->publish.memory_planes, sensor) == STATUS_OK;
+    return good ? STATUS_OK : STATUS_BAD_VALUE;
 }
 
 void config_text(char *out, size_t out_size, const Config *config)

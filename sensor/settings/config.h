@@ -2,7 +2,7 @@
  *
  * A configuration file is YAML, sections of keys. Names of files in it are relative to its own folder. A missing key
  * keeps its default; an unknown or repeated key or a value out of range is an error with file, line, key, value and the
- * accepted range. */
+ * accepted range; all of them are reported. */
 #ifndef SENSOR_SETTINGS_CONFIG_H
 #define SENSOR_SETTINGS_CONFIG_H
 
@@ -150,12 +150,18 @@ typedef struct Config {
     long long seed;
     bool      causal;
     bool      given[config_keys_max]; /* set by a file or the command line: not changed by a preset */
+    /* For messages: the last file read, empty where its name is longer, and which keys were set after it. */
+    char      file[512];
+    bool      later[config_keys_max];
 } Config;
 
 Config config_default(void);
 /* Sets the keys of the file, keeps the others. On failure logs and leaves the configuration as it was. */
 Status config_read(Config *config, const char *path);
-/* The same; paths in it are relative to the folder of `file`. */
+/* The same with config_check, for `pitviper check`: also where keys of the file are wrong, so that one run reports all;
+ * those keep their values. STATUS_BAD_VALUE: *config holds what is right. */
+Status config_read_checked(Config *config, const char *path);
+/* The same as config_read; paths in it are relative to the folder of `file`. */
 Status config_read_as(Config *config, const char *path, const char *file);
 /* One key, as on the command line: `sensor.width_px`, `720`. source: its origin, for messages. */
 Status config_set(Config *config, const char *key, const char *value, const char *source);
@@ -163,6 +169,8 @@ Status config_set(Config *config, const char *key, const char *value, const char
 Status config_set_from(Config *config, const char *key, const char *value, const char *source, const char *file);
 /* The line of a key in a file read by config_read; 0: not set there. */
 int    config_line(const char *key, const char *path);
+/* `node.yaml:3: ` where the key was set in a file, for messages; else "". Valid until the next call of the thread. */
+const char *config_where(const Config *config, const char *key);
 /* The data sheet of sensor.table; empty: none, or it is a .csv. */
 const char *config_sheet(const Config *config);
 /* Makes the tables of this configuration take precedence (etc_own), for the whole process. */
@@ -176,7 +184,7 @@ ConfigKind config_kind(const char *key);
 OpticalChannels config_optical(const Config *config);
 /* From sensor.antialias. */
 bool   config_adaptive(const Config *config);
-/* Checks that involve several keys. */
+/* Checks that involve several keys; logs every contradiction. */
 Status config_check(const Config *config);
 /* A file to start from: every key with its value, commented out, and its meaning. */
 void   config_write(FILE *to, const Config *config);

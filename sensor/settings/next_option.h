@@ -1,10 +1,14 @@
-/* sensor/settings/next_option.h: getopt_long with its messages escaped for the terminal (text_print). Used like
- * getopt_long; for '?' the error has been printed. */
+/* sensor/settings/next_option.h: the one parser of command lines: getopt_long with messages of its own. */
 #ifndef SENSOR_SETTINGS_NEXT_OPTION_H
 #define SENSOR_SETTINGS_NEXT_OPTION_H
 
 #include <getopt.h>
 
+/* Used like getopt_long, with optind = 0 before the first call. -h is --help where the list has it. For '?' the error
+ * has been logged, with the option that was perhaps meant. argv[0]: `pitviper COMMAND`. */
 int next_option(int argc, char **argv, const char *letters, const struct option *list);
+const char *command_of(const char *called); /* `replay` of `pitviper replay` */
+/* Logs what is wrong with a command line and where its help is. Returns 2, the exit code for it. command: `replay`. */
+int wrong_line(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #endif

@@ -108,14 +108,15 @@ static void print_help(CommandName command)
         "pixel\n"
         "and per target. Needs no configuration; automatic choices are printed with the key that changes them. LOG "
         "may\n"
-        "be compressed (gzip, zstd, bzip2, xz). When stopped by Ctrl-C (exit code 130) or SIGTERM (143) the frame is\n"
-        "finished, and run.json says `stopped`. A video of a band, at --rate 5:\n"
+        "be compressed (gzip, zstd, bzip2, xz), or a pipe. When stopped by Ctrl-C (exit code 130), SIGTERM (143) or\n"
+        "another signal N that would end it (128 + N) the frame is finished, and run.json says `stopped`. A video of a\n"
+        "band, at --rate 5:\n"
         "    ffmpeg -framerate 5 -pattern_type glob -i 'out/frames/lwir/*.png' -pix_fmt yuv420p lwir.mp4\n\n",
         "usage: pitviper run [-c FILE] [options]\n"
         "\n"
         "Renders a live DIS exercise: a node that listens on UDP, makes its automatic choices from what it receives\n"
-        "first (exercise.listen_s), and renders frames until it is stopped (Ctrl-C). It sends nothing unless told to\n"
-        "(--set publish.dis=sensor, or truth). A recording made with --record replays to the same images, to the bit.\n"
+        "first (exercise.listen_s), and renders frames until it is stopped (Ctrl-C, SIGTERM, SIGUSR1). It sends nothing\n"
+        "unless told to (--set publish.dis=sensor, or truth). A recording made with --record replays to the same images, to the bit.\n"
         "While there is no output the reason is reported, once each time it changes. Exit code 1 when no frame was\n"
         "rendered, or when nothing that was to be published could be sent or written; the reason is printed.\n\n"};
     fputs(about[command], stdout);
@@ -366,17 +367,14 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
             print_help(command);
             return 1 + 0;
         }
-        if (!row || !take(o, row, optarg) || !note_given(o, row, optarg)) {
-            fprintf(stderr, "see `pitviper %s --help`\n", name);
-            return 1 + 2;
-        }
+        if (!row || !take(o, row, optarg) || !note_given(o, row, optarg)) return 1 + 2;
     }
     if (optind + (command == COMMAND_REPLAY) != argc) {
         if (command == COMMAND_RUN)
-            log_error("options: '%s' is not an option; a live node takes no log, `replay` does", argv[optind]);
-        fprintf(stderr, "usage: pitviper %s [options]; see `pitviper %s --help`\n",
-                command == COMMAND_REPLAY ? "replay LOG" : "run [-c FILE]", name);
-        return 1 + 2;
+            return 1 + wrong_line(name, "'%s' is not an option; a live node takes no log, `pitviper replay` does",
+                                  argv[optind]);
+        if (optind == argc) return 1 + wrong_line(name, "no LOG is named: usage: pitviper replay LOG [options]");
+        return 1 + wrong_line(name, "one LOG at a time, not also '%s'", argv[optind + 1]);
     }
     if (command == COMMAND_REPLAY) o->log = argv[optind];
     if (o->host_count == 1 && config_set(&o->config, "exercise.host", o->host[0], "--host") != STATUS_OK) return 1 + 2;

@@ -19,4 +19,7 @@ extern const char *const plane_choice_name[PLANE_CHOICES];
 /* all, none, or a list of names with commas, as a set of 1 << PlaneChoice. False: it is neither. */
 bool plane_choice_parse(unsigned *planes, const char *text);
 
+/* What is wrong with a list that is refused: "; NAME is named twice", "; did you mean NAME?", or "". */
+void plane_choice_why(char *out, size_t out_size, const char *text);
+
 #endif

@@ -48,6 +48,8 @@ static Status add_sensor(Sensors *s, const Config *config, const char *name, uns
         if (has) from = own;
     }
     const Status status = name ? preset_read(&p, from, name) : sheet_read(&p, config->sensor.table);
+    if (status == STATUS_BAD_VALUE && *config_where(config, key))
+        log_error("config: %s%s: see the error above", config_where(config, key), key);
     if (status != STATUS_OK) return status;
     if (s->has[p.band]) {
         log_error("replay: %s: %s and %s are both for %s; choose one", key, s->preset[p.band].name, p.name,

@@ -90,7 +90,7 @@ static Status read_posts(Geoid *g, FILE *file, const char *path)
     Status status = row_octets && g->n_m ? STATUS_OK : STATUS_NO_MEMORY;
     for (int row = 0; status == STATUS_OK && row < g->rows; row++) {
         if (fread(row_octets, 4 * (size_t)g->columns, 1, file) != 1) {
-            log_error("geoid: %s ends in row %d of %d; install it anew: apt-get install --reinstall proj-data", path,
+            log_error("geoid: %s ends in row %d of %d; install it again: apt-get install --reinstall proj-data", path,
                       row, g->rows);
             status = STATUS_TRUNCATED;
             break;
@@ -101,7 +101,7 @@ static Status read_posts(Geoid *g, FILE *file, const char *path)
             memcpy(&n_m, &bits, sizeof n_m);
             if (fabsf(n_m - gap_m) < 1e-3f) n_m = NAN;
             else if (!(fabsf(n_m) <= 200)) {
-                log_error("geoid: %s: row %d, column %d is %g m, not within 200 m; install it anew: "
+                log_error("geoid: %s: row %d, column %d is %g m, not within 200 m; install it again: "
                           "apt-get install --reinstall proj-data", path, row, column, (double)n_m);
                 status = STATUS_BAD_VALUE;
                 break;

@@ -230,12 +230,40 @@ static bool is_within(const char *path)
                            (whole[length] == '/' || strcmp(only_within, "/") == 0));
 }
 
+/* GDAL looks for a coordinate system, world file, overviews and notes beside a file, under its name or another ending. */
+static bool beside_may_be_opened(const char *path, const char *key)
+{
+    static _Thread_local char plain[path_size]; /* the last folder that holds files and folders alone */
+    char           full[path_size], why[file_why_size];
+    const char    *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    const size_t   stem = dot ? (size_t)(dot - name) : strlen(name);
+    const int      folder = slash ? (int)(slash - path) + 1 : 0;
+    snprintf(full, sizeof full, "%.*s", folder ? folder : 1, folder ? path : ".");
+    if (strcmp(full, plain) == 0) return true;
+    DIR *directory = opendir(full);
+    bool good = true, odd = false;
+    snprintf(plain, sizeof plain, "%s", full);
+    for (struct dirent *entry; good && directory && (entry = readdir(directory));) {
+        struct stat about;
+        if (entry->d_type == DT_REG || entry->d_type == DT_DIR) continue;
+        snprintf(full, sizeof full, "%.*s%s", folder, path, entry->d_name);
+        if (stat(full, &about) != 0 || S_ISDIR(about.st_mode) || S_ISREG(about.st_mode)) continue;
+        odd = true;
+        if (strncasecmp(entry->d_name, name, stem) != 0 || (entry->d_name[stem] != '.' && entry->d_name[stem] != 0)) continue;
+        good = file_is_regular(why, full);
+        if (!good) log_error("%s: %s is read with what lies beside it: cannot read %s: %s", key, path, full, why);
+    }
+    if (directory) closedir(directory);
+    if (odd || !directory) *plain = 0;
+    return good;
+}
+
 /* GDAL opens by name and waits for a FIFO. Names that are no file's (a subdataset, a file in an archive) are its own. */
 static bool may_be_opened(const char *path, const char *key)
 {
     struct stat about;
     char        why[file_why_size] = "it lies outside the folder of the store that is made again of it";
-    if (is_within(path) && (stat(path, &about) != 0 || file_is_regular(why, path))) return true;
+    if (is_within(path) && (stat(path, &about) != 0 || file_is_regular(why, path))) return beside_may_be_opened(path, key);
     log_error("%s: cannot read %s: %s", key, path, why);
     return false;
 }
@@ -647,7 +675,7 @@ static bool read_kept(float *out, const Raster *raster, int x0, int y0, int widt
 
 static Status damaged(const RasterSheet *s, const char *key)
 {
-    log_error("%s: %s is damaged: %s; fetch it anew, or leave it out", key, s->path, reason("rows are missing"));
+    log_error("%s: %s is damaged: %s; fetch it again, or leave it out", key, s->path, reason("rows are missing"));
     return STATUS_IO;
 }
 

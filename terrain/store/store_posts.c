@@ -203,7 +203,7 @@ Status store_write_posts(StoreWriter *w, int index, int count, const float *z_m)
         job.z_m   = z_m;
         store_run(w->pool, take, quantise_row, &job);
         if (job.bad) {
-            log_error("store: %s: level %d, rows %d to %d: a height is no number, or beyond %.0f km", w->path, index,
+            log_error("store: %s: level %d, rows %d to %d: a height is not a number, or is beyond %.0f km", w->path, index,
                       job.first, job.first + take - 1, 1e-3 * level->step_m * elevation_highest_post);
             return STATUS_BAD_VALUE;
         }

@@ -247,6 +247,71 @@ static void a_sender_that_spreads_a_frame_is_proven(void **state)
     exercise_clock_destroy(clock);
 }
 
+/* On the hour a stamp is 0, of a sender that stamps. */
+static void a_stamp_of_zero_is_on_the_hour(void **state)
+{
+    (void)state;
+    ExerciseClock *clock = new_clock();
+    for (int i = -20; i < 20; i++)
+        CHECK_NEAR(exercise_clock_time(clock, 1, 1, stamp_of(3600 + 0.5 * i, false), 1000 + 0.5 * i + 0.1 * (i % 3 == 0)),
+                   3600 + 0.5 * i, tick_s);
+    CHECK(exercise_clock_anomalies(clock)->unstamped == 0);
+    exercise_clock_destroy(clock);
+}
+
+/* Two programs of one site and application, with clocks of their own. */
+static void two_senders_of_one_id_are_named(void **state)
+{
+    (void)state;
+    ExerciseClock *clock = new_clock();
+    char           text[exercise_clock_anomaly_text_size];
+    bool           said = false;
+    for (int i = 0; i < 60; i++)
+        exercise_clock_report_time(clock, 7, 8, i % 2, stamp_of(100 + 0.5 * i + (i % 2 ? 600 : 0), false), 1e9 + 0.5 * i);
+    for (int i = 0; i < exercise_clock_anomalies(clock)->count; i++) {
+        exercise_clock_anomaly_text(text, sizeof text, &exercise_clock_anomalies(clock)->sender[i]);
+        said |= strstr(text, "7:8 follow two clocks 600.0 s apart: two senders") != NULL;
+    }
+    CHECK(said);
+    exercise_clock_destroy(clock);
+}
+
+/* Clocks that drift by 50 ppm against each other over ten minutes of jitter: offset and rate are found. */
+static void drift_is_followed(void **state)
+{
+    (void)state;
+    static ExerciseInstant at[6000];
+    ExerciseClock         *clock = new_clock();
+    for (int i = 0; i < 3000; i++)
+        for (int s = 0; s < 2; s++) {
+            const double t_s = 100 + 0.2 * i, late_s = i ? 0.4 * random_uniform(5, (uint64_t)s, 0, (uint64_t)i) : 0;
+            at[2 * i + s] = exercise_clock_instant(clock, 1, (uint16_t)(1 + s), 1,
+                                                   stamp_of(s ? 50 + 1.00005 * t_s : t_s, false), 1e9 + t_s + late_s);
+        }
+    exercise_clock_whole(clock);
+    for (int i = 0; i < 6000; i++) {
+        exercise_clock_whole_time(clock, &at[i]);
+        CHECK_NEAR(at[i].t_s, 100 + 0.2 * (i / 2), i % 2 ? 0.002 : tick_s); /* 30 ms without */
+    }
+    exercise_clock_destroy(clock);
+}
+
+/* Bundles of four entities, the first one late, each again 0.4 s later: neither a rate nor a clock that stands still. */
+static void bundles_that_come_twice_are_no_fault(void **state)
+{
+    (void)state;
+    ExerciseClock *clock = new_clock();
+    for (int i = 0; i < 60; i++)
+        for (int copy = 0; copy < 2; copy++)
+            for (int e = 0; e < 4; e++) {
+                const double t_s = 100 + i, late_s = (i ? 0 : 0.3) + 0.4 * copy;
+                CHECK_NEAR(exercise_clock_report_time(clock, 1, 1, e, stamp_of(t_s, false), 1e9 + t_s + late_s), t_s,
+                           i == 0 && copy ? 0.4 + tick_s : i == 1 && !copy && e == 0 ? 0.3 + tick_s : tick_s);
+            }
+    CHECK(exercise_clock_anomalies(clock)->count == 0);
+    exercise_clock_destroy(clock);
+}
+
 static void unstamped_senders_use_capture_time(void **state)
 {
     (void)state;
@@ -328,6 +393,10 @@ int main(void)
         cmocka_unit_test(stamps_that_are_no_clock_are_found_and_named),
         cmocka_unit_test(slight_rates_are_found_in_time),
         cmocka_unit_test(a_sender_that_spreads_a_frame_is_proven),
+        cmocka_unit_test(a_stamp_of_zero_is_on_the_hour),
+        cmocka_unit_test(two_senders_of_one_id_are_named),
+        cmocka_unit_test(drift_is_followed),
+        cmocka_unit_test(bundles_that_come_twice_are_no_fault),
         cmocka_unit_test(unstamped_senders_use_capture_time),
         cmocka_unit_test(foolish_capture_times_do_no_harm),
         cmocka_unit_test(senders_are_bounded),

@@ -335,11 +335,88 @@ static void every_misfit_has_its_reason(void **state)
     }
 }
 
+/* Zeros up to a multiple of 8 octets between PDUs and at the end; eight and more are no padding. */
+static void padded_bundles_are_walked(void **state)
+{
+    (void)state;
+    static uint8_t bytes[2000];
+    DisCounters    counters;
+    for (size_t zeros = 0; zeros <= 8; zeros++) {
+        memset(bytes, 0, sizeof bytes);
+        size_t at = put_header(bytes, 7, 1, 144) + zeros;
+        at += put_header(bytes + at, 7, 12, 28) + zeros;
+        at += put_header(bytes + at, 6, 1, 144) + zeros;
+        const bool taken = zeros < 8;
+        CHECK(walk(&counters, bytes, at) == (taken ? 3 : 1));
+        CHECK(all_drops(&counters) == !taken && counters.padded == (taken && zeros ? 3 : 0));
+    }
+}
+
+/* A length field of 0: taken where types and counts end exactly with the datagram, alone, in bundles, padded. */
+static void lengths_of_zero_are_found(void **state)
+{
+    (void)state;
+    static uint8_t bytes[20000];
+    DisCounters    counters;
+    const struct {
+        uint8_t type, count_at, count;
+        size_t  octets;
+    } sent[] = {{1, 19, 0, 144}, {1, 19, 3, 192}, {67, 19, 2, 104}, {2, 0, 0, 96}, {3, 101, 1, 120}, {12, 0, 0, 28},
+                {13, 0, 0, 44}, {14, 0, 0, 40}, {52, 0, 0, 32}, {53, 0, 0, 48}, {54, 0, 0, 40}};
+    const size_t kinds = sizeof sent / sizeof sent[0];
+    for (size_t i = 0; i < kinds; i++)
+        for (int extra = -1; extra <= 8; extra++) {
+            memset(bytes, 0, sizeof bytes);
+            put_header(bytes, 7, sent[i].type, 0);
+            if (sent[i].count_at) bytes[sent[i].count_at] = sent[i].count;
+            const bool   taken = extra >= 0 && extra < 8;
+            const size_t octets = sent[i].octets + (size_t)(extra + 1) - 1;
+            CHECK(walk(&counters, bytes, octets) == taken);
+            CHECK(counters.lengths_made == taken && counters.dropped[DIS_DROP_LENGTH_ZERO] == !taken);
+            if (taken) CHECK(dis_decode(&decoded, bytes, sent[i].octets) == STATUS_OK && decoded.type == sent[i].type);
+        }
+    size_t at = 0;
+    memset(bytes, 0, sizeof bytes);
+    for (size_t i = 0; i < kinds; i++) {
+        put_header(bytes + at, 7, sent[i].type, 0);
+        if (sent[i].count_at) bytes[at + sent[i].count_at] = sent[i].count;
+        at += sent[i].octets;
+    }
+    CHECK(walk(&counters, bytes, at) == (int)kinds && counters.lengths_made == kinds);
+    memset(bytes, 0, sizeof bytes); /* more than is looked at: refused, in time linear in their number */
+    for (int i = 0; i < 500; i++) put_header(bytes + 28 * i, 7, 12, 0);
+    CHECK(walk(&counters, bytes, 28 * 500) == 0 && counters.dropped[DIS_DROP_LENGTH_ZERO] == 1);
+    put_header(bytes, 7, 20, 0); /* Data: its length is its own */
+    CHECK(walk(&counters, bytes, 40) == 0 && counters.dropped[DIS_DROP_LENGTH_ZERO] == 1);
+}
+
+/* The family with reliability keeps every octet; where the request is. */
+static void reliable_ones_survive(void **state)
+{
+    (void)state;
+    static const struct { uint8_t type; size_t octets, request_at; } kind[] = {{52, 32, 28}, {53, 48, 44}, {54, 40, 36}};
+    Dice d = dice(9);
+    for (int round = 0; round < 300; round++) {
+        uint8_t wire[48], back[48];
+        const int k = round % 3;
+        roll_octets(&d, wire, sizeof wire);
+        wire[0] = 7, wire[2] = kind[k].type, wire[8] = 0, wire[9] = (uint8_t)kind[k].octets;
+        CHECK(dis_decode(&decoded, wire, kind[k].octets) == STATUS_OK);
+        CHECK(dis_encode(back, sizeof back, &decoded) == kind[k].octets && memcmp(back, wire, kind[k].octets) == 0);
+        const uint32_t request = k == 0 ? decoded.remove.request : k == 1 ? decoded.start.request : decoded.stop.request;
+        const uint8_t *at = wire + kind[k].request_at;
+        CHECK(request == ((uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3]));
+        CHECK(dis_decode(&decoded, wire, kind[k].octets - 1) != STATUS_OK);
+    }
+}
+
 static void names_are_whole_and_different(void **state)
 {
     (void)state;
     for (int i = 0; i < DIS_DROP_COUNT; i++)
-        for (int k = 0; k < i; k++) CHECK(strcmp(dis_drop_name((DisDrop)i), dis_drop_name((DisDrop)k)) != 0);
+        for (int k = 0; k < i; k++)
+            CHECK(strcmp(dis_drop_name((DisDrop)i), dis_drop_name((DisDrop)k)) != 0 &&
+                  strcmp(dis_drop_cause((DisDrop)i), dis_drop_cause((DisDrop)k)) != 0);
     CHECK(strcmp(dis_drop_name((DisDrop)DIS_DROP_COUNT), "unknown") == 0);
     CHECK(strcmp(dis_pdu_type_name(1), "Entity State") == 0 && strcmp(dis_pdu_type_name(72), "Attribute") == 0);
     CHECK(strcmp(dis_pdu_type_name(137), "unknown type") == 0);
@@ -439,6 +516,9 @@ int main(void)
         cmocka_unit_test(surplus_octets_are_ignored),
         cmocka_unit_test(bundles_are_walked),
         cmocka_unit_test(every_misfit_has_its_reason),
+        cmocka_unit_test(padded_bundles_are_walked),
+        cmocka_unit_test(lengths_of_zero_are_found),
+        cmocka_unit_test(reliable_ones_survive),
         cmocka_unit_test(names_are_whole_and_different),
         cmocka_unit_test(ids_as_text),
         cmocka_unit_test(ids_are_ordered_by_site_application_entity),

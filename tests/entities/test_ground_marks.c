@@ -372,7 +372,8 @@ static void a_pause_holds_trails_and_stands(void **state)
     CHECK(m->tracks == 3); /* the last one since the report */
     CHECK_NEAR(m->track[1].b_ecef[2], 50, 1e-9);
     CHECK(m->track[1].a_s == 9 && m->track[1].b_s == 11);
-    CHECK(m->stand[0].to_s == 12); /* its timeout */
+    CHECK(m->stand[0].to_s == INFINITY); /* it stands yet */
+    CHECK(marks_at(&f, 19)->stand[0].to_s == 18); /* its timeout, and the pause */
     fixture_close(&f);
 }
 

@@ -57,7 +57,7 @@ static void what_is_wrong_is_said(void **state)
     refused("vehicles:\n" TANK "shots:\n  - {from: Tank 1, at: \"\\ew\"}\n", ":4: shots: at: there is no '\\x1bw'");
     refused("vehicles:\n" TANK "shots:\n  - {from: Tank 1, at: Tank 1}\n", "shoots at itself");
     refused("vehicles:\n" TANK "shots:\n  - {from: Tank 1}\n", ":4: shots: give either at");
-    refused("vehicles:\n" TANK "shots:\n  - {from: Tank 1, at_m: [0, 9]}\n", "a place is no entity");
+    refused("vehicles:\n" TANK "shots:\n  - {from: Tank 1, at_m: [0, 9]}\n", "a place is not an entity");
     refused("dis: {version: 4}\n", ":1: dis.version: '4'~5 .. 7");
     refused("dis: {updates: true, version: 5}\n", "dis.updates: version 5 has no Entity State Update");
     refused("dis: {clock: yesterday}\n", "dis.clock: 'yesterday'~2024-06-21T18:00:00Z");

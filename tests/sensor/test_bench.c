@@ -217,7 +217,7 @@ static void what_it_does_not_know_it_refuses(void **state)
     (void)state;
     CHECK(COMMAND("bench") == 2);
     CHECK(COMMAND("bench", "nothing") == 2);
-    CHECK(COMMAND("bench", "judged", "--siz", "3x4") == 2);
+    CHECK(COMMAND("bench", "judged", "--sise", "3x4") == 2);
     CHECK(COMMAND("bench", "judged", "size", "3x4") == 2);
     CHECK(COMMAND("bench", "judged", "--model") == 2);
     CHECK(COMMAND("bench", "broken", "--size", "3x4") == 2); /* another suite's */

@@ -4,6 +4,7 @@
 #include "sensor/node/player.h"
 #include "tests/sensor/open_catalog.h"
 
+#include <stdlib.h>
 #include <unistd.h>
 
 enum { report_count = 3 };
@@ -254,6 +255,49 @@ static void no_spent_one_carries_the_sensor_again(void **state)
     entity_table_destroy(table);
 }
 
+/* More Fires of one munition than are read ahead, 500 a second; in each block of 20 they arrive in the reverse order. The
+ * target is that of the latest stamp that was fed, in one step and in many. */
+static void a_long_log_is_fed_in_the_order_of_stamps(void **state)
+{
+    (void)state;
+    enum { fires = 90000, block = 20 };
+    uint8_t(*octets)[96] = malloc(fires * sizeof *octets);
+    DisDatagram *heard = malloc(fires * sizeof *heard);
+    CHECK(octets && heard);
+    for (int i = 0; i < fires; i++) {
+        const int     k = i / block * block + block - 1 - i % block; /* stamped as number k */
+        const DisFire fire = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_fire, .family = 2,
+                                         .timestamp = (uint32_t)((100 + 0.002 * k) / 3600 * 2147483648.0) << 1},
+                              .firing = {1, 1, 7}, .target = {1, 2, (uint16_t)(1 + k % 65000)}, .munition = {1, 1, 41},
+                              .p_ecef = {6378137, 0, 0}};
+        const size_t n = dis_encode_fire(octets[i], sizeof octets[i], &fire);
+        CHECK(n > 0);
+        heard[i] = (DisDatagram){.capture_s = 1000 + 0.002 * i, .octets = (uint32_t)n, .bytes = octets[i]};
+    }
+    const DisLog log = {.count = fires, .datagram = heard};
+    int          off = -1;
+    for (int way = 0; way < 2; way++) {
+        EntityTable *table = make_table();
+        Player      *player = NULL;
+        DisEntityId  id = {0};
+        assert_int_equal(player_create(&player, -1, false), STATUS_OK);
+        assert_int_equal(player_add_log(player, &log), STATUS_OK);
+        for (int k = way ? 977 : 85001; k < fires; k += way ? 977 : fires) {
+            const double t_s = 100 + 0.002 * (k + 0.5);
+            player_feed(player, table, t_s);
+            CHECK(player_target(&id, player, (DisEntityId){1, 1, 41}));
+            const int behind = (1 + k % 65000 - id.entity + 65000) % 65000; /* the clock is a part of a second off, always */
+            if (off < 0) off = behind;
+            if (behind != off || off > 200) fail_msg("way %d, %d: %d behind, not %d", way, k, behind, off);
+            CHECK(t_s - player_fed_s(player) >= 0 && t_s - player_fed_s(player) < 0.00201);
+        }
+        player_destroy(player);
+        entity_table_destroy(table);
+    }
+    free(octets);
+    free(heard);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -264,6 +308,7 @@ int main(void)
         cmocka_unit_test(munitions_and_their_targets_are_known_when_they_were_heard),
         cmocka_unit_test(the_guided_one_carries_the_sensor_and_then_the_next),
         cmocka_unit_test(no_spent_one_carries_the_sensor_again),
+        cmocka_unit_test(a_long_log_is_fed_in_the_order_of_stamps),
     };
     return cmocka_run_group_tests(tests, open_catalog, close_catalog);
 }

@@ -143,10 +143,129 @@ static void a_mover_stays_where_it_is(void **state)
     }
 }
 
+/* ---- jitter ------------------------------------------------------------------------------------ */
+
+/* Two senders with exact stamps, their movers side by side on lines, 5 Hz; arrivals late by up to jitter_s, so in another
+ * order; one in five lost. The judge: where each is by its own sender's clock, sender 1's at its first report received. */
+typedef struct Jitter {
+    double jitter_s, offset_s; /* offset: of sender 2's clock */
+    bool   absolute;
+    int    copies;             /* of every datagram, later by 0.3 s each */
+} Jitter;
+
+typedef struct Sent {
+    double   capture_s;
+    uint16_t sender;
+    double   passed_s;
+} Sent;
+
+static int by_arrival(const void *a, const void *b)
+{
+    const Sent *p = a, *q = b;
+    return p->capture_s < q->capture_s ? -1 : p->capture_s > q->capture_s;
+}
+
+static const double fast_mps = 200, reports_hz = 5;
+
+static DisLog make_jittery(const Jitter *j, uint32_t seed)
+{
+    static Sent sent[2 * most_reports];
+    int         count = 0;
+    for (int n = 0; n / reports_hz <= span_s; n++)
+        for (uint16_t sender = 1; sender <= 2; sender++)
+            for (int c = 0; c < j->copies; c++) {
+                const uint64_t k = (uint64_t)(4 * n + 2 * (sender - 1) + c);
+                const double   passed_s = n / reports_hz + 0.05 * (sender - 1);
+                if (n + c > 0 && random_uniform(seed, 1, 0, k) < 0.2) continue;
+                const double late_s = j->jitter_s * random_uniform(seed, 2, 0, k) + 0.3 * c;
+                sent[count++] = (Sent){unix0_s + passed_s + late_s - (n + c == 0 && sender == 1 ? late_s : 0), sender, passed_s};
+            }
+    qsort(sent, (size_t)count, sizeof *sent, by_arrival);
+    CHECK(count < 2 * most_reports);
+    for (int k = 0; k < count; k++) {
+        const double clock_s = sim0_s + sent[k].passed_s + (sent[k].sender == 2 ? j->offset_s : 0);
+        const DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1,
+                                               .timestamp = good_stamp(clock_s, j->absolute)},
+                                    .id = {sent[k].sender, 1, 1}, .type = {1, 2, 222, 1, 1, 1, 0},
+                                    .p_ecef = {top_m, fast_mps * sent[k].passed_s, 100.0 * sent[k].sender},
+                                    .velocity_mps = {0, (float)fast_mps, 0}, .dead_reckoning = 2};
+        const size_t octets = dis_encode_entity_state(bytes[k], octets_most, &pdu);
+        datagram[k] = (DisDatagram){.capture_s = sent[k].capture_s, .octets = (uint32_t)octets, .bytes = bytes[k]};
+    }
+    return (DisLog){.count = count, .datagram = datagram};
+}
+
+/* of[s]: worst distance of sender s + 1's mover from its line from from_s on; leap: the farthest that one moves between two
+ * frames beside its speed. */
+typedef struct Missed {
+    double of[2], share, leap; /* share: of sender 2, in units of v J / N + 0.03 m, N its PDUs so far */
+    uint64_t by_arrival;
+} Missed;
+
+static Missed follow_jittery(const Jitter *j, uint32_t seed, bool causal, double from_s)
+{
+    const DisLog      log = make_jittery(j, seed);
+    EntityTableConfig config = entity_table_default_config();
+    EntityTable      *table  = NULL;
+    Player           *player = NULL;
+    Missed            missed = {0};
+    double            before[2] = {NAN, NAN};
+    assert_int_equal(entity_table_create(&table, &config, catalog), STATUS_OK);
+    assert_int_equal(player_create(&player, -1, causal), STATUS_OK);
+    assert_int_equal(player_add_log(player, &log), STATUS_OK);
+    for (double t_s = sim0_s + 0.01; t_s < sim0_s + span_s - 5; t_s += frame_s) {
+        player_feed(player, table, t_s);
+        for (int s = 0; s < 2; s++) {
+            SnapshotEntity e;
+            if (!entity_table_pose(&e, table, entity_table_find(table, (DisEntityId){(uint16_t)(s + 1), 1, 1}), t_s)) continue;
+            const double off_m = e.p_ecef[1] - fast_mps * (t_s - sim0_s), n = 0.8 * reports_hz * (t_s - sim0_s);
+            if (t_s - sim0_s >= from_s) {
+                missed.of[s] = fmax(missed.of[s], fabs(off_m));
+                if (s) missed.share = fmax(missed.share, fabs(off_m) / (fast_mps * j->jitter_s / n + 0.03));
+                if (isfinite(before[s])) missed.leap = fmax(missed.leap, fabs(off_m - before[s]));
+            }
+            before[s] = off_m;
+        }
+    }
+    missed.by_arrival = player_counters(player)->stamps_doubted;
+    player_destroy(player);
+    entity_table_destroy(table);
+    return missed;
+}
+
+/* A sender against its own stamps: 0.1 m, whatever the jitter, over the hour too. Between two with clocks of their own the
+ * offset is known to some J / N: live after N PDUs, of a recording after all of them; and it comes without a leap: within
+ * half of what the movers fly in a frame. Senders of absolute time have no offset. */
+static void jitter_of_seconds_moves_nothing(void **state)
+{
+    (void)state;
+    static const double jitter_s[] = {0, 0.25, 0.4, 1, 2};
+    const bool          show = getenv("PITVIPER_SHOW") != NULL;
+    for (int k = 0; k < 5; k++)
+        for (int way = 0; way < 4; way++)
+            for (uint32_t seed = 1; seed <= 6; seed++) {
+                const Jitter j = {jitter_s[k], way & 1 ? 0 : 777.7, way & 1, 1 + (seed == 6)};
+                const bool   causal = way & 2;
+                const Missed m = follow_jittery(&j, seed, causal, causal ? 10 : 0);
+                if (show) {
+                    printf("J %.2f %s %s: own %.3f m, other %.3f m, %.2f J/N, leap %.3f m, %d by arrival\n", j.jitter_s,
+                           j.absolute ? "absolute" : "relative", causal ? "causal" : "whole", m.of[0], m.of[1], m.share, m.leap,
+                           (int)m.by_arrival);
+                    continue;
+                }
+                CHECK_NEAR(m.of[0], 0, 0.1);
+                CHECK_NEAR(m.of[1], 0, j.absolute ? 0.1 : causal ? INFINITY : 3 * fast_mps * j.jitter_s / (0.8 * 300) + 0.1);
+                if (causal && !j.absolute) CHECK_NEAR(m.share, 0, 7); /* of 24 runs, at their worst: exp(-7) */
+                CHECK_NEAR(m.leap, 0, 0.5 * fast_mps * frame_s + 0.1);
+                CHECK(m.by_arrival == 0);
+            }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mover_stays_where_it_is),
+        cmocka_unit_test(jitter_of_seconds_moves_nothing),
     };
     return cmocka_run_group_tests(tests, open_catalog, close_catalog);
 }

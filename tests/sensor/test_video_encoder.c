@@ -48,7 +48,7 @@ static size_t encode_all(uint8_t *out, const EncoderConfig *config, bool check_k
         VideoPacket packet;
         draw(wide, config->width, config->height, planes, f, bits);
         assert_int_equal(encoder_encode(&packet, encoder,
-                                        image_of(narrow, wide, config->width * config->height * planes, bits), f == 3),
+                                        image_of(narrow, wide, config->width * config->height * planes, bits), f == 3, 1780000000000000 + f),
                          STATUS_OK);
         CHECK(packet.count > 0 && used + packet.count <= octets_most);
         if (check_keys && config->codec != VIDEO_FFV1) assert_int_equal(packet.key, f == 0 || f == 3);
@@ -96,7 +96,7 @@ static void decoded_error(double *rms, double *worst, const EncoderConfig *confi
     for (int f = 0; f < frames; f++) {
         VideoPacket coded;
         draw(wide, config->width, config->height, planes, f, bits);
-        assert_int_equal(encoder_encode(&coded, encoder, image_of(narrow, wide, (int)count, bits), f == start),
+        assert_int_equal(encoder_encode(&coded, encoder, image_of(narrow, wide, (int)count, bits), f == start, -1),
                          STATUS_OK);
         if (f < start) continue; /* joins in the middle */
         assert_int_equal(av_new_packet(packet, (int)coded.count), 0);

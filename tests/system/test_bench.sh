@@ -48,9 +48,9 @@ refused() { # refused SAID ARGUMENTS...: a usage error, and said, before any wor
     check "bench $*: refused" [ $code = 2 ]
     check "bench $*: said" complained "$named"
 }
-refused 'has no option --size' dis --quick --size 17x9
+refused 'no such option: --size' dis --quick --size 17x9
 refused "threads: '0' is not" dis --quick --threads 0
-refused 'threads needs a value' dis --quick --threads
+refused 'option --threads needs an argument' dis --quick --threads
 refused "no such bench: nix" nix
 
 finish

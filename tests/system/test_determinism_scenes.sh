@@ -49,7 +49,7 @@ cases=(impact bundles)
 for case in "${cases[@]}"; do
     few=(); [ $case != impact ] || few=("${flir[@]}")
     shown one $case --threads 1 "${few[@]}"
-    shown many $case --threads 8 --no-skip --from 1351 "${few[@]}"
+    shown many $case --threads 8 --no-skip --from 1353 "${few[@]}"
     check "$case: 8 threads, no skips, from the middle: the frames from there on" part_of "$tmp/many" "$tmp/one" 4
     check "$case: --from leaves some out" [ "$(numbered "$tmp/many" | wc -l)" -lt "$(numbered "$tmp/one" | wc -l)" ]
     [ $case != impact ] || check "impact: same counts" raw_part "$tmp/many" "$tmp/one"

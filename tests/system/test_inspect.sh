@@ -7,12 +7,12 @@
 echo "# not a capture" >"$tmp/text.dislog"
 expect 0 'usage: pitviper inspect' --help
 expect 2 'usage: pitviper inspect'
-expect 2 'unknown option' --nonsense x.pcap
+expect 2 'no such option' --nonsense x.pcap
 expect 2 '0 .. 65535' --port 65536 x.pcap
 expect 2 '0 .. 255' x.pcap --exercise all
-expect 2 'one log at a time' a.pcap b.pcap
+expect 2 'one LOG at a time' a.pcap b.pcap
 expect 2 'tsv' x.pcap --pdus json
-expect 2 'goes with' x.pcap --full
+expect 2 'applies to --pdus tsv' x.pcap --full
 expect 1 'cannot open' "$tmp/absent.pcap"
 expect 1 'empty' "$tmp/empty.pcap"
 expect 1 'not a capture' "$tmp/text.dislog"

@@ -8,10 +8,19 @@ judges man
 cmake --install "$build" --prefix "$tmp/prefix" >"$tmp/said" 2>&1 || fail "cmake --install: $(tail -n 1 "$tmp/said")"
 for file in bin/pitviper lib/pitviper/pitviper-images.so share/man/man1/pitviper.1 share/pitviper/catalog.csv share/pitviper/ADDING.md \
             include/pitviper_memory.h share/pitviper/examples/read_memory.c share/pitviper/examples/read_memory.py \
-            share/pitviper/scenarios/demo.yaml share/pitviper/atmosphere/us1976/visibilities.csv; do
+            share/pitviper/README.md share/pitviper/LICENSE share/pitviper/scenarios/demo.yaml share/pitviper/atmosphere/us1976/visibilities.csv; do
     check "installed: $file" [ -f "$tmp/prefix/$file" ]
 done
-check "no pictures, figures or scripts" [ -z "$(find "$tmp/prefix/share/pitviper" -name figures -o -name pictures -o -name make)" ]
+check "no scripts, no measured tables" [ -z "$(find "$tmp/prefix/share/pitviper" -name make -o -name bench_all.csv)" ]
+# every relative link of every installed page, [text](path) and ![text](path), leads to an installed file
+links=0
+while IFS= read -r page; do
+    while IFS= read -r link; do
+        links=$((links + 1))
+        [ -e "$(dirname "$page")/$link" ] || fail "${page#"$tmp/prefix/"}: its link to $link leads nowhere"
+    done < <(grep -oE '\]\([^)]+\)' "$page" | sed -E 's/^\]\(//; s/\)$//; s/#.*//' | grep -vE '^$|://' | sort -u)
+done < <(find "$tmp/prefix" -name '*.md')
+check "links were looked at" [ $links -gt 40 ]
 check "the list that uninstalling goes by" grep -qF "$tmp/prefix/bin/pitviper" "$build/install_manifest.txt"
 check "man -M" eval 'man -M "$tmp/prefix/share/man" pitviper 2>/dev/null | grep -q "sensor simulation"'
 check "man -l" eval 'man -l "$build/pitviper.1" 2>/dev/null | grep -q "sensor simulation"'

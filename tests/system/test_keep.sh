@@ -28,7 +28,7 @@ check "of a live node too" [ $code = 1 ]
 check "nothing is touched" [ "$before" = "$(cd "$tmp/a" && find . -type f | sort | xargs sha256sum)" ]
 # ---- a mistake with --overwrite: told before the world is set up, and nothing goes
 now() { (cd "$tmp/a" && find . -type f | sort | xargs sha256sum); }
-for mistake in "--bands optcal" "--set sensor.preset=hubble" "--video x.xyz" "--from 5000" "--only 9999" "--host 9:9:9" \
+for mistake in "--bands optcal" "--set sensor.preset=hubble" "--video x.xyz" "--from 5000" "--only 9999" "--save-frame 9999" "--host 9:9:9" \
                "--video $tmp/no/such/x.mp4" "--speed 1 --set publish.dis=sensor --address 1.2.3.400"; do
     # shellcheck disable=SC2086
     shown "$tmp/a" --overwrite $mistake

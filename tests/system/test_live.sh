@@ -99,9 +99,9 @@ if [ ${#nodes[@]} = 3 ]; then
     fi
 fi
 
-check "silence: is said" heard_by silent '^warning: run: nothing heard'
+check "silence: is said" heard_by silent '^pitviper: warning: run: nothing heard'
 stop silent
 check "silence, and told to stop: no failure ($code)" [ $code = 0 ]
-check "silence: said once, with port and next step" [ "$(grep -c "^warning: run: nothing heard.*port $silent_port.*--port" "$tmp/silent.out")" = 1 ]
+check "silence: said once, with port and next step" [ "$(grep -c "^pitviper: warning: run: nothing heard.*port $silent_port.*--port" "$tmp/silent.out")" = 1 ]
 for name in "${nodes[@]}"; do [ "$failures" = 0 ] || { echo "-- $name"; tail -n 8 "$tmp/$name.out"; }; done
 finish

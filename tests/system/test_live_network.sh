@@ -106,7 +106,7 @@ for name in other junk itself hostless; do kill -INT "${node[$name]}"; done
 because() { # NAME TEXT: it made nothing, and said that
     ended "$1"
     check "$1: ends with 1 ($code)" [ $code = 1 ]
-    check "$1: says '$2'" grep -q "^error: run: .*$2" "$tmp/$1.out"
+    check "$1: says '$2'" grep -q "^pitviper: error: run: .*$2" "$tmp/$1.out"
 }
 because other 'other exercises are heard.* 1 (.* PDUs); this node hears exercise 9: --set exercise.exercise=1 '
 because junk 'no DIS is heard.*: 3 malformed datagrams.*--port'

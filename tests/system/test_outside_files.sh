@@ -69,6 +69,12 @@ for option in --surface --cover --photo --canopy-height --canopy-cover --geoid; 
     refuses 1 "$pipe" terrain import dem.asc --horizon 1 -o t.store $option f.tif
 done
 refuses 1 "$pipe" terrain import f.tif --horizon 1 -o t.store
+mv dem.prj away.prj
+mkfifo dem.prj
+refuses 1 "$pipe" terrain import dem.asc --horizon 1 -o t.store
+rm dem.prj; mv away.prj dem.prj; mkfifo dem.asc.ovr
+refuses 1 "$pipe" terrain import . --horizon 1 -o t.store
+rm dem.asc.ovr
 # a file that names others: the FIFO is found, and no server is asked
 cat >names.vrt <<'VRT'
 <VRTDataset rasterXSize="3" rasterYSize="3"><SRS>EPSG:32633</SRS><GeoTransform>500000,30,0,5200000,0,-30</GeoTransform>

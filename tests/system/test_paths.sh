@@ -90,7 +90,7 @@ check "an atmosphere of one's own" [ $code = 0 ]
 # ---- quiet and verbose
 cd "$tmp" || exit 1
 show -q --config a/node.yaml --out "$tmp/q"
-check "quiet: warnings alone" [ $code = 0 -a ! -s "$tmp/stdout" -a "$(grep -vc '^warning: ' "$tmp/stderr")" = 0 ]
+check "quiet: warnings alone" [ $code = 0 -a ! -s "$tmp/stdout" -a "$(grep -vc '^pitviper: warning: ' "$tmp/stderr")" = 0 ]
 check "the pictures are the same" same_hashes "$tmp/q" "$tmp/o1"
 run -q replay "$tmp/none.pcap" --out "$tmp/q"
 check "quiet: errors stay" [ $code = 1 -a -s "$tmp/stderr" ]

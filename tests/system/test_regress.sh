@@ -8,6 +8,9 @@ judges python3
 # ---- a record is made, and passes -------------------------------------------------------------
 new_case good
 echo "mine" >"$tmp/good/notes.txt"
+# a table of its own, in the case's folder
+grep -v '^#' etc/materials.csv | head -n 2 >"$tmp/good/own.csv"
+sed -i 's/models: {sag_m: 0.02}/models: {sag_m: 0.02, materials: own.csv}/' "$tmp/good/case.yaml"
 fails good 'no baseline yet: .*--update'
 run regress --update "$tmp/good"
 check "--update without --why: exit code" [ $code = 2 ]
@@ -17,6 +20,8 @@ run regress --update "$tmp/good" --why 'seen: two <tanks> and a truck'
 check "--update: exit code" [ $code = 0 ]
 check "--update: the record" [ -s "$tmp/good/record/000005.exr" ] && [ -s "$tmp/good/record/000024.profile.exr" ]
 check "--update: a small one" [ "$(cat "$tmp"/good/record/* | wc -c)" -le 75000 ]
+check "--update: its paths are relative to the case" grep -q '"models.materials": "own.csv"' "$tmp/good/record/run.json"
+check "--update: no absolute path in the record" not grep -rqF "$tmp" "$tmp/good/record/run.json" "$tmp/good/record/truth.jsonl" "$tmp/good/card.md"
 check "--update: the card says why" grep -q '^- why: seen: two <tanks> and a truck$' "$tmp/good/card.md"
 check "--update: the date of the exercise" grep -qE '^## pitviper .*exercise of 2026-06-21 17:0[0-9]:[0-9]{2} UTC$' "$tmp/good/card.md"
 check "--update: the host, as replay says it" grep -qE '^good +chosen: host: 1:3001:41 ' "$tmp/stdout"

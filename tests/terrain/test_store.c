@@ -340,7 +340,7 @@ static void half_a_store_is_never_there(void **state)
     CHECK(store_writer_create(&second, path, &plan, NULL) != STATUS_OK && !second);
     CHECK(strstr(check_said, "another process"));
     CHECK(store_write_posts(w, 0, 1, bad) != STATUS_OK); /* out of order */
-    CHECK(store_write_posts(w, 1, 1, bad) != STATUS_OK && strstr(check_said, "no number"));
+    CHECK(store_write_posts(w, 1, 1, bad) != STATUS_OK && strstr(check_said, "not a number"));
     CHECK(store_writer_finish(w, 0, NULL) != STATUS_OK && strstr(check_said, "not all posts"));
     CHECK(access(path, F_OK) != 0 && access(part, F_OK) != 0);
     plan.level[1].spacing_m = 7;

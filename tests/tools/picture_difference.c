@@ -138,6 +138,21 @@ typedef struct Room {
     bool     *edge;
 } Room;
 
+static bool has_channel(const ImageInfo *info, const char *channel)
+{
+    for (int c = 0; c < info->channels; c++)
+        if (strcmp(info->name[c], channel) == 0) return true;
+    return false;
+}
+
+/* Whether all channels of a are in b, but for those that a run has for each of its thermal bands. */
+static bool shares_channels(const ImageInfo *a, const ImageInfo *b)
+{
+    for (int c = 0; c < a->channels; c++)
+        if (!has_channel(b, a->name[c]) && strncmp(a->name[c], "emissivity_", 11) != 0) return false;
+    return true;
+}
+
 static bool compare_file(Tally *tally, int *tallies, const char *const out[2], const char *band, const char *frame)
 {
     char      path[2][path_size];
@@ -148,7 +163,8 @@ static bool compare_file(Tally *tally, int *tallies, const char *const out[2], c
     }
     const int    w = info[0].width, h = info[0].height;
     const size_t count = (size_t)w * (size_t)h;
-    if (info[1].width != w || info[1].height != h || info[1].channels != info[0].channels) {
+    if (info[1].width != w || info[1].height != h || !shares_channels(&info[0], &info[1]) ||
+        !shares_channels(&info[1], &info[0])) {
         log_error("picture_difference: %s and %s differ in size or channels", path[0], path[1]);
         return false;
     }
@@ -159,6 +175,7 @@ static bool compare_file(Tally *tally, int *tallies, const char *const out[2], c
         const char *channel = info[0].name[c];
         const bool  ids = info[0].type[c] == PLANE_U32;
         int         t = 0;
+        if (!has_channel(&info[1], channel)) continue;
         snprintf(name, sizeof name, "%s.%s", band, channel);
         while (t < *tallies && strcmp(tally[t].name, name) != 0) t++;
         if (t == *tallies) {

@@ -3,8 +3,11 @@
  * one thread, rows interleaved, the best of the rounds. */
 #include "sensor/bench/sensor/quality.h"
 
+#include "pitviper_output.h"
 #include "sensor/quality/lab.h"
 #include "sensor/quality/quality.h"
+
+#include <errno.h>
 
 enum { rounds_most = 2 };
 
@@ -91,6 +94,14 @@ static void list_row(Bench *bench, const QualityTable *table, int k, const Bench
     row.against    = "16 x 16 rays a pixel: worst band of the worst view";
     row.mark       = quality_wanted(table, k) ? "*" : NULL;
     bench_add(bench, &row);
+}
+
+Status bench_quality_check(const Bench *bench)
+{
+    const char *path = bench_option(bench, "table");
+    if (!path || output_check(path, 0) == 0) return STATUS_OK;
+    log_error("bench: --table: cannot write %s: %s; choose another place", path, output_reason(errno));
+    return STATUS_IO;
 }
 
 Status bench_quality(Bench *bench)

@@ -6,5 +6,6 @@
 #include "sensor/bench/bench.h"
 
 Status bench_quality(Bench *bench);
+Status bench_quality_check(const Bench *bench); /* its options */
 
 #endif

@@ -16,6 +16,7 @@ const BenchSuite sensor_benches[] = {
                 "bands=optical|radar: pictures of all bands or the radar with phase alone; both",
      .help = "frames over a large ground with twenty vehicles: whole, by stage, against the tracer alone",
      .run = bench_speed,
+     .check = bench_speed_check,
      .reads =
          "Frames are whole, planes of truth and all, handed over in memory; stages are of one thread, where they add "
          "up to the frame (bars: their share), and `rays alone` is the least that a frame could take. Rows of the "
@@ -28,6 +29,7 @@ const BenchSuite sensor_benches[] = {
      .options = "trees=N: at most; 3000000,level1-px=PX: plants lower than this are simplified; 24",
      .help = "frames of three million trees over 192 M posts, in full detail and with two levels of it",
      .run = bench_woods,
+     .check = bench_woods_check,
      .reads = "Frames are whole, of all bands, one ray a pixel. Errors are against 16 rays in every pixel in full "
               "detail; of two levels also by the same 16 rays in both, where no sampling is part of it."},
     {.name = "network", .help = "a live node, an exercise sent to it: what is lost, how late it is", .run = bench_live},
@@ -49,6 +51,7 @@ const BenchSuite sensor_benches[] = {
     {.name = "quality",
      .options = "table=FILE: written too; quality.* picks from etc/quality.csv",
      .help = "rays a pixel, at edges and over small targets together: time against error, what quality.* picks from",
-     .run = bench_quality},
+     .run = bench_quality,
+     .check = bench_quality_check},
 };
 const int sensor_bench_count = sizeof sensor_benches / sizeof *sensor_benches;

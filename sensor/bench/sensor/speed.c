@@ -5,6 +5,7 @@
 #include "sensor/bench/sensor/speed.h"
 #include "pitviper_output.h"
 
+#include "entities/import/model_import.h"
 #include "sensor/bench/sensor/raw.h"
 #include "sensor/bench/sensor/speed_private.h"
 #include "sensor/settings/config.h"
@@ -431,12 +432,44 @@ static bool pair_of(double out[2], const Bench *bench, const char *name, double 
     return ok;
 }
 
+static bool sizes_of(double size[2], double ground_km[2], const Bench *bench)
+{
+    const bool quick = bench_quick(bench);
+    size[0] = quick ? 96 : 720, size[1] = quick ? 64 : 486;
+    ground_km[0] = quick ? 2 : 12, ground_km[1] = quick ? 8 : 16;
+    return pair_of(size, bench, "size", 16, 8192) && pair_of(ground_km, bench, "ground", 1, 32);
+}
+
+/* A file of a model is read whole: what is wrong with it is said now. */
+static bool model_is_good(const char *file)
+{
+    Model       model;
+    ModelImport report = {0};
+    bool        imported;
+    if (access(file, R_OK) != 0) {
+        log_error("bench: --model: cannot read %s: %s", file, strerror(errno));
+        return false;
+    }
+    if (model_open(&model, &report, &imported, file, 0.01) != STATUS_OK) return false;
+    model_destroy(&model);
+    return true;
+}
+
+Status bench_speed_check(const Bench *bench)
+{
+    double      size[2], ground_km[2];
+    const char *bands = bench_option(bench, "bands"), *model = bench_option(bench, "model");
+    if (bands && strcmp(bands, "optical") != 0 && strcmp(bands, "radar") != 0) {
+        log_error("bench: --bands: '%s' is not optical (pictures of all bands) or radar; without it both", bands);
+        return STATUS_BAD_VALUE;
+    }
+    return sizes_of(size, ground_km, bench) && (!model || model_is_good(model)) ? STATUS_OK : STATUS_BAD_VALUE;
+}
+
 static Status open_speed(Speed *s)
 {
-    const bool quick = bench_quick(s->bench);
-    double     size[2] = {quick ? 96 : 720, quick ? 64 : 486}, ground_km[2] = {quick ? 2 : 12, quick ? 8 : 16};
-    if (!pair_of(size, s->bench, "size", 16, 8192) || !pair_of(ground_km, s->bench, "ground", 1, 32))
-        return STATUS_BAD_VALUE;
+    double size[2], ground_km[2];
+    if (!sizes_of(size, ground_km, s->bench)) return STATUS_BAD_VALUE;
     s->width   = (int)size[0];
     s->height  = (int)size[1];
     s->east_m  = floor(1000 * ground_km[0]);
@@ -500,11 +533,6 @@ bool speed_wants(const Bench *bench, const char *rows)
 
 Status bench_speed(Bench *bench)
 {
-    const char *bands = bench_option(bench, "bands");
-    if (bands && strcmp(bands, "optical") != 0 && strcmp(bands, "radar") != 0) {
-        log_error("bench: speed: --bands %s: optical (pictures of all bands) or radar; without it both", bands);
-        return STATUS_BAD_VALUE;
-    }
     if (!speed_wants(bench, "optical")) return STATUS_OK;
     Speed        s = {.bench = bench};
     const Status status = time_all(&s);

@@ -5,6 +5,7 @@
 #include "sensor/bench/bench.h"
 
 Status bench_speed(Bench *bench);
+Status bench_speed_check(const Bench *bench); /* its options */
 /* The radar with phase: targets by signatures, updates. */
 Status bench_speed_radar(Bench *bench);
 

@@ -343,24 +343,38 @@ static Status time_stages(WoodsBench *w, int v)
 
 /* ---- the suite ----------------------------------------------------------------------------------- */
 
-static Status open_bench(WoodsBench *w)
+static Status read_options(double *number, double *level1_px, const Bench *bench)
 {
-    const bool  quick = bench_quick(w->bench);
-    const char *trees = bench_option(w->bench, "trees"), *px = bench_option(w->bench, "level1-px");
-    double      number = quick ? 30000 : 3000000;
-    w->level1_px = 24;
-    w->width  = quick ? 160 : 720, w->height = quick ? 108 : 486;
-    w->east_m = quick ? 1000 : 12000, w->north_m = quick ? 2000 : 16000;
-    if (trees && !(text_to_double(&number, trees) && number >= 0 && number <= woods_most_trees)) {
+    const char *trees = bench_option(bench, "trees"), *px = bench_option(bench, "level1-px");
+    *number    = bench_quick(bench) ? 30000 : 3000000;
+    *level1_px = 24;
+    if (trees && !(text_to_double(number, trees) && *number >= 0 && *number <= woods_most_trees)) {
         log_error("bench: --trees: '%s' is not 0 .. %d", trees, woods_most_trees);
         return STATUS_BAD_VALUE;
     }
-    if (px && !(text_to_double(&w->level1_px, px) && w->level1_px > 0 && w->level1_px <= 1000)) {
+    if (px && !(text_to_double(level1_px, px) && *level1_px > 0 && *level1_px <= 1000)) {
         log_error("bench: --level1-px: '%s' is not above 0 and up to 1000", px);
         return STATUS_BAD_VALUE;
     }
+    return STATUS_OK;
+}
+
+Status bench_woods_check(const Bench *bench)
+{
+    double number, level1_px;
+    return read_options(&number, &level1_px, bench);
+}
+
+static Status open_bench(WoodsBench *w)
+{
+    const bool quick = bench_quick(w->bench);
+    double     number;
+    w->width  = quick ? 160 : 720, w->height = quick ? 108 : 486;
+    w->east_m = quick ? 1000 : 12000, w->north_m = quick ? 2000 : 16000;
+    Status status = read_options(&number, &w->level1_px, w->bench);
+    if (status != STATUS_OK) return status;
     w->trees = (int)number;
-    Status status = pool_create(&w->one, 1);
+    status = pool_create(&w->one, 1);
     if (status == STATUS_OK) status = pool_create(&w->many, bench_threads(w->bench));
     for (int k = 0; k < 3 && status == STATUS_OK; k++)
         if (!(w->arena[k] = arena_create())) status = STATUS_NO_MEMORY;

@@ -5,5 +5,6 @@
 #include "sensor/bench/bench.h"
 
 Status bench_woods(Bench *bench);
+Status bench_woods_check(const Bench *bench); /* its options */
 
 #endif

@@ -102,7 +102,7 @@ static bool key_is_due(const Channel *c, int64_t pts_90k)
     return due;
 }
 
-static Status encode(VideoPacket *packet, Video *v, Channel *c, const EncoderConfig *form, int64_t pts_90k)
+static Status encode(VideoPacket *packet, Video *v, Channel *c, const EncoderConfig *form, int64_t pts_90k, int64_t unix_us)
 {
     const EncoderConfig *had = c->encoder ? encoder_config(c->encoder) : NULL;
     if (had && (had->width != form->width || had->height != form->height || had->colour != form->colour)) {
@@ -110,7 +110,7 @@ static Status encode(VideoPacket *packet, Video *v, Channel *c, const EncoderCon
         return STATUS_UNSUPPORTED;
     }
     Status status = had ? STATUS_OK : encoder_open(&c->encoder, form);
-    if (status == STATUS_OK) status = encoder_encode(packet, c->encoder, v->image, key_is_due(c, pts_90k));
+    if (status == STATUS_OK) status = encoder_encode(packet, c->encoder, v->image, key_is_due(c, pts_90k), unix_us);
     if (status == STATUS_OK) return STATUS_OK;
     encoder_close(c->encoder);
     c->encoder = NULL;
@@ -125,7 +125,7 @@ static Status put_channel(Video *v, Channel *c, const Frame *frame)
     const int64_t pts_90k = time_of(c, frame->unix_s);
     const bool    due     = !v->of.patient || retry_due(&c->retry);
     Status        status  = due ? compose(&form, v, c, frame) : STATUS_IO;
-    if (status == STATUS_OK) status = encode(&packet, v, c, &form, pts_90k);
+    if (status == STATUS_OK) status = encode(&packet, v, c, &form, pts_90k, (int64_t)floor(frame->unix_s * 1e6 + 0.5));
     if (v->of.patient) retry_done(&c->retry, due, status);
     if (status != STATUS_OK) return v->of.patient ? STATUS_OK : status;
     const size_t klv_count = c->klv ? klv_of_band(klv, &v->found, v->of.config->publish.vmti, frame,

@@ -33,8 +33,9 @@ Status encoder_open(Encoder **out, const EncoderConfig *config);
 void   encoder_close(Encoder *encoder); /* NULL is valid */
 int    encoder_bits(VideoCodec codec);  /* of an image's values: 8, 10, 12, 16 */
 /* image: grey, or R G B interleaved; uint8_t for 8 bits, else uint16_t. key: decodable by itself; the first is anyway.
- * STATUS_IO: the encoder failed, logged; open another one. */
-Status encoder_encode(VideoPacket *out, Encoder *encoder, const void *image, bool key);
+ * unix_us: microseconds of its time since 1970, which H.264 and H.265 carry before the image as MISB ST 0604 says, the same
+ * as ST 0601's tag 2; negative: none. STATUS_IO: the encoder failed, logged; open another one. */
+Status encoder_encode(VideoPacket *out, Encoder *encoder, const void *image, bool key, int64_t unix_us);
 
 const EncoderConfig *encoder_config(const Encoder *encoder);
 /* What a container records of the codec. */

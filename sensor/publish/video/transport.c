@@ -156,7 +156,7 @@ static int write_klv(Transport *t, int64_t at_90k, const uint8_t *klv, size_t co
     p->size         = (int)(head + count);
     p->stream_index = t->klv->index;
     p->flags        = AV_PKT_FLAG_KEY;
-    p->pts = p->dts = sync ? at_90k : AV_NOPTS_VALUE;
+    p->pts = p->dts = sync ? at_90k : AV_NOPTS_VALUE; /* FFmpeg's muxer writes none on stream id 0xBD, as ST 1402 has it */
     if (!sync) {
         uint8_t *id = av_packet_new_side_data(p, AV_PKT_DATA_MPEGTS_STREAM_ID, 1);
         if (!id) return AVERROR(ENOMEM);
