@@ -297,7 +297,8 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     const double from_s = fmax(plan->start_s, span_time_s(o->config.exercise.from, plan->start_s, NAN)); /* NaN: none */
     const double   to_s   = span_time_s(o->config.exercise.to, plan->start_s, NAN);
     const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
-    l->player = player;
+    l->player           = player;
+    l->counters.rate_hz = grid->rate_hz;
     health_making(&l->health, wall_clock_s());
     l->health.sample.host = plan->any_munition                      ? HEALTH_MUNITION
                             : dis_entity_id_is_none(plan->host) ? HEALTH_OBSERVER
@@ -327,7 +328,6 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
         const double newest  = floor(ended_s * grid->rate_hz) - grid->origin;
         if (newest > last) l->counters.frames_late += (uint64_t)(newest - last);
     }
-    l->counters.rate_hz = grid->rate_hz;
     log_status(NULL);
     snprintf(l->host, sizeof l->host, "%s", session_host(session));
     l->health.sample.entities = session_entities(session);
@@ -395,10 +395,10 @@ static void say_summary(const Live *l)
     if (l->health.sample.publishes)
         snprintf(sent, sizeof sent, "; PDUs sent %llu, not sent %llu", (unsigned long long)c->sent,
                  (unsigned long long)c->send_failed);
+    const uint64_t frames = l->health.sample.frames;
     log_info("run: %llu datagrams heard, %llu of them our own; lost %llu; frames made %llu, left out %llu%s",
              (unsigned long long)c->datagrams, (unsigned long long)l->run.own, (unsigned long long)lost(c),
-             (unsigned long long)l->health.sample.frames, (unsigned long long)c->frames_late, sent);
-    const uint64_t frames = l->health.sample.frames;
+             (unsigned long long)frames, (unsigned long long)c->frames_late, sent);
     const double   share  = live_kept_share(c, frames);
     if (frames > 0 && share < enough_share)
         log_warn("run: kept %.3g of %g frames a second, fewer than half: lower sensor.rate_hz (--rate), the size, or the "

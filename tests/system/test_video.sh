@@ -60,6 +60,9 @@ check "the group's receiver has what was sent" until_true has_received group 12
 check "GStreamer has what was sent" until_true has_received gst 20
 finish_receivers
 
+replay "$tmp/demo.pcap" "$tmp/c-out" --size 96x64 --rate 4 --from 1366 --to 1367 --bands lwir --no-files --video "$tmp/c/" --set publish.video_codec=hevc-12
+check "a replay to H.265" [ $code = 0 ]
+
 cat >"$tmp/check.py" <<'PY'
 import glob, json, os, re, subprocess, sys
 import numpy as np
@@ -94,6 +97,33 @@ def unix_us(packet):  # ST 0601 tag 2 stands first
 def is_some_of(part, whole):  # in order
     at = iter(whole)
     return all(p in at for p in part)
+def pes(ts, pid):  # (time stamp or None, content) of each packet of that PID: a reader of its own
+    found = []
+    for at in range(0, len(ts), 188):
+        p = ts[at:at + 188]
+        assert p[0] == 0x47
+        if (p[1] & 31) << 8 | p[2] != pid or not p[3] & 0x10: continue
+        if p[1] & 0x40: found.append(b"")
+        found[-1] += p[5 + p[4]:] if p[3] & 0x20 else p[4:]
+    for b in found:
+        t = b[9:14]
+        yield (t[0] >> 1 & 7) << 30 | t[1] << 22 | (t[2] >> 1) << 15 | t[3] << 7 | t[4] >> 1 if b[7] & 0x80 else None, b[9 + b[8]:]
+def stamped(ts, klv, hevc=False):  # MISB ST 0604: one in each picture, before its first slice, the time of its metadata
+    uuid = bytes.fromhex("a8687dd4d7593758a5cef0338b6545f1") if hevc else b"MISPmicrosectime"
+    video, data = list(pes(ts, 0x100)), list(pes(ts, 0x101))
+    assert len(video) == len(data) == len(klv), (len(video), len(data), len(klv))
+    for (at, picture), (klv_at, _), k in zip(video, data, klv):
+        assert klv_at in (None, at), "metadata's time stamp is the picture's"
+        before = []
+        for nal in re.split(b"\0\0\1", picture)[1:]:
+            kind = nal[0] >> 1 & 63 if hevc else nal[0] & 31
+            if (kind < 32 if hevc else kind in (1, 5)): break
+            if kind == (39 if hevc else 6): before.append(nal[2 if hevc else 1:].replace(b"\0\0\3", b"\0\0"))
+        before = [b for b in before if uuid in b]
+        assert len(before) == 1 and before[0][:18] == b"\x05\x1c" + uuid, before
+        s = before[0][18:30]
+        assert s[0] == 0x9f and s[3] == s[6] == s[9] == 0xff, s.hex()
+        assert int.from_bytes(s[1:3] + s[4:6] + s[7:9] + s[10:12], "big") == unix_us(k), (s.hex(), unix_us(k))
 most = 2.0  # of 256 levels, rms: tests/sensor/test_video_encoder.c
 for out, ts, name, all_of in (("a", "a.ts", "group", 41), ("b", "b/lwir.ts", "host", None)):
     png, klv, pts = pngs(out), klv_of(ts), [int(p) for p in probe(ts, "v")]
@@ -107,6 +137,7 @@ for out, ts, name, all_of in (("a", "a.ts", "group", 41), ("b", "b/lwir.ts", "ho
     assert all(s[0] == 0x9F and s[3] == s[6] == s[9] == 0xFF for s in stamps), stamps[:2]
     stamps = [int.from_bytes(s[1:3] + s[4:6] + s[7:9] + s[10:12], "big") for s in stamps]
     assert stamps == [unix_us(k) for k in klv], (stamps[:2], unix_us(klv[0]))
+    stamped(read(ts), klv)
     of_klv = probe(ts, "d")
     assert of_klv == (["N/A"] * all_of if out == "a" else [str(p) for p in pts]), of_klv[:3]
     # program map: type and PID 0x101; stream id of its PES packets; synchronous: an AU cell's header before the key
@@ -134,6 +165,9 @@ seen = pictures("gst.gray", png[0])
 best = [min(range(41), key=lambda i: error(s, png[i])) for s in seen]
 assert len(seen) >= 20 and best == sorted(best) and max(error(s, png[i]) for s, i in zip(seen, best)) <= most, ("gst", len(seen))
 got = packets(read("gst.klv"))
+stamped(read("c/lwir.ts"), klv_of("c/lwir.ts"), True)
+said = subprocess.run(["ffprobe", "-v", "error", "-show_frames", "-select_streams", "v", f"{tmp}/a.ts"], capture_output=True, text=True).stdout
+assert said.count("User Data Unregistered SEI message") >= len(klv), "ffprobe shows the time stamps"
 print(f"GStreamer: {len(seen)} pictures, {len(got)} metadata packets")
 assert len(got) >= 20 and is_some_of(got, klv), ("gst", len(got))
 PY

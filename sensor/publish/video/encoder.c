@@ -150,14 +150,15 @@ void encoder_close(Encoder *e)
     free(e);
 }
 
+static const uint8_t identifier[2][16] = {
+    {'M', 'I', 'S', 'P', 'm', 'i', 'c', 'r', 'o', 's', 'e', 'c', 't', 'i', 'm', 'e'},
+    {0xA8, 0x68, 0x7D, 0xD4, 0xD7, 0x59, 0x37, 0x58, 0xA5, 0xCE, 0xF0, 0x33, 0x8B, 0x65, 0x45, 0xF1}}; /* H.265 */
+
 /* MISB ST 0604: the MISP precision time stamp, user data of an SEI message: an identifier of 16 octets, the status of the
  * clock (0x9F: whether it is locked to a reference is not known; ST 0603), and microseconds, with 0xFF after each two octets,
  * so that no start code appears. */
 static int put_time_stamp(Encoder *e, int64_t unix_us)
 {
-    static const uint8_t identifier[2][16] = {
-        {'M', 'I', 'S', 'P', 'm', 'i', 'c', 'r', 'o', 's', 'e', 'c', 't', 'i', 'm', 'e'},
-        {0xA8, 0x68, 0x7D, 0xD4, 0xD7, 0x59, 0x37, 0x58, 0xA5, 0xCE, 0xF0, 0x33, 0x8B, 0x65, 0x45, 0xF1}}; /* H.265 */
     enum { octets = 16 + 1 + 11 };
     av_frame_remove_side_data(e->frame, AV_FRAME_DATA_SEI_UNREGISTERED);
     if (unix_us < 0 || e->config.codec == VIDEO_FFV1) return 0;
@@ -170,6 +171,24 @@ static int put_time_stamp(Encoder *e, int64_t unix_us)
         if (k % 2 == 1 && k < 7) data->data[at++] = 0xFF;
     }
     return 0;
+}
+
+/* libx265 writes an identifier of its own before ours, where a reader looks for ours: out with it. The message is 28
+ * octets then, not 44; it has no zeros side by side before a small value, so its octets are the stream's. */
+static void bare_time_stamp(AVPacket *packet)
+{
+    enum { id = 16, whole = 2 * id + 12 };
+    static const uint8_t library[id] = {0x2C, 0xA2, 0xDE, 0x09, 0xB5, 0x17, 0x47, 0xDB,
+                                        0xBB, 0x55, 0xA4, 0xFE, 0x7F, 0xC2, 0xFC, 0x4E};
+    for (int i = 2; i + whole <= packet->size; i++) {
+        uint8_t *at = packet->data + i;
+        if (at[-1] != whole || at[-2] != 5 || memcmp(at, library, id) != 0 || memcmp(at + id, identifier[1], id) != 0)
+            continue;
+        at[-1] = whole - id;
+        memmove(at, at + id, (size_t)(packet->size - i - id));
+        packet->size -= id;
+        return;
+    }
 }
 
 Status encoder_encode(VideoPacket *out, Encoder *e, const void *image, bool key, int64_t unix_us)
@@ -194,6 +213,7 @@ Status encoder_encode(VideoPacket *out, Encoder *e, const void *image, bool key,
         log_error("video: the encoder %s failed: %s", forms[e->config.codec].library, av_err2str(failed));
         return STATUS_IO;
     }
+    if (e->config.codec == VIDEO_HEVC_12) bare_time_stamp(e->packet);
     *out = (VideoPacket){e->packet->data, (size_t)e->packet->size, e->packet->flags & AV_PKT_FLAG_KEY};
     return STATUS_OK;
 }
