@@ -41,7 +41,7 @@ sender "$tmp/tanks.yaml" --send 127.0.0.1:$port
 for ((n = 6; n < 400; n += 2)); do
     makes heat $n || break
     warmth "$tmp/heat" $n >"$tmp/live.warmth" # the line after them may not be whole
-    is "$(rise)" '>' 0.2 && [ "$(temps 1 | cut -d' ' -f4 | sort -u | wc -l)" -ge 5 ] && [ -n "$(temps 2)" ] && break
+    is "$(rise)" '>' 0.25 && [ "$(temps 1 | cut -d' ' -f4 | sort -u | wc -l)" -ge 5 ] && [ -n "$(temps 2)" ] && break
 done
 stop heat
 end_sender

@@ -8,6 +8,7 @@ bare=("${quick[@]}")
 # a node whose output is read no further, and which SIGUSR1 ends
 free_port
 flight "$tmp/flight.yaml"
+: >"$tmp/node.out"
 "$pitviper" run "${bare[@]}" --out "$tmp/node" --size 32x24 --threads 2 --for 900 --rate 5 --bands lwir --no-files \
     --set exercise.listen_s=0.3 --host observer --address 127.0.0.1 --port $port --record "$tmp/node.pcapng" 2>"$tmp/node.err" \
     > >(head -n 1 >"$tmp/node.out") &
@@ -46,7 +47,7 @@ check "a replay whose output is cut: complete" grep -q '"status": *"complete"' "
 free_port
 "$pitviper" record -o "$tmp/log.pcapng" --address 127.0.0.1 --port $port >"$tmp/stdout" 2>"$tmp/record.err" &
 node[record]=$!
-until_of record grep -q 'record' "$tmp/record.err"
+until_of record grep -qs "record" "$tmp/record.err"
 until_of record test -e "$tmp/log.pcapng"
 kill -USR2 "${node[record]}"
 ended record
@@ -60,9 +61,9 @@ check "a limit of file size ends it with 1" [ $? = 1 ]
 check "and says why" complained 'large\.pcapng.*too large'
 
 # what was ignored stays so, as under nohup; a reader that does nothing but print ends with what reads it
-(trap '' USR1; exec "$pitviper" record -o "$tmp/deaf.pcapng" --address 127.0.0.1 --port $port --for 900 >"$tmp/stdout" 2>"$tmp/stderr") &
+(trap '' USR1; exec "$pitviper" record -o "$tmp/deaf.pcapng" --address 127.0.0.1 --port $port --for 900 >"$tmp/stdout" 2>"$tmp/deaf.err") &
 node[deaf]=$!
-until_of deaf grep -q record "$tmp/stderr"
+until_of deaf grep -qs record "$tmp/deaf.err"
 kill -USR1 "${node[deaf]}"; kill -TERM "${node[deaf]}"
 ended deaf
 check "SIGUSR1 that was ignored stays so; SIGTERM ends it" [ $code = 0 ]
