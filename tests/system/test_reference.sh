@@ -3,6 +3,7 @@
 # that it shows on them: tests/system/reference.py.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
+bare=("${bare[@]}" "${coarse[@]}")
 judges python3.numpy python3.OpenEXR python3.PIL
 needs "writable /dev/shm" test -w /dev/shm
 needs "video: built without FFmpeg's libraries" has_video
