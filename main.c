@@ -169,7 +169,7 @@ static bool reader_has_gone(void)
     return poll(&out, 1, 0) == 1 && out.revents & POLLERR;
 }
 
-/* Exit code 1 when the output could not be written; that nobody wanted the rest of it is no failure. */
+/* Exit code 1 when the output could not be written; a reader that has left before the end is no failure. */
 static int printed(int code)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;

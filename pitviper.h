@@ -155,7 +155,7 @@ void        word_consider(WordMeant *meant, const char *known);
 void        word_consider_list(WordMeant *meant, const char *list, char separator); /* "a|b|c" */
 const char *word_hint(WordMeant *meant); /* "; did you mean WORD?", or "" */
 
-/* A file of what put prints, by output_begin (pitviper_output.h): nobody reads half of it. STATUS_IO: logged as the
+/* A file of what put prints, by output_begin (pitviper_output.h): it has its name only when it is whole. STATUS_IO: logged as the
  * module's. */
 Status text_write_file(const char *module, const char *path, void (*put)(FILE *to, const void *user), const void *user);
 /* A whole file of at most `most` octets and a 0 behind them; the caller frees it. Failures are logged as the

@@ -185,7 +185,7 @@ static int open_at(const Place *at, unsigned how)
     for (int again = 0; again < 16; again++) {
         struct stat about, there;
         int         file = openat(at->folder, at->name, flags | O_CREAT | O_NONBLOCK, 0666);
-        if (file < 0 && errno == ENXIO) { /* a pipe that nobody reads yet; or a socket */
+        if (file < 0 && errno == ENXIO) { /* a pipe without a reader so far, or a socket */
             if (!(how & OUTPUT_STREAM)) errno = EMEDIUMTYPE;
             else file = openat(at->folder, at->name, flags);
         }

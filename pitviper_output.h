@@ -1,7 +1,7 @@
 /* pitviper_output.h: files and folders that are written. Every file that a user sees is opened here.
  *
  * A symbolic link in the last part of a file's name is not followed, and below a folder that is held (output_hold) none in
- * any part: a link that somebody left among the products of an earlier run leads nowhere. The folders that the user names
+ * any part: a link that lies among the products of an earlier run is refused. The folders that the user names
  * may be links. What is opened is a regular file, empty and locked until it is closed: of two processes that write one
  * file the second is refused.
  *

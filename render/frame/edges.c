@@ -119,12 +119,6 @@ static bool steps_in_depth(const Job *job, size_t a, size_t b, int xa, int ya, i
     return either ? from_a || from_b : from_a && from_b;
 }
 
-static bool is_plant(const Job *job, int x, int y)
-{
-    const size_t px = pixel_index(job, x, y);
-    return job->picture->instance && job->picture->instance[px] && !job->picture->entity[px];
-}
-
 /* leaves: plants are edges. */
 static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb, bool leaves)
 {
@@ -189,11 +183,11 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
             const int       k = x - x0;
             const uint32_t *plain[4] = {&across[k], &across[k + 1], &above[k], &below[k]};
             unsigned        flag = job->refine[pixel_index(job, x, y)];
-            bool            leafy = is_plant(job, x, y);
+            bool            leafy = picture_shows_plant(job->picture, pixel_index(job, x, y));
             for (int n = 0; n < 4 && !(flag & refine_all); n++) {
                 const int xb = x + beside[n][0], yb = y + beside[n][1];
                 if (xb < 0 || yb < 0 || xb >= view->width || yb >= view->height || *plain[n]) continue;
-                leafy |= is_plant(job, xb, yb);
+                leafy |= picture_shows_plant(job->picture, pixel_index(job, xb, yb));
                 flag |= edge_between(job, x, y, xb, yb, flag & refine_leaves);
             }
             const size_t px = pixel_index(job, x, y);

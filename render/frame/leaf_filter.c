@@ -23,8 +23,7 @@ static bool find_leaves(bool leaf[halo_side][halo_side], const Job *job, const T
     bool           plant[reach_side][reach_side] = {{false}}, any = false;
     for (int y = tile->y0 > 2 ? tile->y0 - 2 : 0; y < tile->y1 + 2 && y < p->height; y++)
         for (int x = tile->x0 > 2 ? tile->x0 - 2 : 0; x < tile->x1 + 2 && x < p->width; x++) {
-            const size_t px = pixel_index(job, x, y);
-            any |= plant[y - tile->y0 + 2][x - tile->x0 + 2] = p->instance[px] && !p->entity[px];
+            any |= plant[y - tile->y0 + 2][x - tile->x0 + 2] = picture_shows_plant(p, pixel_index(job, x, y));
         }
     for (int j = 0; any && j < halo_side; j++)
         for (int i = 0; i < halo_side; i++) {
@@ -41,7 +40,7 @@ static bool find_leaves(bool leaf[halo_side][halo_side], const Job *job, const T
 /* A pool task: a tile, into Job.smoothed. */
 static void smooth_tile(void *user, int worker, int task)
 {
-    static const float of[9] = {1, 2, 1, 2, 11, 2, 1, 2, 1};
+    static const float of[9] = {1, 2, 1, 2, 11, 2, 1, 2, 1}; /* leaf_filter.h */
     const Job *job = user;
     const Tile tile = tile_of(job, task);
     const int  width = job->picture->width;

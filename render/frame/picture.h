@@ -141,6 +141,12 @@ static inline size_t picture_index(const Picture *picture, int x, int y)
     return (size_t)y * (size_t)picture->width + (size_t)x;
 }
 
+/* Whether a pixel shows a plant. */
+static inline bool picture_shows_plant(const Picture *picture, size_t px)
+{
+    return picture->instance && picture->instance[px] && !picture->entity[px];
+}
+
 /* Planes for a request, all 0; truth planes where truth is requested and where edges are looked for. plants: the world
  * has some.
  * STATUS_NO_MEMORY: of the arena. */

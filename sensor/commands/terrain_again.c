@@ -11,7 +11,7 @@ static const char help[] =
     "usage: pitviper terrain again STORE\n"
     "\n"
     "Makes a terrain store again with the sources and options that it was made with, which are printed first. A node does\n"
-    "that by itself where all of them lie in the store's own folder: a store of somebody else makes it read nothing else.\n";
+    "that by itself where all of them lie in the store's own folder: a store from elsewhere makes it read no other file.\n";
 
 /* As the file has them, whole or damaged; malloc'd. NULL, logged: none. */
 static char *options_of(const char *path)

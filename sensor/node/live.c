@@ -3,6 +3,7 @@
 #include "pitviper_output.h"
 
 #include "dis/steady_clock.h"
+#include "sensor/node/live_summary.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/node/dis_network.h"
 #include "sensor/node/health.h"
@@ -24,7 +25,6 @@
 #include <unistd.h>
 
 static const double  flush_s = 0.5, show_s = 1;
-static const double  enough_share = 0.5; /* of the frames asked for: fewer are worth a warning */
 static const int64_t check_ns = 100000000; /* a signal may be delivered to another thread: polled at this interval */
 
 typedef struct Live {
@@ -93,7 +93,6 @@ static bool take(DisDatagram *out, Live *l, int64_t until_ns)
     return false;
 }
 
-static uint64_t lost(const LiveCounters *c) { return c->lost_kernel + c->lost_queue; }
 
 static void read_counters(Live *l)
 {
@@ -388,29 +387,6 @@ static Status measure_machine(Live *l)
     return config_set(config, "quality.machine_factor", text, "run");
 }
 
-static void say_summary(const Live *l)
-{
-    const LiveCounters *c = &l->counters;
-    char                sent[80] = "";
-    if (l->health.sample.publishes)
-        snprintf(sent, sizeof sent, "; PDUs sent %llu, not sent %llu", (unsigned long long)c->sent,
-                 (unsigned long long)c->send_failed);
-    const uint64_t frames = l->health.sample.frames;
-    log_info("run: %llu datagrams heard, %llu of them our own; lost %llu; frames made %llu, left out %llu%s",
-             (unsigned long long)c->datagrams, (unsigned long long)l->run.own, (unsigned long long)lost(c),
-             (unsigned long long)frames, (unsigned long long)c->frames_late, sent);
-    const double   share  = live_kept_share(c, frames);
-    if (frames > 0 && share < enough_share)
-        log_warn("run: kept %.3g of %g frames a second, fewer than half: lower sensor.rate_hz (--rate), the size, or the "
-                 "quality (quality.budget, sensor.samples), or render fewer bands", share * c->rate_hz, c->rate_hz);
-    else if (frames > 0)
-        log_info("run: kept %.3g of %g frames a second", share * c->rate_hz, c->rate_hz);
-    if (c->files_failed || c->files_left_out)
-        log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or "
-                 "--no-files leaves more time", (unsigned long long)c->files_left_out,
-                 (unsigned long long)c->files_failed);
-}
-
 /* There was nothing to render so far, and nothing is wrong. */
 static bool idle(HealthReason reason)
 {
@@ -474,7 +450,7 @@ static Status run_node(Live *l)
         l->run.stopped = stop_asked();
         if (status == STATUS_OK) status = run_unheard(&l->run);
     }
-    say_summary(l);
+    live_summary(&l->counters, &l->health.sample, l->run.own);
     return status == STATUS_OK ? verdict(l) : status;
 }
 

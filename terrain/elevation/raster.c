@@ -2,8 +2,8 @@
  * with a remedy. */
 #include "terrain/elevation/raster.h"
 
-#include "pitviper_file.h"
 #include "terrain/elevation/gdal_library.h"
+#include "terrain/elevation/raster_source.h"
 
 #include <strings.h>
 #include <cpl_conv.h>
@@ -218,56 +218,6 @@ static void take_suffixes(Opened *o, char *path)
     else *colon = ':';
 }
 
-static char only_within[PATH_MAX]; /* empty: anywhere */
-
-void raster_stay_within(const char *folder) { snprintf(only_within, sizeof only_within, "%s", folder ? folder : ""); }
-
-static bool is_within(const char *path)
-{
-    char         whole[PATH_MAX];
-    const size_t length = strlen(only_within);
-    return length == 0 || (realpath(path, whole) && strncmp(whole, only_within, length) == 0 &&
-                           (whole[length] == '/' || strcmp(only_within, "/") == 0));
-}
-
-/* GDAL looks for a coordinate system, world file, overviews and notes beside a file, under its name or another ending. */
-static bool beside_may_be_opened(const char *path, const char *key)
-{
-    static _Thread_local char plain[path_size]; /* the last folder that holds files and folders alone */
-    char           full[path_size], why[file_why_size];
-    const char    *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-    const size_t   stem = dot ? (size_t)(dot - name) : strlen(name);
-    const int      folder = slash ? (int)(slash - path) + 1 : 0;
-    snprintf(full, sizeof full, "%.*s", folder ? folder : 1, folder ? path : ".");
-    if (strcmp(full, plain) == 0) return true;
-    DIR *directory = opendir(full);
-    bool good = true, odd = false;
-    snprintf(plain, sizeof plain, "%s", full);
-    for (struct dirent *entry; good && directory && (entry = readdir(directory));) {
-        struct stat about;
-        if (entry->d_type == DT_REG || entry->d_type == DT_DIR) continue;
-        snprintf(full, sizeof full, "%.*s%s", folder, path, entry->d_name);
-        if (stat(full, &about) != 0 || S_ISDIR(about.st_mode) || S_ISREG(about.st_mode)) continue;
-        odd = true;
-        if (strncasecmp(entry->d_name, name, stem) != 0 || (entry->d_name[stem] != '.' && entry->d_name[stem] != 0)) continue;
-        good = file_is_regular(why, full);
-        if (!good) log_error("%s: %s is read with what lies beside it: cannot read %s: %s", key, path, full, why);
-    }
-    if (directory) closedir(directory);
-    if (odd || !directory) *plain = 0;
-    return good;
-}
-
-/* GDAL opens by name and waits for a FIFO. Names that are no file's (a subdataset, a file in an archive) are its own. */
-static bool may_be_opened(const char *path, const char *key)
-{
-    struct stat about;
-    char        why[file_why_size] = "it lies outside the folder of the store that is made again of it";
-    if (is_within(path) && (stat(path, &about) != 0 || file_is_regular(why, path))) return beside_may_be_opened(path, key);
-    log_error("%s: cannot read %s: %s", key, path, why);
-    return false;
-}
-
 /* Of a file that names others, such as a VRT, those too; what those name where it matters. */
 static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char *key, int depth)
 {
@@ -275,8 +225,8 @@ static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char 
     bool   good = depth < 8;
     for (int k = 0; good && parts && parts[k]; k++) {
         if (strcmp(parts[k], path) == 0) continue;
-        good = may_be_opened(parts[k], key);
-        GDALDatasetH part = good && *only_within ? GDALOpen(parts[k], GA_ReadOnly) : NULL;
+        good = raster_file_allowed(parts[k], key);
+        GDALDatasetH part = good && raster_stays_within() ? GDALOpen(parts[k], GA_ReadOnly) : NULL;
         if (part) good = parts_may_be_opened(part, parts[k], key, depth + 1);
         if (part) GDALClose(part);
     }
@@ -294,7 +244,7 @@ static Status add_sheet(RasterSet *set, const char *name, const char *key)
     take_suffixes(&o, path);
     const RasterVertical vertical = o.vertical;
     const int            chosen_band = o.band;
-    if (!may_be_opened(path, key)) return STATUS_IO;
+    if (!raster_file_allowed(path, key)) return STATUS_IO;
     GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
     if (!file) {
         log_error("%s: cannot read %s: %s; gdalinfo %s says what it is", key, path, reason("not a raster GDAL knows"),
@@ -404,7 +354,7 @@ static Status add_folder(RasterSet *set, const char *path, const char *key)
         struct stat about;
         const int   n = snprintf(full, sizeof full, "%s/%s", path, entry->d_name);
         if (n < 0 || n >= (int)sizeof full || stat(full, &about) != 0 || !S_ISREG(about.st_mode)) continue;
-        if (!may_be_opened(full, key)) {
+        if (!raster_file_allowed(full, key)) {
             status = STATUS_IO;
             break;
         }

@@ -47,9 +47,6 @@ typedef struct RasterSet {
  * logged line with a remedy, and STATUS_IO or STATUS_BAD_VALUE. */
 Status raster_set_open(RasterSet *out, const char *paths, const char *key);
 void   raster_set_close(RasterSet *set); /* accepts zeroes */
-/* From here on only files below this folder are opened, links followed, and none that name others outside it. NULL:
- * anywhere. Of the whole process: set before threads read. */
-void   raster_stay_within(const char *folder);
 
 /* In place, count places: longitude and latitude (rad) to column and row, and back. NaN where the projection has
  * none. */

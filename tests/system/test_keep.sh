@@ -2,11 +2,8 @@
 # What is there is kept: nothing of an earlier run or recording is replaced unasked, a signal leaves whole records that say
 # so; and what part of a recording is shown, and which planes of truth are kept.
 . "$(dirname "$0")/common.sh"
-bare=("${quick[@]}")
+. "$(dirname "$0")/small_demo.sh"
 
-exercise demo "$tmp/demo.pcap"
-small=(--size 16x16 --bands lwir --rate 1 --threads 1)
-shown() { local out=$1; shift; run replay "$tmp/demo.pcap" --out "$out" "${small[@]}" "$@"; }
 status_of() { run_json "$1" | grep -oE '"status":"[a-z]+"' | cut -d'"' -f4; }
 times() { json_numbers "$1/truth.jsonl" time_s | tr '\n' ' '; }
 "$pitviper" inspect "$tmp/demo.pcap" >"$tmp/inspected"

@@ -2,30 +2,12 @@
 # --overwrite: a mistake is told before the world is set up, and nothing goes; one process a folder; no link is followed where
 # files are written; unknown endings; products of bands that a new run has not go too.
 . "$(dirname "$0")/common.sh"
-bare=("${quick[@]}")
+. "$(dirname "$0")/small_demo.sh"
 
-exercise demo "$tmp/demo.pcap"
-small=(--size 16x16 --bands lwir --rate 1 --threads 1)
-shown() { local out=$1; shift; run replay "$tmp/demo.pcap" --out "$out" "${small[@]}" "$@"; }
-status_of() { run_json "$1" | grep -oE '"status":"[a-z]+"' | cut -d'"' -f4; }
-times() { json_numbers "$1/truth.jsonl" time_s | tr '\n' ' '; }
-"$pitviper" inspect "$tmp/demo.pcap" >"$tmp/inspected"
-first=$(sed -nE 's/ *exercise time ([0-9.]+) .*/\1/p' "$tmp/inspected")
-last=$(sed -nE 's/ *exercise time [0-9.]+ \.\. ([0-9.]+) .*/\1/p' "$tmp/inspected")
-absolute() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.6f", a + b }'; }
-
-# ---- an earlier run
+# ---- an earlier run, and files of the user's own beside its products
 shown "$tmp/a"
-check "a whole run" [ "$code $(status_of "$tmp/a")" = "0 complete" ]
-count=$(json_numbers "$tmp/a/run.json" frames)
 touch "$tmp/a/mine.txt" "$tmp/a/frames/lwir/mine.png"
 before=$(cd "$tmp/a" && find . -type f | sort | xargs sha256sum)
-shown "$tmp/a" --only 1
-check "again: refused" [ $code = 1 ]
-check "with the name of the option" complained 'truth.jsonl exists from an earlier run.*--overwrite'
-run run --out "$tmp/a" --for 1
-check "of a live node too" [ $code = 1 ]
-check "nothing is touched" [ "$before" = "$(cd "$tmp/a" && find . -type f | sort | xargs sha256sum)" ]
 # ---- a mistake with --overwrite: told before the world is set up, and nothing goes
 now() { (cd "$tmp/a" && find . -type f | sort | xargs sha256sum); }
 for mistake in "--bands optcal" "--set sensor.preset=hubble" "--video x.xyz" "--from 5000" "--only 9999" "--save-frame 9999" "--host 9:9:9" \
