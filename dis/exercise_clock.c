@@ -108,6 +108,7 @@ struct ExerciseClock {
     Tie       absolute;        /* of SCALE_ABSOLUTE */
     Segment  *valid;           /* by number once whole */
     int       valid_count, valid_capacity;
+    bool      lost_segment;    /* memory ran out for one */
     Sender    slot[slot_count];
     Memory    memory[memory_slots];
 };
@@ -215,7 +216,10 @@ static void keep_segment(ExerciseClock *clock, const Sender *sender)
     if (clock->valid_count == clock->valid_capacity) {
         const int larger = clock->valid_capacity ? 2 * clock->valid_capacity : 64;
         Segment  *grown  = realloc(clock->valid, (size_t)larger * sizeof *grown);
-        if (!grown) return; /* out of memory: its PDUs count from their arrival */
+        if (!grown) {
+            clock->lost_segment = true;
+            return;
+        }
         clock->valid          = grown;
         clock->valid_capacity = larger;
     }
@@ -500,7 +504,7 @@ static int by_number(const void *a, const void *b)
     return p->number < q->number ? -1 : p->number > q->number;
 }
 
-void exercise_clock_whole(ExerciseClock *clock)
+Status exercise_clock_whole(ExerciseClock *clock)
 {
     clock->doubts.by_arrival = 0;
     for (int i = 0; i < clock->doubts.count; i++) clock->doubts.sender[i].by_arrival = 0;
@@ -512,6 +516,7 @@ void exercise_clock_whole(ExerciseClock *clock)
             keep_segment(clock, sender);
     }
     if (clock->valid_count > 1) qsort(clock->valid, (size_t)clock->valid_count, sizeof *clock->valid, by_number);
+    return clock->lost_segment ? STATUS_NO_MEMORY : STATUS_OK;
 }
 
 void exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at)

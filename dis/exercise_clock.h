@@ -56,9 +56,9 @@ ExerciseInstant exercise_clock_pdu_instant(ExerciseClock *clock, const DisHeader
                                            double capture_s);
 
 /* After the last PDU of a recording, once: what is then known of each sender counts for all its PDUs. Then the second, once
- * for each of them: sets its time, and counts those timed by arrival anew. */
-void exercise_clock_whole(ExerciseClock *clock);
-void exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at);
+ * for each of them: sets its time, and counts those timed by arrival anew. Fails for want of memory. */
+Status exercise_clock_whole(ExerciseClock *clock);
+void   exercise_clock_whole_time(ExerciseClock *clock, ExerciseInstant *at);
 
 /* The same by the PDU itself; NaN, and the clock unmoved, for one that names no sender. */
 double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu, double capture_s);

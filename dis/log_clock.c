@@ -43,8 +43,8 @@ Status dis_log_times(DisLogTimes *out, const DisLog *log, int exercise)
             if (exercise < 0 || header.exercise == exercise)
                 status = add(&times, &capacity, exercise_clock_pdu_instant(clock, &header, pdu, d.capture_s));
     }
+    if (status == STATUS_OK) status = exercise_clock_whole(clock);
     if (status == STATUS_OK) {
-        exercise_clock_whole(clock);
         for (size_t i = 0; i < times.count; i++) exercise_clock_whole_time(clock, &times.pdu[i]);
         times.doubts = *exercise_clock_anomalies(clock);
         keep_anomalies(&times.doubts);

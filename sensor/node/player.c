@@ -263,20 +263,25 @@ static void feed_event(Player *player, EntityTable *table, const Event *event)
 }
 
 /* All of a recording is here: its senders' clocks are known. */
-static void settle_times(Player *player)
+static Status settle_times(Player *player)
 {
+    const Status status = exercise_clock_whole(player->clock);
+    if (status != STATUS_OK) return status;
     player->whole = true;
-    exercise_clock_whole(player->clock);
     for (int i = 0; i < player->count; i++) {
         exercise_clock_whole_time(player->clock, &player->event[i].instant);
         player->event[i].counts_s = player->event[i].instant.t_s;
     }
     player->counters.stamps_doubted = exercise_clock_anomalies(player->clock)->by_arrival;
+    return STATUS_OK;
 }
 
-void player_feed(Player *player, EntityTable *table, double t_s)
+Status player_feed(Player *player, EntityTable *table, double t_s)
 {
-    if (!player->causal && !player->whole) settle_times(player);
+    if (!player->causal && !player->whole) {
+        const Status status = settle_times(player);
+        if (status != STATUS_OK) return status;
+    }
     if (!player->sorted && !player->causal && player->count > 1)
         qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
     player->sorted = true; /* arrivals are ordered already */
@@ -289,6 +294,7 @@ void player_feed(Player *player, EntityTable *table, double t_s)
         player->next = player->count = 0;
         player->octets_used          = 0;
     }
+    return STATUS_OK;
 }
 
 /* ---- queries ----------------------------------------------------------------------------------- */

@@ -23,8 +23,9 @@ Status player_add(Player *player, const DisDatagram *datagram, bool keep);
 Status player_add_log(Player *player, const DisLog *log);
 
 /* Feeds everything that counts at or before t_s and was not fed before. Timed-out entities are removed by the
- * caller, on a time grid of its own: so the table does not depend on which frames are rendered. */
-void   player_feed(Player *player, EntityTable *table, double t_s);
+ * caller, on a time grid of its own: so the table does not depend on which frames are rendered. Fails for want of
+ * memory, before it feeds anything. */
+Status player_feed(Player *player, EntityTable *table, double t_s);
 
 /* Exercise time of an arrival; NaN before the first PDU. */
 double player_time_s(const Player *player, double capture_s);

@@ -177,7 +177,6 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     *shown                = false;
     f->provenance.begun_s = wall_clock_s();
     Status status = entity_table_snapshot(&f->seen.snapshot, s->table, t_s, f->arena);
-    if (status == STATUS_OK) status = s->vehicle_status;
     if (status == STATUS_OK && s->vehicles) status = world_vehicles_show(s->vehicles, &f->seen.snapshot, f->arena);
     if (status != STATUS_OK || !session_eye(&eye, s, &f->seen.snapshot, t_s)) return status;
     f->times.posed_s = wall_clock_s();
@@ -437,10 +436,10 @@ static void begin_latency(Session *s, Frame *f)
 Status session_frame(bool *shown, Session *s, int number, double t_s)
 {
     int    left_out = 0;
-    Status status   = STATUS_OK;
     session_advance(s, t_s);
+    Status status = s->advance_status;
     *shown = false;
-    if (session_host_is_there(s)) { /* otherwise nothing is extrapolated for it */
+    if (status == STATUS_OK && session_host_is_there(s)) { /* otherwise nothing is extrapolated for it */
         Frame *frame = frame_pool_take(s->frames);
         status       = make_frame(shown, &left_out, frame, s, number, t_s);
         if (status == STATUS_OK && *shown) {

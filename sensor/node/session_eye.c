@@ -220,6 +220,13 @@ static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
     turn_rate(eye->w_cam_rps, eye->view.r_enu_from_cam, r_next, step_s);
 }
 
+static void note_failure(Session *s, const char *what, Status status)
+{
+    if (status == STATUS_OK || s->advance_status != STATUS_OK) return;
+    log_error("%s: %s", what, status_name(status));
+    s->advance_status = status;
+}
+
 /* Every second, when something appeared, fired or burst, and while work is left. */
 static void warm_vehicles(Session *s, double tick_s)
 {
@@ -231,9 +238,13 @@ static void warm_vehicles(Session *s, double tick_s)
     arena_reset(s->vehicle_arena);
     Status status = entity_table_snapshot(&snapshot, s->table, tick_s, s->vehicle_arena);
     if (status == STATUS_OK) status = world_vehicles_tick(s->vehicles, &snapshot);
-    if (status != STATUS_OK && s->vehicle_status == STATUS_OK) log_error("heat of vehicles: %s", status_name(status));
-    if (status != STATUS_OK) s->vehicle_status = status;
+    note_failure(s, "heat of vehicles", status);
     s->vehicle_changes = changes;
+}
+
+static void feed(Session *s, double t_s)
+{
+    note_failure(s, "times of the recording", player_feed(s->player, s->table, t_s));
 }
 
 /* State that outlasts a frame changes at ticks alone: it does not depend on which frames are rendered. */
@@ -241,14 +252,14 @@ void session_advance(Session *s, double t_s)
 {
     /* a quotient is rounded correctly, so that tick 35 is 0.35 to the bit; 35 * 0.01 is more */
     for (double tick_s; (tick_s = (double)s->tick / seeker_ticks_per_s) <= t_s; s->tick++) {
-        player_feed(s->player, s->table, tick_s);
+        feed(s, tick_s);
         if (s->tick % expire_ticks == 0) entity_table_expire(s->table, tick_s);
         if (s->shared->config->causal || s->plan.any_munition) find_host(s);
         session_keep(s);
         warm_vehicles(s, tick_s);
         step_gimbal(s, tick_s);
     }
-    player_feed(s->player, s->table, t_s);
+    feed(s, t_s);
 }
 
 static void finish_eye(Eye *eye, const Session *s)

@@ -27,7 +27,7 @@ struct Session {
     KeptHeat            *kept;          /* of a run before; NULL: none */
     WorldVehicles       *vehicles;      /* NULL: parts are as warm as the air */
     Arena               *vehicle_arena; /* of the snapshot of a tick */
-    Status               vehicle_status; /* the first failure: frames fail with it */
+    Status               advance_status; /* the first failure of what outlasts a frame: frames fail with it */
     uint64_t             vehicle_changes; /* entity_table_changes at the last */
     Seeker               seeker;
     int64_t              tick;          /* next gimbal tick */
