@@ -104,31 +104,32 @@ static bool numbers_of(NumberList *out, const Setting *row, const char *value)
     return true;
 }
 
-/* `a, b` without the blanks. False: it does not fit. */
-static bool words_into(char *out, size_t out_size, const char *value)
+/* `a, b` without the blanks; out NULL: counted alone. */
+static size_t join_words(char *out, const char *value)
 {
-    const size_t octets = strlen(value);
-    char        *made = calloc(octets + 1, 1);
-    size_t       n = 0;
-    if (!made) return false;
+    size_t n = 0;
     for (const char *at = value; *at;) {
         at += strspn(at, " \t");
         size_t       length = strcspn(at, ",");
         const size_t step = length + (at[length] == ',');
         const bool   more = at[length] == ',';
         while (length > 0 && strchr(" \t", at[length - 1])) length--;
-        memcpy(made + n, at, length);
+        if (out) memcpy(out + n, at, length);
         n += length;
-        if (more) made[n++] = ',';
+        if (out && more) out[n] = ',';
+        n += more;
         at += step;
     }
-    const bool fits = n < out_size;
-    if (fits) {
-        memset(out, 0, out_size);
-        memcpy(out, made, n);
-    }
-    free(made);
-    return fits;
+    return n;
+}
+
+/* False: they do not fit. */
+static bool words_into(char *out, size_t out_size, const char *value)
+{
+    if (join_words(NULL, value) >= out_size) return false;
+    memset(out, 0, out_size);
+    join_words(out, value);
+    return true;
 }
 
 /* ---- one value, stored ----------------------------------------------------------------------- */

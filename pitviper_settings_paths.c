@@ -3,9 +3,12 @@
 
 #include "pitviper_file.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+enum { paths_most = 4096 }; /* largest setting of paths */
 
 bool settings_is_path(const Setting *row)
 {
@@ -27,8 +30,9 @@ bool settings_place_paths(char *out, size_t out_size, SettingType type, const ch
 {
     const size_t folder = folder_of(file);
     size_t       n = 0;
-    char        *made = calloc(out_size, 1);
-    bool         fits = made != NULL;
+    char         made[paths_most] = {0};
+    bool         fits = true;
+    assert(out_size <= sizeof made);
     for (const char *at = value; fits && *at;) {
         const size_t blanks = type == SETTING_PATHS ? strspn(at, " ") : 0;
         const size_t length = type == SETTING_PATHS ? strcspn(at, ",") : strlen(at);
@@ -43,7 +47,6 @@ bool settings_place_paths(char *out, size_t out_size, SettingType type, const ch
         at += length + (at[length] != 0);
     }
     if (fits) memcpy(out, made, out_size);
-    free(made);
     return fits;
 }
 
@@ -91,10 +94,10 @@ void settings_absolute(void *out, const SettingTable *table)
 {
     for (int i = 0; i < table->count; i++) {
         const Setting *row = &table->row[i];
-        char          *at = (char *)out + row->offset, *made, one[4096];
+        char          *at = (char *)out + row->offset, made[paths_most] = {0}, one[4096];
         size_t         n = 0;
         if (!settings_is_path(row) || !*at || (row->type == SETTING_NAME_OR_PATH && !strpbrk(at, "/."))) continue;
-        if (!(made = calloc(row->size, 1))) return;
+        assert(row->size <= sizeof made);
         bool fits = true;
         for (const char *from = at; fits && *from;) {
             const size_t length = row->type == SETTING_PATHS ? strcspn(from, ",") : strlen(from);
@@ -108,6 +111,5 @@ void settings_absolute(void *out, const SettingTable *table)
             from += length + (from[length] != 0);
         }
         if (fits) memcpy(at, made, row->size);
-        free(made);
     }
 }

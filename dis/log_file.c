@@ -38,10 +38,12 @@ Status dis_log_file_create(DisLogFile **out, int file, const char *path)
     f->file    = fcntl(file, F_DUPFD_CLOEXEC, 0);
     f->path    = strdup(path);
     for (int w = 0; w < windows; w++) f->window[w].block = UINT64_MAX;
+    if (f->file < 0 || !f->path) {
+        dis_log_file_destroy(f);
+        return STATUS_NO_MEMORY;
+    }
     *out = f;
-    if (f->file >= 0 && f->path) return STATUS_OK;
-    dis_log_file_destroy(f);
-    return STATUS_NO_MEMORY;
+    return STATUS_OK;
 }
 
 void dis_log_file_destroy(DisLogFile *f)

@@ -5,13 +5,15 @@
  * plane explains. Between two ground classes no further ray is needed: the existing hit gives the plane of the
  * ground. Parts that fall between the samples (a barrel, a mast) lie within the bounding box of their target: pixels
  * in the boxes of targets that are too large for a target grid and small enough to have such parts are always
- * sampled again, and so is the ground where a small target's shadow falls. Plants are no edges among themselves or
+ * sampled again, and so are thin pieces of larger targets (thin_lines.c) and the ground where a small target's shadow
+ * falls. Plants are no edges among themselves or
  * against the ground behind them, or every pixel of a wood would be one: they are filtered (leaf_filter.c). Within a few
  * pixels of a target they are refined. */
 #include "render/frame/edges.h"
 
 #include "render/frame/ground_mix.h"
 #include "render/frame/target_grid.h"
+#include "render/frame/thin_lines.h"
 
 /* Up to this size on the image, along its longer side, some part of a vehicle may be narrower than a pixel: a gun
  * barrel is a sixtieth of its tank's length. */
@@ -81,7 +83,10 @@ void mark_boxes(Job *job)
         const double *box = t->projected_box;
         const double  about[4] = {box[0] - about_px, box[1] - about_px, box[2] + about_px, box[3] + about_px};
         if (i != job->request->hidden_entity && !target_grid_hidden(job, i)) mark_box(job, about, refine_leaves);
-        if (!(fmax(box[2] - box[0], box[3] - box[1]) <= middling_px)) continue;
+        if (!(fmax(box[2] - box[0], box[3] - box[1]) <= middling_px)) {
+            mark_thin_lines(job, i);
+            continue;
+        }
         if (!job->is_small[i]) mark_box(job, box, refine_all);
         if (shadows && shadow_box(shadow, job, i)) mark_box(job, shadow, refine_sun);
     }

@@ -160,6 +160,7 @@ static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *mesh
     }
     for (int t = 0; t < triangle_count; t++) measure_facet(&mesh->facet[t], model, mesh->triangle[t]);
     if (list_corners(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
+    if (parts_list_thin(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
     bound_mesh(mesh);
     return commit_mesh(mesh, tracer);
 }
@@ -195,6 +196,7 @@ static void close_model(ModelMeshes *meshes)
         free(meshes->mesh[k].triangle);
         free(meshes->mesh[k].facet);
         free(meshes->mesh[k].corner);
+        free(meshes->mesh[k].thin);
     }
     free(meshes->mesh);
     *meshes = (ModelMeshes){0};

@@ -48,6 +48,13 @@ typedef struct PartHit {
 /* All vertices of a posed node, each once, in its axes. */
 const double (*parts_node_corners(const PosedNode *node, int *count))[3];
 
+/* A box in a node's axes about a piece of it (triangles that share corners) that is a rod or a plate: one of the two other
+ * sides is at most a twelfth of the first. */
+typedef struct ThinBox {
+    double centre[3], axis[3][3], half[3]; /* unit axes; half a side along each, m */
+} ThinBox;
+const ThinBox *parts_node_thin(const PosedNode *node, int *count);
+
 /* The three corners of its triangle number k, in its axes; NULL: k is out of range. */
 const double (*parts_node_triangle(const PosedNode *node, int k))[3];
 

@@ -1,4 +1,4 @@
-/* render/parts/parts_private.h: a node's triangles, built by parts.c and traced by parts_trace.c. */
+/* render/parts/parts_private.h: a node's triangles, built by parts.c and parts_thin.c, traced by parts_trace.c. */
 #ifndef RENDER_PARTS_PARTS_PRIVATE_H
 #define RENDER_PARTS_PARTS_PRIVATE_H
 
@@ -25,7 +25,12 @@ struct NodeMesh {
     double       centre[3];     /* of a sphere and a box round its vertices, node axes */
     double       radius_m;      /* both with margin for the conversion to float */
     double       half[3];
+    int          thin_count;
+    ThinBox     *thin;
 };
+
+/* Sets thin and thin_count (parts_thin.c). */
+Status parts_list_thin(NodeMesh *mesh);
 
 /* Embree's callback for the boxes that rays pass through: parts_trace.c. */
 void parts_intersect(const struct RTCIntersectFunctionNArguments *a);

@@ -2,6 +2,7 @@
  * passed to its variants. */
 #include "sensor/settings/options.h"
 
+#include "pitviper_channels.h"
 #include "sensor/settings/next_option.h"
 
 #include <getopt.h>
@@ -384,6 +385,7 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
                   o->config.publish.coco ? "coco" : "pairs");
         return 1 + 2;
     }
+    if (channels_load() == STATUS_NO_MEMORY) return 1 + 1;
     if (o->sweep) return 0; /* its axes are settings too: combinations are checked for each variant */
     return config_check(&o->config) == STATUS_OK ? 0 : 1 + 2;
 }

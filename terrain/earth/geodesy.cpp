@@ -6,12 +6,26 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
-#include <vector>
 
 namespace {
 
 const double deg_per_rad = 57.295779513082320877;
 const double half_pi_rad = 1.5707963267948966192;
+
+/* As Geocentric::Forward gives it, which would take memory. */
+void rotation_at(double r_ecef_from_enu[9], double lat_deg, double lon_deg)
+{
+    double sin_lat, cos_lat, sin_lon, cos_lon;
+    GeographicLib::Math::sincosd(lat_deg, sin_lat, cos_lat);
+    GeographicLib::Math::sincosd(lon_deg, sin_lon, cos_lon);
+    const double east[3] = {-sin_lon, cos_lon, 0}, up[3] = {cos_lat * cos_lon, cos_lat * sin_lon, sin_lat};
+    const double north[3] = {-sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat};
+    for (int k = 0; k < 3; k++) {
+        r_ecef_from_enu[3 * k] = east[k];
+        r_ecef_from_enu[3 * k + 1] = north[k];
+        r_ecef_from_enu[3 * k + 2] = up[k];
+    }
+}
 
 } // namespace
 
@@ -41,16 +55,11 @@ try {
     if (!(std::fabs(place->lat_rad) <= half_pi_rad)) return STATUS_BAD_VALUE;
 
     const double lat_deg = std::min(90.0, std::max(-90.0, place->lat_rad * deg_per_rad));
+    const double lon_deg = place->lon_rad * deg_per_rad;
     double       x_m, y_m, z_m;
-    if (r_ecef_from_enu) {
-        std::vector<double> m(9);
-        GeographicLib::Geocentric::WGS84().Forward(lat_deg, place->lon_rad * deg_per_rad, place->h_m, x_m, y_m, z_m, m);
-        if (!(std::isfinite(x_m) && std::isfinite(y_m) && std::isfinite(z_m))) return STATUS_BAD_VALUE;
-        std::copy(m.begin(), m.end(), r_ecef_from_enu);
-    } else {
-        GeographicLib::Geocentric::WGS84().Forward(lat_deg, place->lon_rad * deg_per_rad, place->h_m, x_m, y_m, z_m);
-        if (!(std::isfinite(x_m) && std::isfinite(y_m) && std::isfinite(z_m))) return STATUS_BAD_VALUE;
-    }
+    GeographicLib::Geocentric::WGS84().Forward(lat_deg, lon_deg, place->h_m, x_m, y_m, z_m);
+    if (!(std::isfinite(x_m) && std::isfinite(y_m) && std::isfinite(z_m))) return STATUS_BAD_VALUE;
+    if (r_ecef_from_enu) rotation_at(r_ecef_from_enu, lat_deg, lon_deg);
     p_ecef[0] = x_m;
     p_ecef[1] = y_m;
     p_ecef[2] = z_m;

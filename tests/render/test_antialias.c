@@ -3,6 +3,8 @@
  * test_antialias_threads.c. labels: slow */
 #include "tests/render/strewn_world.h"
 
+#include "terrain/landscape/ways.h"
+
 /* No band's bits hang on what other bands were asked for: shadows show in two of them only. */
 static void a_band_alone_is_the_band_in_company(void **state)
 {
@@ -171,6 +173,69 @@ static void borders_of_kinds_of_ground_do_not_flicker(void **state)
     CHECK(sqrt(square / count) < 0.2 && sqrt(change / count) < 0.2);
 }
 
+/* Whether a road, lane, track or stream is met within a pixel, on the plane of the ground there. */
+static bool way_within(const Picture *p, const View *view, int x, int y)
+{
+    enum { fine = 8 };
+    const int    i = y * view->width + x;
+    const double n[3] = {(double)p->normal[0][i], (double)p->normal[1][i], (double)p->normal[2][i]};
+    double       centre[3];
+    view_ray(centre, view, x + 0.5, y + 0.5);
+    for (int k = 0; k < fine * fine; k++) {
+        double   d[3];
+        WayPlace way;
+        view_ray(d, view, x + (k % fine + 0.5) / fine, y + (k / fine + 0.5) / fine);
+        const double range_m = (double)p->range_m[i] * v3_dot(n, centre) / v3_dot(n, d);
+        if (landscape_way(&way, &hand.landscape, view->p_enu[0] + range_m * d[0], view->p_enu[1] + range_m * d[1]) &&
+            fabs(way.across_m) <= way.half_m)
+            return true;
+    }
+    return false;
+}
+
+/* Roads and tracks of 3 to 6 m about a village, of half a pixel to several: those pixels against 8 x 8 rays, straight down
+ * and aslant. One ray a pixel shows them as dashes: errors of 15 to 35 % of the light. */
+static void ways_narrower_than_a_pixel_keep_their_light(void **state)
+{
+    (void)state;
+    enum { width = 64, height = 48 };
+    static const double pixel_m[] = {2, 8}, down[2][3] = {{0.001, 0, -1}, {1, 0.1, -0.15}};
+    DetailTable        *detail = hand.world.detail;
+    double              village[2];
+    hand.world.detail = NULL;
+    hand_clear();
+    CHECK(landscape_village(village, &hand.landscape, 0));
+    for (int k = 0; k < 4; k++) {
+        double d[3] = {0, 0, -1}, eye_enu[3] = {village[0], village[1], ground_at(village[0], village[1])};
+        v3_normalize(d, down[k / 2]);
+        v3_add_scaled(eye_enu, eye_enu, -pixel_m[k % 2] * 400, d);
+        hand_air_on(sun_enu, 300);
+        const View    view = hand_view(eye_enu, d, width, height, 400);
+        RenderRequest request = hand_request(&view);
+        request.bands = 1 << BAND_OPTICAL;
+        arena_reset(hand.arena);
+        const Picture adaptive = hand_render(&request, hand.pool);
+        request.edge_samples = request.target_samples = 0;
+        const Picture one = hand_render(&request, hand.pool);
+        request.samples = 8;
+        const Picture best = hand_render(&request, hand.pool);
+        double sum = 0, off = 0, square = 0, square_one = 0;
+        int    count = 0;
+        for (int i = 0; i < width * height; i++) {
+            if (!(adaptive.range_m[i] < INFINITY) || !way_within(&adaptive, &view, i % width, i / width)) continue;
+            const double want = (double)best.optical[0][i], is = (double)adaptive.optical[0][i] - want,
+                         was = (double)one.optical[0][i] - want;
+            sum += want, off += is, square += is * is, square_one += was * was, count++;
+        }
+        const double mean = sum / count, rms = sqrt(square / count) / mean, rms_one = sqrt(square_one / count) / mean;
+        print_message("ways, pixels of %g m, %s: %d pixels, mean off by %+.2f %%, rms %.1f %% (one ray: %.1f %%)\n", pixel_m[k % 2],
+                      k < 2 ? "straight down" : "aslant", count, 100 * off / sum, 100 * rms, 100 * rms_one);
+        CHECK(count > 100 && rms_one > 0.08);
+        CHECK(fabs(off / sum) < 0.01 && rms < 0.25 * rms_one);
+    }
+    hand.world.detail = detail;
+}
+
 /* Ground and sky alone, to the horizon: less than a tenth more rays. */
 static void bare_ground_stays_cheap(void **state)
 {
@@ -218,6 +283,54 @@ static void a_mast_between_the_pixels_is_seen(void **state)
                   missed);
     CHECK(missed > 20);
     CHECK(worst < 0.5); /* one of sixteen columns of samples more or less, of 2.7: 37 %; and its nearer face is wider */
+}
+
+/* The same mast, half a pixel wide, of a target too large to be refined as a whole: upright, and leaning so that it crosses
+ * columns. Its light is that of its area on paper, row by row; one ray a pixel loses it or doubles it. */
+static void a_thin_piece_of_a_large_target_is_no_dashes(void **state)
+{
+    (void)state;
+    enum { side = 96 };
+    static const double range_m = 180, focal_px = 1520, lean_rad[] = {0, 0.3, 0.7};
+    const double        eye_enu[3] = {0, 0, 3000}, ahead[3] = {1, 0, 0};
+    const View          view = hand_view(eye_enu, ahead, side, side, focal_px);
+    RenderRequest       request = hand_request(&view);
+    hand_air_off(sun_enu);
+    request.target_samples = 0;
+    for (int l = 0; l < 3; l++) {
+        const double c = cos(lean_rad[l]), s = sin(lean_rad[l]);
+        const double r[9] = {1, 0, 0, 0, -c, -s, 0, s, -c}; /* forward east, right southward, down; leaning about the sight */
+        double       worst = 0, worst_row = 0, by_one = 0;
+        for (int k = 0; k < 20; k++) {
+            /* its middle before the eye */
+            const double across_m = k / 20.0 * range_m / focal_px, p_enu[3] = {range_m, across_m - 4 * s, 3000 - 4 * c};
+            hand_clear();
+            hand_add(hand_mast_model, p_enu, r);
+            arena_reset(hand.arena);
+            const Picture picture = hand_render(&request, hand.pool);
+            RenderRequest one = request;
+            one.edge_samples = 0;
+            const Picture plain = hand_render(&one, hand.pool);
+            const double  row_px = 0.06 / c * focal_px / (range_m - 0.03); /* its nearer face */
+            double        sum = 0;
+            for (int y = side / 2 - 20; y < side / 2 + 20; y++) {
+                double row = 0, row_one = 0;
+                for (int x = 0; x < side; x++) {
+                    row += (double)picture.lwir[y * side + x] / hand_emitted(BAND_LWIR);
+                    row_one += (double)plain.lwir[y * side + x] / hand_emitted(BAND_LWIR);
+                }
+                sum += row / row_px / 40;
+                worst_row = fmax(worst_row, fabs(row - row_px));
+                by_one    = fmax(by_one, fabs(row_one - row_px));
+            }
+            worst = fmax(worst, fabs(sum - 1));
+        }
+        print_message("mast of half a pixel, leaning %.1f: rows off by up to %.2f px (one ray: %.2f), all of it by %.1f %%\n",
+                      lean_rad[l], worst_row, by_one, 100 * worst);
+        /* four columns of samples a pixel: a row is right to one of them, a leaning mast's mean better */
+        CHECK(worst_row <= 0.25 && by_one > 0.4);
+        CHECK(worst < (l ? 0.05 : 0.5));
+    }
 }
 
 /* An edge that moves over a pixel is met in as many steps as render_places says, all of a size: what the detector's
@@ -274,8 +387,10 @@ int main(void)
         cmocka_unit_test(refined_pixels_are_those_of_the_full_picture),
         cmocka_unit_test(the_error_and_its_price),
         cmocka_unit_test(borders_of_kinds_of_ground_do_not_flicker),
+        cmocka_unit_test(ways_narrower_than_a_pixel_keep_their_light),
         cmocka_unit_test(bare_ground_stays_cheap),
         cmocka_unit_test(a_mast_between_the_pixels_is_seen),
+        cmocka_unit_test(a_thin_piece_of_a_large_target_is_no_dashes),
         cmocka_unit_test(an_edge_has_its_places),
     };
     thread_flush_denormals();
