@@ -115,7 +115,7 @@ static inline void hand_attitude(double r[9], double from_east_rad, double dive_
 static inline View hand_view(const double p_enu[3], const double d_enu[3], int width, int height, double focal_px)
 {
     View   view = {.width = width, .height = height, .focal_px = focal_px};
-    double x[3], y[3], z[3];
+    double x[3], y[3], z[3] = {0, 0, 1};
     v3_normalize(z, d_enu);
     v3_cross(x, z, (const double[3]){0, 0, 1});
     v3_normalize(x, x);
