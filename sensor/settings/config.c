@@ -73,8 +73,11 @@ static const Setting keys[] = {
      "lateral colour of rgb: magnification of R relative to G, minus 1; each channel is then traced by itself"},
     {"sensor.lateral_b", SETTING_DOUBLE, AT(sensor.lateral_b), -0.02, 0.02, NULL, "", "the same for B"},
     {"detector.bits", SETTING_INT, AT(detector.bits), 8, 16, NULL, "", "bits of the PNG images: 8 or 16"},
-    {"detector.level", SETTING_TEXT, AT(detector.level), 0, 0, "auto|manual", "",
-     "gain and level of display images; auto: set per frame (detector.agc_s); manual: as configured"},
+    {"detector.level", SETTING_TEXT, AT(detector.level), 0, 0, "auto|plateau|manual", "",
+     "gain and level of display images; auto: set per frame (detector.agc_s), linear; plateau: plateau equalisation of mwir "
+     "and lwir, as in thermal cameras; manual: as configured"},
+    {"detector.plateau", SETTING_DOUBLE, AT(detector.plateau), 1e-6, 1, NULL, "",
+     "detector.level plateau: share of the pixels that counts in a bin of 0.03 K; 1: histogram equalisation"},
     {"detector.gain", SETTING_DOUBLE, AT(detector.gain), 0.01, 100, NULL, "", "contrast gain about mid-level"},
     {"detector.offset", SETTING_DOUBLE, AT(detector.offset), -1, 1, NULL, "", "brightness offset, in full scales"},
     {"detector.noise_optical", SETTING_DOUBLE, AT(detector.noise_optical), 0, 1, NULL, "",
@@ -358,6 +361,7 @@ Config config_default(void)
     strcpy(c.sensor.mount, "auto");
     c.sensor.mount_x_m = c.sensor.mount_y_m = c.sensor.mount_z_m = NAN;
     strcpy(c.detector.level, "auto");
+    c.detector.plateau              = 0.002;
     c.detector.agc_s                = 2; /* without a lag the display flickers: tests/system/test_level.sh */
     c.detector.bits                 = 8;
     c.detector.gain                 = 1;

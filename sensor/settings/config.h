@@ -34,7 +34,8 @@ typedef struct Config {
     } sensor;
     struct {
         int    bits;
-        char   level[8];           /* auto or manual */
+        char   level[16];          /* auto, plateau or manual */
+        double plateau;            /* share of the pixels that counts in a bin */
         double gain, offset;
         double noise_optical;      /* share of the mean */
         double netd_mwir_k, netd_lwir_k;
