@@ -1,11 +1,11 @@
 /* sensor/node/choices.c: host, aim, rate, time of day and frame, where the configuration leaves them open. */
 #include "sensor/node/choices.h"
-#include "sensor/node/player.h"
 
 #include "dis/datagram.h"
 #include "dis/enumerations.h"
 #include "render/scene/view.h"
 #include "terrain/earth/sun.h"
+#include "sensor/node/munitions.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/player.h"
 
