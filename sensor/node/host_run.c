@@ -181,6 +181,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL,
               .woods = woods->on ? &plants : NULL,
               .memory = *config->publish.memory ? ring : NULL, .detections_port = config->publish.detections_port,
+              .sent = &result->sent, .streams = *config->publish.stream != 0,
               .answers = config->publish.detections_port ? &result->answers : NULL,
               .materials = &run->world.materials};
     const Status status = record_write_run(path, &record);

@@ -206,6 +206,7 @@ static Status add_stream(Video *v, Channel *c)
     const Band    band = (Band)__builtin_ctz(c->bands);
     if (!(v->to & VIDEO_TO_STREAM) || !video_stream_url(&url, config, v->of.bands, band)) return STATUS_OK;
     const Status status = add_output(&o, v, c, VIDEO_TS);
+    if (status == STATUS_OK) o->sent = v->of.sent;
     return status == STATUS_OK ? udp_video_open(&o->udp, &url, config->network.interface, config->network.ttl)
                                : status;
 }
