@@ -196,6 +196,8 @@ static const Setting keys[] = {
      "none"},
     {"publish.video_codec", SETTING_TEXT, AT(publish.video_codec), 0, 0, "h264|h264-10|hevc-12|ffv1", "",
      "of videos and streams: 8 bits; 10 bits; 12 bits; 16 bits without loss, in .mkv files only"},
+    {"publish.video_labels", SETTING_TEXT, AT(publish.video_labels), 0, 0, "off|bands|targets", "",
+     "drawn into videos and streams, over the pixels: nothing; each band's name; that, and box and name of each visible target"},
     {"publish.stream", SETTING_TEXT, AT(publish.stream), 0, 0, NULL, "",
      "udp://HOST:PORT, numeric: MPEG-TS with KLV, the first band at PORT, each further one at a port higher by 2; empty: "
      "none"},
@@ -406,6 +408,7 @@ Config config_default(void)
     c.publish.coco_min_pixels       = 5;   /* of 4 no class can be told */
     c.publish.coco_min_snr          = 0.1; /* in the dark: 3e-6 W/(m2 sr), ten of the display's 255 steps */
     strcpy(c.publish.video_codec, "h264");
+    strcpy(c.publish.video_labels, "off");
     strcpy(c.publish.klv, "async");
     strcpy(c.publish.vmti, "atr");
     strcpy(c.publish.memory_planes, "float");

@@ -88,6 +88,7 @@ typedef struct Config {
         bool   latest;             /* OUT/latest: the newest display of each band */
         char   video[config_paths_size]; /* a file (.mp4, .mkv, .ts) or a folder; empty: none */
         char   video_codec[16];    /* h264, h264-10, hevc-12 or ffv1 */
+        char   video_labels[8];    /* off, bands or targets: drawn into videos and streams */
         char   stream[128];        /* udp://HOST:PORT; empty: none */
         char   klv[8];             /* async, sync or off */
         char   vmti[8];            /* atr, truth or off */

@@ -3,6 +3,7 @@
 # counted in run.json; their twins arrive, and are not. labels: video
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
+needs "video: built without FFmpeg's libraries" has_video
 needs "network namespaces for users" unshare -rn true
 needs "a writable /dev/shm" test -w /dev/shm
 
