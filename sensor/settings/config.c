@@ -145,6 +145,9 @@ static const Setting keys[] = {
      "exercise identifier; -1: the one with the most PDUs; -2: all, as one exercise"},
     {"exercise.utc", SETTING_TEXT, AT(exercise.utc), 0, 0, NULL, "",
      "UTC of the first PDU, for example 2026-06-21T10:00:00Z"},
+    {"exercise.local_solar", SETTING_TEXT, AT(exercise.local_solar), 0, 0, NULL, "",
+     "mean solar time of the first PDU at the exercise, in place of exercise.utc, for example 2026-06-21T10:00:00: the sun is "
+     "highest within 17 minutes of 12:00"},
     {"exercise.host", SETTING_TEXT, AT(exercise.host), 0, 0, NULL, "",
      "entity that carries the sensor: site:application:entity; observer: a stand-off sensor; munition: munitions as "
      "they appear, guided ones first, one after the other"},
@@ -473,6 +476,19 @@ ConfigKind config_kind(const char *name)
                                                                                      : CONFIG_WORD;
 }
 
+bool config_takes_list(const char *name)
+{
+    const int row = settings_find(&table, name);
+    return row >= 0 && keys[row].type == SETTING_WORDS;
+}
+
+bool config_local_solar(double *clock_s, const Config *config)
+{
+    char zoned[sizeof config->exercise.local_solar + 1];
+    snprintf(zoned, sizeof zoned, "%sZ", config->exercise.local_solar);
+    return text_to_unix_s(clock_s, zoned);
+}
+
 Status config_set(Config *config, const char *name, const char *value, const char *source)
 {
     return config_set_from(config, name, value, source, NULL);
@@ -680,6 +696,16 @@ Status config_check(const Config *config)
     if (*config->exercise.utc && !text_to_unix_s(&unix_s, config->exercise.utc)) {
         log_error("config: %sexercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100",
                   config_where(config, "exercise.utc"), config->exercise.utc);
+        good = false;
+    }
+    if (*config->exercise.local_solar && !config_local_solar(&unix_s, config)) {
+        log_error("config: %sexercise.local_solar: '%s' is not a time such as 2026-06-21T10:00:00, 1900 .. 2100, without a zone",
+                  config_where(config, "exercise.local_solar"), config->exercise.local_solar);
+        good = false;
+    }
+    if (*config->exercise.local_solar && *config->exercise.utc) {
+        log_error("config: %sexercise.local_solar: exercise.utc is set too; leave one of them out",
+                  config_where(config, "exercise.local_solar"));
         good = false;
     }
     const char *const moment[2] = {config->exercise.from, config->exercise.to};
