@@ -50,7 +50,7 @@ check "gimbal: no frame shows the tick before" is "$(jump "$tmp/smooth" 1:3001:2
 # A gimbal at its limit is warned of when it is, once; how often it was is no second warning.
 replay "$tmp/demo.pcap" "$tmp/limit" "${fine[@]}" --rate 5 --from 1366 --to 1367 --set sensor.gimbal_limit_deg=0.1
 check "limit: one warning" [ "$(grep -c '^pitviper: warning: ' "$tmp/stderr")" = 1 ]
-check "limit: of it" complained 'is beyond its gimbal at 1366'
+check "limit: of it" complained 'is beyond its gimbal at'
 check "limit: how often" said 'beyond the gimbal in 6 of 6 frames'
 
 # Silence for the last 1.5 s, some 470 m: the seeker flies on to its target.
