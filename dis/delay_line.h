@@ -3,7 +3,8 @@
  * 1999.
  *
  * Queues only ever delay, so the clocks' difference is the lower edge of the points; what lies above it is jitter. After N
- * datagrams with jitter J the edge is some J / N too high. Its slope, the clocks' drift, is taken only where it exceeds
+ * datagrams with uniform jitter J the edge is J / N too high in the mean, and more than 3 J / N once in 20 times: so is
+ * the least of N such delays, and nothing else is known (tests/sensor/test_time_stamps.c). Its slope, the clocks' drift, is taken only where it exceeds
  * what jitter makes of one. A change below 0.1 ms is not applied: so exact recordings keep the offset of their first PDU to
  * the bit. Depends on the order of the calls only. */
 #ifndef DIS_DELAY_LINE_H

@@ -3,7 +3,7 @@
 
 #include "render/materials/planck.h"
 #include "render/scene/upright.h"
-#include "sensor/commands/letters.h"
+#include "sensor/publish/letters.h"
 #include "sensor/detector/level.h"
 #include "sensor/detector/quantise.h"
 #include "sensor/publish/image_file.h"

@@ -4,7 +4,7 @@
 
 #include "render/frame/render.h"
 #include "render/scene/upright.h"
-#include "sensor/commands/letters.h"
+#include "sensor/publish/letters.h"
 #include "sensor/commands/model_stage.h"
 #include "sensor/detector/colour.h"
 #include "sensor/detector/level.h"

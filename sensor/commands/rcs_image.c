@@ -2,7 +2,7 @@
  * profiles. */
 #include "sensor/commands/rcs_sweep.h"
 
-#include "sensor/commands/letters.h"
+#include "sensor/publish/letters.h"
 #include "sensor/publish/image_file.h"
 
 #include <stdlib.h>

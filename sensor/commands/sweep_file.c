@@ -33,13 +33,31 @@ static Status try_value(const Reading *r, const char *key, const char *value, in
     return config_set_from(&tried, key, value, source, r->path);
 }
 
+/* [a, b] as a,b. False: it is no list of single words. */
+static bool join(char out[sweep_value_size], const Reading *r, const yaml_node_t *node)
+{
+    size_t n = 0;
+    if (node->type != YAML_SEQUENCE_NODE) return false;
+    for (const yaml_node_item_t *item = node->data.sequence.items.start; item < node->data.sequence.items.top; item++) {
+        const yaml_node_t *word = yaml_document_get_node(r->document, *item);
+        if (word->type != YAML_SCALAR_NODE || !*text_of(word) || strchr(text_of(word), ',')) return false;
+        n += (size_t)snprintf(out + n, sweep_value_size - n, "%s%s", n ? "," : "", text_of(word));
+        if (n >= sweep_value_size) return false;
+    }
+    return n > 0;
+}
+
 static Status add_value(SweepAxis *axis, const Reading *r, const yaml_node_t *node)
 {
-    if (node->type != YAML_SCALAR_NODE) return refuse(r, node, axis->key, "needs single values");
-    const Status status = try_value(r, axis->key, text_of(node), line_of(node));
+    char         list[sweep_value_size];
+    const char  *value  = list;
+    if (node->type == YAML_SCALAR_NODE) value = text_of(node);
+    else if (!join(list, r, node) || !config_takes_list(axis->key))
+        return refuse(r, node, axis->key, "needs single values, or lists of words where the key takes a list: [[optical, lwir], [lwir]]");
+    const Status status = try_value(r, axis->key, value, line_of(node));
     if (status != STATUS_OK) return status;
-    if (strlen(text_of(node)) >= sweep_value_size) return refuse(r, node, axis->key, "is too long");
-    if (!(axis->value[axis->count] = strdup(text_of(node)))) return STATUS_NO_MEMORY;
+    if (strlen(value) >= sweep_value_size) return refuse(r, node, axis->key, "is too long");
+    if (!(axis->value[axis->count] = strdup(value))) return STATUS_NO_MEMORY;
     axis->count++;
     return STATUS_OK;
 }

@@ -1,7 +1,7 @@
 /* sensor/commands/terrain_pictures.c: shaded relief and classes of a terrain store. */
 #include "sensor/commands/terrain_pictures.h"
 
-#include "sensor/commands/letters.h"
+#include "sensor/publish/letters.h"
 #include "sensor/publish/image_file.h"
 
 #include <stdlib.h>

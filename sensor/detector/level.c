@@ -6,7 +6,8 @@
 DetectorConfig detector_default_config(void)
 {
     return (DetectorConfig){.gain = 1, .bits = 8, .auto_level = true, .percentile_low = 0.01,
-                            .percentile_high = 0.99, .margin = 0.05, .level_low = 0, .level_high = 1};
+                            .percentile_high = 0.99, .margin = 0.05, .fire_from = INFINITY, .level_low = 0,
+                            .level_high = 1};
 }
 
 static bool in_range(const char *field, double value, double low, double high)
@@ -23,7 +24,7 @@ Status detector_check_config(const DetectorConfig *c)
               in_range("noise_sigma", c->noise_sigma, 0, most) & in_range("percentile_low", c->percentile_low, 0, 1) &
               in_range("percentile_high", c->percentile_high, c->percentile_low, 1) &
               in_range("margin", c->margin, 0, 10) & in_range("min_span", c->min_span, 0, most) &
-              in_range("level_low", c->level_low, -most, most);
+              in_range("plateau", c->plateau, 0, 1) & in_range("level_low", c->level_low, -most, most);
     if (c->bits != 8 && c->bits != 16) {
         log_error("detector: bad value: bits=%d (8 or 16)", c->bits);
         ok = false;
@@ -56,9 +57,19 @@ static float from_ordered(uint32_t key)
     return x;
 }
 
-static inline bool finite_bits(uint32_t bits) { return (bits & 0x7f800000u) != 0x7f800000u; }
-
 enum { digit_bits = 11, digits = 1 << digit_bits };
+
+/* Finite, and below a limit: in the order of ordered(). */
+typedef struct Range {
+    uint32_t above, below;
+} Range;
+
+static Range range_below(double limit)
+{
+    return (Range){ordered(float_bits(-INFINITY)), ordered(float_bits(limit < INFINITY ? (float)limit : INFINITY))};
+}
+
+static inline bool in_of(uint32_t key, Range r) { return key > r.above && key < r.below; }
 
 /* Values that begin with the same digits. */
 typedef struct Prefix {
@@ -67,28 +78,29 @@ typedef struct Prefix {
     uint32_t histogram[digits]; /* of their next digit */
 } Prefix;
 
-/* How many finite values have each digit (key >> shift) & (digits - 1), of those with either prefix. */
-static void count_digits(Prefix prefix[2], const float *const *plane, int plane_count, size_t count, int shift)
+/* How many of the values have each digit (key >> shift) & (digits - 1), of those with either prefix. */
+static void count_digits(Prefix prefix[2], const float *const *plane, int plane_count, size_t count, Range of, int shift)
 {
     for (int k = 0; k < 2; k++) memset(prefix[k].histogram, 0, sizeof prefix[k].histogram);
     for (int p = 0; p < plane_count; p++)
         for (size_t i = 0; i < count; i++) {
-            const uint32_t bits = float_bits(plane[p][i]), key = ordered(bits), digit = key >> shift & (digits - 1);
-            if (!finite_bits(bits)) continue;
+            const uint32_t key = ordered(float_bits(plane[p][i])), digit = key >> shift & (digits - 1);
+            if (!in_of(key, of)) continue;
             if ((key & prefix[0].mask) == prefix[0].value) prefix[0].histogram[digit]++;
             if ((key & prefix[1].mask) == prefix[1].value) prefix[1].histogram[digit]++;
         }
 }
 
-/* The first digit of all finite values; returns their number. Neighbours are often alike, so they are counted apart. */
-static uint64_t count_first_digits(uint32_t histogram[digits], const float *const *plane, int plane_count, size_t count)
+/* The first digit of all these values; returns their number. Neighbours are often alike, so they are counted apart. */
+static uint64_t count_first_digits(uint32_t histogram[digits], const float *const *plane, int plane_count, size_t count,
+                                   Range of)
 {
     uint32_t apart[4][digits] = {{0}};
     uint64_t all = 0;
     for (int p = 0; p < plane_count; p++)
         for (size_t i = 0; i < count; i++) {
-            const uint32_t bits = float_bits(plane[p][i]);
-            apart[i % 4][ordered(bits) >> 21] += finite_bits(bits);
+            const uint32_t key = ordered(float_bits(plane[p][i]));
+            apart[i % 4][key >> 21] += in_of(key, of);
         }
     for (int d = 0; d < digits; d++) all += histogram[d] = apart[0][d] + apart[1][d] + apart[2][d] + apart[3][d];
     return all;
@@ -103,26 +115,38 @@ static void take_digit(Prefix *p, int shift)
     p->mask |= (uint32_t)(digits - 1) << shift;
 }
 
-/* The values at two shares of the finite ones in order (0: the least): digit by digit from the top, 11 + 11 + 10 bits.
- * Exact, three passes, no copy of the plane, and NaN cannot upset it as it would a sort. False: none is finite. */
-static bool order_statistics(double out[2], const float *const *plane, int plane_count, size_t count,
-                             const double share[2])
+/* The values at two shares of those of a range in order (0: the least): digit by digit from the top, 11 + 11 + 10 bits.
+ * Exact, three passes, no copy of the plane, and NaN cannot upset it as it would a sort. Returns how many there are;
+ * out is unset where there are less than `least`, or none. */
+static uint64_t order_statistics(double out[2], const float *const *plane, int plane_count, size_t count, Range of,
+                                 uint64_t least, const double share[2])
 {
     static const int shifts[3] = {21, 10, 0};
     Prefix           prefix[2];
-    const uint64_t   n = count_first_digits(prefix[0].histogram, plane, plane_count, count);
-    if (n == 0) return false;
+    const uint64_t   n = count_first_digits(prefix[0].histogram, plane, plane_count, count, of);
+    if (n == 0 || n < least) return n;
     memcpy(prefix[1].histogram, prefix[0].histogram, sizeof prefix[0].histogram);
     for (int k = 0; k < 2; k++) {
         prefix[k].value = prefix[k].mask = 0;
         prefix[k].rank  = (uint64_t)(share[k] * (double)(n - 1) + 0.5);
     }
     for (int pass = 0; pass < 3; pass++) {
-        if (pass > 0) count_digits(prefix, plane, plane_count, count, shifts[pass]);
+        if (pass > 0) count_digits(prefix, plane, plane_count, count, of, shifts[pass]);
         for (int k = 0; k < 2; k++) take_digit(&prefix[k], shifts[pass]);
     }
     for (int k = 0; k < 2; k++) out[k] = from_ordered(prefix[k].value);
-    return true;
+    return n;
+}
+
+/* White where fires and plumes take no grey levels from the rest. all: finite values. */
+static double highlight_white(const DetectorConfig *c, const float *const *plane, int plane_count, size_t count, uint64_t all)
+{
+    static const double body[2] = {0.1, 0.9};
+    const uint64_t      least   = all / 2 + 1;
+    double              value[2];
+    if (order_statistics(value, plane, plane_count, count, range_below(c->fire_from), least, body) < least)
+        order_statistics(value, plane, plane_count, count, range_below(INFINITY), 0, body);
+    return value[1] + c->highlight * (value[1] - value[0]);
 }
 
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count)
@@ -134,12 +158,11 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
     if (config->auto_level) {
         const double share[2] = {config->percentile_low, config->percentile_high};
         double       value[2];
-        if (!order_statistics(value, plane, plane_count, count, share)) return (DetectorLevel){0, 1};
+        const uint64_t all = order_statistics(value, plane, plane_count, count, range_below(INFINITY), 0, share);
+        if (all == 0) return (DetectorLevel){0, 1};
         level = (DetectorLevel){value[0], value[1]};
-        static const double body[2] = {0.1, 0.9};
-        if (config->highlight > 0 && level.high > level.low &&
-            order_statistics(value, plane, plane_count, count, body))
-            level.high = fmax(level.low, fmin(level.high, value[1] + config->highlight * (value[1] - value[0])));
+        if (config->highlight > 0 && level.high > level.low)
+            level.high = fmax(level.low, fmin(level.high, highlight_white(config, plane, plane_count, count, all)));
 
         const double middle = 0.5 * (level.low + level.high);
         double       span = (level.high - level.low) * (1 + 2 * config->margin);
@@ -152,16 +175,14 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
     return level;
 }
 
-void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now, double step_s, double time_s)
+double detector_follow_keep(bool *quick, double left, double step_s, double time_s)
 {
     /* spans; of time_s. 1.8 spans are what comes when sky leaves a picture (tests/system/test_level.sh): averaged */
     static const double lost = 2, near = 0.03, faster = 0.1;
-    const double span = now.high - now.low;
-    double left = fmax(fabs(state->low - now.low), fabs(state->high - now.high)) / span, keep = 1;
+    double keep = 1;
     if (!(time_s > 0) || !isfinite(left)) {
-        *state = now;
         *quick = false;
-        return;
+        return 0;
     }
     step_s = fmax(0, step_s);
     *quick = left > near && (*quick || left > lost);
@@ -174,7 +195,15 @@ void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now,
         keep *= exp(-quick_s / (faster * time_s));
         step_s -= quick_s;
     }
-    keep *= exp(-step_s / time_s);
+    return keep * exp(-step_s / time_s);
+}
+
+void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now, double step_s, double time_s)
+{
+    const double span = now.high - now.low;
+    const double left = fmax(fabs(state->low - now.low), fabs(state->high - now.high)) / span;
+    const double keep = detector_follow_keep(quick, left, step_s, time_s);
+    if (keep == 0) *state = now; /* also where it is not finite */
     state->low  = now.low + keep * (state->low - now.low);
     state->high = now.high + keep * (state->high - now.high);
 }

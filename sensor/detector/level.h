@@ -17,13 +17,16 @@ typedef struct DetectorConfig {
     double margin;          /* automatic: added on both sides, in spans */
     double min_span;        /* automatic: never less, in the plane's unit; from 0 up where it would reach below */
     double highlight;       /* automatic: white is at most the value at 90 % plus this many times the distance from that
-                             * at 10 %, so that fires on a few per cent of the pixels take no grey levels from the rest;
+                             * at 10 %, of the pixels below fire_from: fires take no grey levels from the rest;
                              * 0: percentile_high alone */
+    double fire_from;       /* hotter than any ground; ignored where it is half of the pixels */
+    double plateau;         /* share of the pixels that counts in a bin of plateau equalisation (plateau.h); 0: linear */
+    double step;            /* between neighbouring values of the plane: 1 of counts, 0 of radiance */
     double level_low, level_high;           /* manual, in the plane's unit */
     bool   display_gamma;   /* sRGB transfer curve after gain and level: visible light on a screen */
 } DetectorConfig;
 
-/* gain 1, offset 0, no noise, 8 bits, automatic level 1 % .. 99 % with a margin of 0.05. */
+/* gain 1, offset 0, no noise, 8 bits, automatic linear level 1 % .. 99 % with a margin of 0.05; nothing is a fire. */
 DetectorConfig detector_default_config(void);
 /* STATUS_BAD_VALUE and one log line (field, value, range) for anything outside the ranges above. */
 Status detector_check_config(const DetectorConfig *config);
@@ -44,5 +47,7 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
  * within 0.42 time_s. Smaller steps settle to 5 % in 3 time_s. Both are the same at any frame rate. time_s 0: immediately.
  * quick: state too, false at first: it is catching up. */
 void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now, double step_s, double time_s);
+/* The same of anything: the share of the difference that is left after step_s; left: the difference, in spans. */
+double detector_follow_keep(bool *quick, double left, double step_s, double time_s);
 
 #endif

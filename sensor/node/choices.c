@@ -1,16 +1,17 @@
 /* sensor/node/choices.c: host, aim, rate, time of day and frame, where the configuration leaves them open. */
 #include "sensor/node/choices.h"
-#include "sensor/node/player.h"
 
 #include "dis/datagram.h"
 #include "dis/enumerations.h"
 #include "render/scene/view.h"
 #include "terrain/earth/sun.h"
+#include "sensor/node/munitions.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/player.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 enum { who_size = 80 };
 
@@ -378,11 +379,26 @@ static void report_anomalies(Choices *choices, const Survey *survey)
                    (unsigned long long)(survey->doubts.unstamped + survey->doubts.stamped));
 }
 
+/* Mean solar time, as Unix time at longitude 0: 86400 s for 2 pi of longitude. */
+static double utc_of_solar_s(double clock_s, const LocalFrame *frame)
+{
+    return clock_s - frame->origin.lon_rad / (2 * pi_rad) * 86400;
+}
+
+enum { utc_text_size = 32 };
+
+static void utc_text(char out[utc_text_size], double unix_s)
+{
+    const time_t seconds = (time_t)llround(unix_s);
+    struct tm    at;
+    if (!gmtime_r(&seconds, &at) || strftime(out, utc_text_size, "%Y-%m-%dT%H:%M:%SZ", &at) == 0) snprintf(out, utc_text_size, "no date");
+}
+
 Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config,
                    const LocalFrame *frame)
 {
     double first_unix_s;
-    char   left_out[80] = "";
+    char   left_out[80] = "", utc[utc_text_size];
     report_anomalies(choices, survey);
     if (survey->absolute_left_out > 0)
         snprintf(left_out, sizeof left_out, "; %d of %d absolute stamps disagree and are left out",
@@ -394,6 +410,16 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
             return STATUS_BAD_VALUE;
         }
         *unix_s = first_unix_s - survey->first_s;
+    } else if (*config->exercise.local_solar) {
+        double clock_s;
+        if (!config_local_solar(&clock_s, config)) {
+            log_error("replay: exercise.local_solar: '%s' is not a time such as 2026-06-21T10:00:00, 1900 .. 2100, without a zone",
+                      config->exercise.local_solar);
+            return STATUS_BAD_VALUE;
+        }
+        *unix_s = utc_of_solar_s(clock_s, frame) - survey->first_s;
+        utc_text(utc, *unix_s + survey->first_s);
+        choice_add(choices, "time of day: local solar %s is %s (exercise.local_solar)", config->exercise.local_solar, utc);
     } else if (isfinite(survey->clock_start_unix_s)) {
         *unix_s = survey->clock_start_unix_s;
         choice_add(choices, "time of day: the clock of a Start/Resume PDU (exercise.utc)");
@@ -402,10 +428,9 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
         choice_add(choices, "time of day: absolute time stamps and the date of the capture%s (exercise.utc)",
                    left_out);
     } else {
-        /* mean solar time: 86400 s for 2 pi of longitude */
         double ten_local_s = 0;
         text_to_unix_s(&ten_local_s, "2026-06-21T10:00:00Z");
-        *unix_s = ten_local_s - frame->origin.lon_rad / (2 * pi_rad) * 86400 - survey->first_s;
+        *unix_s = utc_of_solar_s(ten_local_s, frame) - survey->first_s;
         choice_add(choices, "time of day: local solar 10:00 on 21 June, %s (exercise.utc)",
                    survey->absolute_stamps > 1    ? "the absolute stamps of the log do not agree"
                    : survey->absolute_stamps == 1 ? "the log's one absolute stamp is too little to go by"

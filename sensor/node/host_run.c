@@ -181,6 +181,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL,
               .woods = woods->on ? &plants : NULL,
               .memory = *config->publish.memory ? ring : NULL, .detections_port = config->publish.detections_port,
+              .sent = &result->sent, .streams = *config->publish.stream != 0,
               .answers = config->publish.detections_port ? &result->answers : NULL,
               .materials = &run->world.materials};
     const Status status = record_write_run(path, &record);
@@ -314,9 +315,8 @@ static Status conclude(const Run *run, const char *out, const char *host, const 
         log_warn("%s: %d of %d frames are without radar: signatures of targets were still to be made%s", name,
                  result->radar_left_out, result->frames,
                  run->live ? "; radar.library keeps them for the next run (`pitviper rcs MODEL --library` makes them)" : " when it was recorded");
-    if (result->at_limit > 0)
-        log_warn("%s: the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)", name,
-                 result->at_limit, result->frames);
+    if (result->at_limit > 0) /* its warning came when it was */
+        log_print("the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)\n", result->at_limit, result->frames);
     if (result->buried > 0)
         log_warn("%s: the eye was below the ground in %d of %d frames and saw nothing of use%s", name, result->buried,
                  result->frames, *config->terrain.elevation && strcmp(config->terrain.ground, "fit") != 0

@@ -5,10 +5,9 @@
 #include "dis/enumerations.h"
 #include "dis/exercise_clock.h"
 #include "dis/log_file.h"
+#include "sensor/node/munitions.h"
 
 #include <stdlib.h>
-
-enum { shots_kept = 1024, munitions_kept = 256 };
 
 typedef enum Where { IN_LOG, ON_DISK, KEPT } Where;
 
@@ -24,21 +23,6 @@ typedef struct Event {
     };
 } Event;
 
-/* A munition unheard for this long is no host to go to. */
-static const double munition_silent_s = 4;
-
-/* Received ids of one kind: a ring of the latest. */
-typedef struct Munitions {
-    DisEntityId id[munitions_kept];
-    double      heard_s[munitions_kept]; /* of the latest report in flight */
-    bool        spent[munitions_kept];   /* it detonated */
-    uint64_t    count;
-} Munitions;
-
-typedef struct Aimed {
-    DisEntityId munition, target;
-} Aimed;
-
 struct Player {
     bool           causal, sorted, whole;
     int            exercise, count, next, capacity;
@@ -53,9 +37,7 @@ struct Player {
     double         now_s;           /* until which it was fed */
     DisCounters    counters;
     DisPdu         pdu;                          /* the PDU being fed */
-    Aimed          aimed[shots_kept];            /* rings: the latest */
-    uint64_t       shots;
-    Munitions      guided, unguided;
+    Munitions      munitions;
     int            anomalies_reported;
 };
 
@@ -198,50 +180,6 @@ static int compare_events(const void *a, const void *b)
     return p->order < q->order ? -1 : p->order > q->order;
 }
 
-static void note_fire(Player *player, const DisFire *fire)
-{
-    if (dis_entity_id_is_none(fire->munition) || dis_entity_id_is_none(fire->target)) return;
-    player->aimed[player->shots++ % shots_kept] = (Aimed){fire->munition, fire->target};
-}
-
-/* Its place in the ring; -1: none. */
-static int munition_index(const Munitions *m, DisEntityId id)
-{
-    for (int i = 0; (uint64_t)i < m->count && i < munitions_kept; i++)
-        if (dis_entity_id_compare(m->id[i], id) == 0) return i;
-    return -1;
-}
-
-static bool moves(const float velocity_mps[3])
-{
-    double sum = 0;
-    for (int i = 0; i < 3; i++) sum += (double)velocity_mps[i] * (double)velocity_mps[i];
-    return sum > munition_still_mps * munition_still_mps; /* false for NaN */
-}
-
-/* Guided ones from their first report on; others from the first in which they move. */
-static void note_munition(Player *player, const DisEntityState *state, double t_s)
-{
-    const bool guided = state->type.category == dis_munition_guided;
-    if (state->type.kind != dis_kind_munition || state->type.category == dis_munition_fixed) return;
-    if (!guided && !moves(state->velocity_mps)) return;
-    Munitions *m = guided ? &player->guided : &player->unguided;
-    const int known = munition_index(m, state->id), i = known >= 0 ? known : (int)(m->count++ % munitions_kept);
-    /* heard again after a silence, the id is another munition's */
-    if (known < 0 || t_s - m->heard_s[i] > munition_silent_s) m->spent[i] = false;
-    m->id[i]      = state->id;
-    m->heard_s[i] = t_s;
-}
-
-static void note_detonation(Player *player, const DisDetonation *burst)
-{
-    Munitions *const kind[] = {&player->guided, &player->unguided};
-    for (int k = 0; k < 2 && !dis_entity_id_is_none(burst->munition); k++) {
-        const int i = munition_index(kind[k], burst->munition);
-        if (i >= 0) kind[k]->spent[i] = true;
-    }
-}
-
 /* Decoded here, once: until then a PDU is stored as octets. */
 static void feed_event(Player *player, EntityTable *table, const Event *event)
 {
@@ -257,9 +195,10 @@ static void feed_event(Player *player, EntityTable *table, const Event *event)
     }
     if (player->causal) entity_table_arrival(table, event->counts_s, event->instant.by_stamp);
     entity_table_pdu(table, pdu, event->instant.t_s, &player->counters);
-    if (pdu->type == dis_pdu_fire) note_fire(player, &pdu->fire);
-    if (pdu->type == dis_pdu_entity_state) note_munition(player, &pdu->entity_state, event->counts_s);
-    if (pdu->type == dis_pdu_detonation) note_detonation(player, &pdu->detonation);
+    if (pdu->type == dis_pdu_fire) munitions_fire(&player->munitions, &pdu->fire);
+    if (pdu->type == dis_pdu_entity_state) munitions_report(&player->munitions, &pdu->entity_state, event->counts_s);
+    if (pdu->type == dis_pdu_detonation)
+        munitions_burst(&player->munitions, &pdu->detonation, table, event->instant.t_s, event->counts_s);
 }
 
 /* All of a recording is here: its senders' clocks are known. */
@@ -314,61 +253,19 @@ double player_arrival_s(const Player *player, double t_s)
 
 bool player_target(DisEntityId *target, const Player *player, DisEntityId munition)
 {
-    const uint64_t kept = player->shots < shots_kept ? player->shots : shots_kept;
-    for (uint64_t i = 1; i <= kept; i++) {
-        const Aimed *aimed = &player->aimed[(player->shots - i) % shots_kept];
-        if (dis_entity_id_compare(aimed->munition, munition) != 0) continue;
-        *target = aimed->target;
-        return true;
-    }
-    return false;
+    return munitions_target(target, &player->munitions, munition);
 }
 
-static bool is_there(const EntityTable *table, DisEntityId id)
-{
-    return entity_table_alive(table, entity_table_find(table, id));
-}
-
-bool player_spent(const Player *player, DisEntityId munition)
-{
-    const int guided = munition_index(&player->guided, munition), other = munition_index(&player->unguided, munition);
-    return (guided >= 0 && player->guided.spent[guided]) || (other >= 0 && player->unguided.spent[other]);
-}
-
-/* The one received first of those in the table that fly still. */
-static bool first_there(DisEntityId *id, const Munitions *m, const EntityTable *table, double now_s)
-{
-    const uint64_t kept = m->count < munitions_kept ? m->count : munitions_kept;
-    for (uint64_t i = m->count - kept; i < m->count; i++) {
-        const uint64_t k = i % munitions_kept;
-        if (m->spent[k] || now_s - m->heard_s[k] > munition_silent_s || !is_there(table, m->id[k])) continue;
-        *id = m->id[k];
-        return true;
-    }
-    return false;
-}
+bool player_spent(const Player *player, DisEntityId munition) { return munitions_spent(&player->munitions, munition); }
 
 bool player_munition(DisEntityId *munition, bool *guided, const Player *player, const EntityTable *table)
 {
-    DisEntityType type;
-    const bool    there = !dis_entity_id_is_none(*munition) &&
-                       entity_table_type(&type, table, entity_table_find(table, *munition));
-    /* by its type, not by whether it is among the latest: a salvo must not move the sensor to another host */
-    *guided = there && type.kind == dis_kind_munition && type.category == dis_munition_guided;
-    const bool spent = there && player_spent(player, *munition);
-    if (*guided && !spent) return true;
-    if (first_there(munition, &player->guided, table, player->now_s)) return *guided = true;
-    if (there && (!spent || player->guided.count > 0)) return true;
-    if (player->guided.count > 0) return false; /* its own burst, not a shell's flight, ends what a guided one shows */
-    return first_there(munition, &player->unguided, table, player->now_s) || there;
+    return munitions_host(munition, guided, &player->munitions, table, player->now_s);
 }
-
-static uint64_t beyond(uint64_t count, uint64_t kept) { return count > kept ? count - kept : 0; }
 
 void player_forgotten(uint64_t *shots, uint64_t *munitions, const Player *player)
 {
-    *shots     = beyond(player->shots, shots_kept);
-    *munitions = beyond(player->guided.count, munitions_kept) + beyond(player->unguided.count, munitions_kept);
+    munitions_forgotten(shots, munitions, &player->munitions);
 }
 
 const DisCounters *player_counters(const Player *player) { return &player->counters; }

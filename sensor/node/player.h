@@ -35,11 +35,9 @@ double player_arrival_s(const Player *player, double t_s);
 double player_fed_s(const Player *player);
 double player_last_s(const Player *player); /* exercise time of the latest arrival; -inf before the first */
 
-enum { munition_still_mps = 1 }; /* an unguided munition slower than this is at rest, as mines of any category are */
-
 /* Target of the latest Fire fed that names this munition. */
 bool   player_target(DisEntityId *target, const Player *player, DisEntityId munition);
-/* Whether a Detonation named it, and no report came after a silence since. */
+/* Whether it detonated (munitions_burst), and no report came after a silence since. */
 bool   player_spent(const Player *player, DisEntityId munition);
 /* The munition that is the host now, of those fed. munition: in and out (0:0:0: none so far). A guided one
  * (SISO-REF-010, category 1) that is in the table and has not detonated stays; else the guided one received first of

@@ -57,6 +57,7 @@ typedef struct SessionResult {
     char    host[session_hosts_kept][dis_id_text_size];
     int     radar_left_out;           /* frames without radar, for want of signatures */
     AnswerCounters answers;           /* of a recogniser; when closed */
+    SentCounters sent;                /* likewise: streams, ring of frames */
     int     files_failed, files_left_out; /* live: frames without files, for disk errors, for time; when closed */
     int   (*number);                  /* [listed] */
     char  (*hash)[sha256_text_size];  /* [listed] */

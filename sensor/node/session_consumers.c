@@ -68,7 +68,7 @@ static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
     if (!(to & video_wanted(shared->config))) return STATUS_OK;
     const VideoOf of = {.config = shared->config, .to = to, .bands = shared->bands, .rate_hz = s->plan.rate_hz,
                         .patient = patient, .geoid = geoid_of(s), .detections = s->detections,
-                        .host_folder = !shared->several ? NULL : slash ? slash + 1 : s->out};
+                        .sent = &s->result.sent.stream, .host_folder = !shared->several ? NULL : slash ? slash + 1 : s->out};
     Consumer     *consumer = NULL;
     const Status  status   = consume_video(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
@@ -159,6 +159,7 @@ static Status add_memory(Consumers *list, Session *s, bool behind_displays)
     const bool           counts   = strcmp(config->publish.memory_planes, "counts") == 0;
     if (!*config->publish.memory || counts != behind_displays) return STATUS_OK;
     MemoryOf of = {.config = config, .config_sha256 = shared->config_sha256, .bands = shared->bands,
+                   .unnamed = &s->result.sent.frames_unnamed,
                    .host = shared->several ? s->host_text : NULL};
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->chain[b]) of.count_bits[b] = (int)lround(log2(chain_full(s->chain[b]) + 1));

@@ -41,6 +41,10 @@ static double optical_sigma(const Picture *picture, const Config *config)
  * display, and of grey surfaces below some 0.2 lux; ordinary colour cameras end at 0.1 to 0.5 lux. */
 static const double optical_least_span = 1e-3, optical_dark_sigma = 5e-5;
 
+/* Dry ground and roofs in the sun stay below 350 K; engines, exhausts and fires do not. In channels of reflected
+ * sunlight nothing is told by it. */
+static const double hottest_ground_k = 350;
+
 void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config)
 {
     const float *plane[3];
@@ -71,7 +75,8 @@ static DetectorConfig detector_of(const DisplaysOf *of, int band)
     d.bits               = c->detector.bits;
     d.gain               = c->detector.gain;
     d.offset             = c->detector.offset;
-    d.auto_level         = strcmp(c->detector.level, "auto") == 0;
+    d.auto_level         = strcmp(c->detector.level, "manual") != 0;
+    d.step               = chain != NULL;
     if (band == BAND_OPTICAL) {
         d.display_gamma = true;
         if (!chain) d.min_span = optical_least_span; /* grey surfaces below some 4 lux; a night is displayed dark */
@@ -84,12 +89,15 @@ static DetectorConfig detector_of(const DisplaysOf *of, int band)
         preset_band(&low_m, &high_m, (Band)band, OPTICAL_PAN, -1);
         const double at_300_k = planck_band(low_m, high_m, 300, &slope);
         d.noise_sigma = c->detector.noise * slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
-        d.highlight   = 1.5; /* with fires on 5 % of the pixels normal noise keeps 0.56 of its contrast */
+        d.highlight   = 1.5; /* with fire on up to half of the pixels normal noise keeps 0.56 of its contrast */
+        d.fire_from   = low_m > 2.9e-6 ? planck_band(low_m, high_m, hottest_ground_k, NULL) : INFINITY;
+        d.plateau     = strcmp(c->detector.level, "plateau") == 0 ? c->detector.plateau : 0;
         d.min_span    = 2 * slope; /* never stretch less than 2 K over the display */
         d.level_low   = planck_band(low_m, high_m, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
         d.level_high  = planck_band(low_m, high_m, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);
         if (chain)
             d.min_span = chain_counts_at(chain, 0, at_300_k + d.min_span) - chain_counts_at(chain, 0, at_300_k);
+        if (chain && d.fire_from < INFINITY) d.fire_from = fmin(chain_counts_at(chain, 0, d.fire_from), chain_full(chain));
     }
     if (chain) {
         d.level_low  = chain_counts_at(chain, 0, d.level_low);
@@ -153,13 +161,24 @@ static void detect(FrameDisplay *out, float *const memory[3], const DisplaysOf *
 }
 
 /* Of one band, frame after frame: the state of the level is its own. */
-static DetectorLevel follow_level(FrameLevel *state, DetectorLevel now, double time_s, double agc_s)
+static void set_level(FrameDisplay *d, FrameLevel *state, double time_s, double agc_s, size_t count)
 {
-    if (!state->known) state->level = now;
-    detector_level_follow(&state->level, &state->quick, now, time_s - state->time_s, agc_s);
+    const double step_s = time_s - state->time_s;
+    if (d->detector.plateau > 0) {
+        detector_plateau(&d->curve, &d->detector, d->plane[0], count);
+        if (!state->known) state->curve = d->curve;
+        detector_plateau_follow(&state->curve, &state->quick, &d->curve, step_s, agc_s);
+        d->curve = state->curve;
+        d->level = (DetectorLevel){d->curve.value[0], d->curve.value[curve_steps]};
+    } else {
+        d->level = detector_level(&d->detector, d->plane, d->planes, count);
+        if (!d->detector.auto_level) return;
+        if (!state->known) state->level = d->level;
+        detector_level_follow(&state->level, &state->quick, d->level, step_s, agc_s);
+        d->level = state->level;
+    }
     state->known  = true;
     state->time_s = time_s;
-    return state->level;
 }
 
 /* ---- of a frame ------------------------------------------------------------------------------- */
@@ -199,9 +218,7 @@ static void run_job(void *user, int worker, int task)
     FrameDisplay     *d     = &jobs->display[band];
     (void)worker;
     detect(d, jobs->memory[band], of, band);
-    d->level = detector_level(&d->detector, d->plane, d->planes, count);
-    if (d->detector.auto_level)
-        d->level = follow_level(&of->level[band], d->level, of->time_s, of->config->detector.agc_s);
+    set_level(d, &of->level[band], of->time_s, of->config->detector.agc_s, count);
     for (int c = 0; c < d->planes && jobs->counts[band][c]; c++) {
         memcpy(jobs->counts[band][c], chain_counts(of->chain[band], c), count * sizeof(uint16_t));
         d->counts[c] = jobs->counts[band][c];
@@ -244,6 +261,8 @@ void frame_display_quantise(void *out, const FrameDisplay *display, size_t count
         detector_display_db(out, display->plane[0], count, detector_radar_range_db, detector.bits);
     else if (display->planes == 3)
         detector_display_rgb(out, display->plane, count, &detector, display->level);
+    else if (detector.plateau > 0)
+        detector_display_curve(out, display->plane[0], count, &detector, &display->curve);
     else
         detector_display(out, display->plane[0], count, &detector, display->level);
     uint16_t *value = out;

@@ -6,6 +6,7 @@
 #include "render/frame/render.h"
 #include "sensor/detector/chain.h"
 #include "sensor/detector/level.h"
+#include "sensor/detector/plateau.h"
 #include "sensor/settings/config.h"
 #include "sensor/truth/truth.h"
 
@@ -16,6 +17,7 @@ typedef struct FrameDisplay {
     bool            decibels;  /* radar: power, displayed in dB below the brightest */
     DetectorConfig  detector;
     DetectorLevel   level;     /* displayed as black and white; R G B: balanced */
+    DetectorCurve   curve;     /* between the two, where detector.plateau is not 0 */
     const uint16_t *counts[3]; /* raw, [height][width]; NULL: not requested, or no sensor */
     int             count_bits;
 } FrameDisplay;
@@ -25,6 +27,7 @@ typedef struct FrameLevel {
     bool          known, quick; /* quick: detector_level_follow */
     double        time_s;
     DetectorLevel level;
+    DetectorCurve curve;        /* instead, of plateau equalisation */
 } FrameLevel;
 
 typedef struct DisplaysOf {

@@ -328,6 +328,16 @@ static json_t *answers_json(const AnswerCounters *c)
     return answers;
 }
 
+static json_t *streams_json(const StreamCounters *c)
+{
+    json_t *streams = json_object();
+    set_count(streams, "sent", c->sent);
+    set_count(streams, "refused", c->refused);
+    set_count(streams, "no_route", c->no_route);
+    set_count(streams, "lost", c->lost);
+    return streams;
+}
+
 static json_t *counters_json(const RunRecord *r)
 {
     json_t *counters = json_object(), *pdus = json_object(), *dropped = json_object(), *skipped = json_object();
@@ -354,6 +364,8 @@ static json_t *counters_json(const RunRecord *r)
     set_count(counters, "own", r->own);
     if (r->live) json_object_set_new(counters, "live", live_json(r->live, (uint64_t)r->frames));
     if (r->answers) json_object_set_new(counters, "answers", answers_json(r->answers));
+    if (r->streams) json_object_set_new(counters, "streams", streams_json(&r->sent->stream));
+    set_if_any(counters, "frames_in_a_lost_ring", r->sent->frames_unnamed);
     json_object_set_new(counters, "frames_at_gimbal_limit", json_integer(r->at_limit));
     set_if_any(counters, "frames_without_radar", (uint64_t)r->radar_left_out);
     set_count(entities, "created", r->entities_created);

@@ -10,6 +10,7 @@
 #include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
 #include "sensor/publish/answer_counters.h"
+#include "sensor/publish/sent_counters.h"
 #include "sensor/radar/radar_frame.h"
 #include "sensor/truth/footprint.h"
 #include "sensor/publish/target_record.h"
@@ -101,6 +102,8 @@ typedef struct RunRecord {
     const char *memory;               /* name of the ring of frames; NULL: none */
     int         detections_port;      /* 0: none */
     const AnswerCounters *answers;    /* received there; NULL: none */
+    const SentCounters *sent;         /* not NULL */
+    bool        streams;              /* it has streams */
     const WoodsRecord *woods;         /* NULL: no plants */
     const Materials   *materials;     /* of the material planes; NULL: not given */
 } RunRecord;

@@ -91,7 +91,7 @@ const Reference reference_exr = {
 static const ReferenceField png_fields[] = {
     {"optical", "RGB 8 bit", "", "sRGB", "with sensor.optical pan or nir, which are grey 8 bit",
      "colour image with the day's white balance and display gamma"},
-    {"mwir", "grey 8 bit", "", "", "", "linear between black and white of detector.level"},
+    {"mwir", "grey 8 bit", "", "", "", "linear between black and white of detector.level; plateau: by its curve"},
     {"lwir", "grey 8 bit", "", "", "", "linear between black and white of detector.level; white is hot"},
     {"radar", "grey 8 bit", "", "", "", "dB: 255 is the brightest of the image, 0 is 60 dB below it or less"},
     {"truth", "RGB 8 bit", "", "", "", "for viewing: a colour per entity, shaded by range"},

@@ -165,7 +165,7 @@ static const ReferenceField fields[] = {
      "rms over the image: that of the brightest pixels, if these may be off"},
     {"error.BAND.median_k", "number", "K, apparent", "", "in optical",
      "median of the pixels' expected errors: half of them are better"},
-    {"error.BAND.beyond_1k", "number", "share of the image", "0 .. 1", "in optical", "pixels whose expected error is above 1 K"},
+    {"error.BAND.beyond_1k", "number", "share of the image", "0 .. 1", "in optical", "pixels that are expected to be off by more than 1 K"},
     {"error.BAND.sampling", "number", "", "share of the band's mean", "", "finite number of rays per pixel"},
     {"error.BAND.level_of_detail", "number", "", "share of the band's mean", "", "level of detail of ground and "
      "models"},

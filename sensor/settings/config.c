@@ -73,8 +73,11 @@ static const Setting keys[] = {
      "lateral colour of rgb: magnification of R relative to G, minus 1; each channel is then traced by itself"},
     {"sensor.lateral_b", SETTING_DOUBLE, AT(sensor.lateral_b), -0.02, 0.02, NULL, "", "the same for B"},
     {"detector.bits", SETTING_INT, AT(detector.bits), 8, 16, NULL, "", "bits of the PNG images: 8 or 16"},
-    {"detector.level", SETTING_TEXT, AT(detector.level), 0, 0, "auto|manual", "",
-     "gain and level of display images; auto: set per frame (detector.agc_s); manual: as configured"},
+    {"detector.level", SETTING_TEXT, AT(detector.level), 0, 0, "auto|plateau|manual", "",
+     "gain and level of display images; auto: set per frame (detector.agc_s), linear; plateau: plateau equalisation of mwir "
+     "and lwir, as in thermal cameras; manual: as configured"},
+    {"detector.plateau", SETTING_DOUBLE, AT(detector.plateau), 1e-6, 1, NULL, "",
+     "detector.level plateau: share of the pixels that counts in a bin of 0.03 K; 1: histogram equalisation"},
     {"detector.gain", SETTING_DOUBLE, AT(detector.gain), 0.01, 100, NULL, "", "contrast gain about mid-level"},
     {"detector.offset", SETTING_DOUBLE, AT(detector.offset), -1, 1, NULL, "", "brightness offset, in full scales"},
     {"detector.noise_optical", SETTING_DOUBLE, AT(detector.noise_optical), 0, 1, NULL, "",
@@ -142,6 +145,9 @@ static const Setting keys[] = {
      "exercise identifier; -1: the one with the most PDUs; -2: all, as one exercise"},
     {"exercise.utc", SETTING_TEXT, AT(exercise.utc), 0, 0, NULL, "",
      "UTC of the first PDU, for example 2026-06-21T10:00:00Z"},
+    {"exercise.local_solar", SETTING_TEXT, AT(exercise.local_solar), 0, 0, NULL, "",
+     "mean solar time of the first PDU at the exercise, in place of exercise.utc, for example 2026-06-21T10:00:00: the sun is "
+     "highest within 17 minutes of 12:00"},
     {"exercise.host", SETTING_TEXT, AT(exercise.host), 0, 0, NULL, "",
      "entity that carries the sensor: site:application:entity; observer: a stand-off sensor; munition: munitions as "
      "they appear, guided ones first, one after the other"},
@@ -193,6 +199,8 @@ static const Setting keys[] = {
      "none"},
     {"publish.video_codec", SETTING_TEXT, AT(publish.video_codec), 0, 0, "h264|h264-10|hevc-12|ffv1", "",
      "of videos and streams: 8 bits; 10 bits; 12 bits; 16 bits without loss, in .mkv files only"},
+    {"publish.video_labels", SETTING_TEXT, AT(publish.video_labels), 0, 0, "off|bands|targets", "",
+     "drawn into videos and streams, over the pixels: nothing; each band's name; that, and box and name of each visible target"},
     {"publish.stream", SETTING_TEXT, AT(publish.stream), 0, 0, NULL, "",
      "udp://HOST:PORT, numeric: MPEG-TS with KLV, the first band at PORT, each further one at a port higher by 2; empty: "
      "none"},
@@ -358,6 +366,7 @@ Config config_default(void)
     strcpy(c.sensor.mount, "auto");
     c.sensor.mount_x_m = c.sensor.mount_y_m = c.sensor.mount_z_m = NAN;
     strcpy(c.detector.level, "auto");
+    c.detector.plateau              = 0.002;
     c.detector.agc_s                = 2; /* without a lag the display flickers: tests/system/test_level.sh */
     c.detector.bits                 = 8;
     c.detector.gain                 = 1;
@@ -402,6 +411,7 @@ Config config_default(void)
     c.publish.coco_min_pixels       = 5;   /* of 4 no class can be told */
     c.publish.coco_min_snr          = 0.1; /* in the dark: 3e-6 W/(m2 sr), ten of the display's 255 steps */
     strcpy(c.publish.video_codec, "h264");
+    strcpy(c.publish.video_labels, "off");
     strcpy(c.publish.klv, "async");
     strcpy(c.publish.vmti, "atr");
     strcpy(c.publish.memory_planes, "float");
@@ -464,6 +474,19 @@ ConfigKind config_kind(const char *name)
     return keys[row].type == SETTING_DOUBLE                                          ? CONFIG_NUMBER
            : keys[row].type == SETTING_INT || keys[row].type == SETTING_LONG ? CONFIG_WHOLE
                                                                                      : CONFIG_WORD;
+}
+
+bool config_takes_list(const char *name)
+{
+    const int row = settings_find(&table, name);
+    return row >= 0 && keys[row].type == SETTING_WORDS;
+}
+
+bool config_local_solar(double *clock_s, const Config *config)
+{
+    char zoned[sizeof config->exercise.local_solar + 1];
+    snprintf(zoned, sizeof zoned, "%sZ", config->exercise.local_solar);
+    return text_to_unix_s(clock_s, zoned);
 }
 
 Status config_set(Config *config, const char *name, const char *value, const char *source)
@@ -673,6 +696,16 @@ Status config_check(const Config *config)
     if (*config->exercise.utc && !text_to_unix_s(&unix_s, config->exercise.utc)) {
         log_error("config: %sexercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100",
                   config_where(config, "exercise.utc"), config->exercise.utc);
+        good = false;
+    }
+    if (*config->exercise.local_solar && !config_local_solar(&unix_s, config)) {
+        log_error("config: %sexercise.local_solar: '%s' is not a time such as 2026-06-21T10:00:00, 1900 .. 2100, without a zone",
+                  config_where(config, "exercise.local_solar"), config->exercise.local_solar);
+        good = false;
+    }
+    if (*config->exercise.local_solar && *config->exercise.utc) {
+        log_error("config: %sexercise.local_solar: exercise.utc is set too; leave one of them out",
+                  config_where(config, "exercise.local_solar"));
         good = false;
     }
     const char *const moment[2] = {config->exercise.from, config->exercise.to};

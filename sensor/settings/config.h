@@ -34,7 +34,8 @@ typedef struct Config {
     } sensor;
     struct {
         int    bits;
-        char   level[8];           /* auto or manual */
+        char   level[16];          /* auto, plateau or manual */
+        double plateau;            /* share of the pixels that counts in a bin */
         double gain, offset;
         double noise_optical;      /* share of the mean */
         double netd_mwir_k, netd_lwir_k;
@@ -63,6 +64,7 @@ typedef struct Config {
     struct {
         int    port, exercise;     /* exercise -1: the one with the most PDUs, -2: all */
         char   utc[32];            /* of the first PDU; empty: chosen */
+        char   local_solar[32];    /* likewise, in mean solar time; not with utc */
         char   host[24];           /* an id; munition: munitions as they appear, causal only; observer; empty: chosen */
         char   aim[24];            /* empty: chosen */
         char   from[32], to[32];   /* a time as in sensor/settings/span.h; empty: no limit */
@@ -87,6 +89,7 @@ typedef struct Config {
         bool   latest;             /* OUT/latest: the newest display of each band */
         char   video[config_paths_size]; /* a file (.mp4, .mkv, .ts) or a folder; empty: none */
         char   video_codec[16];    /* h264, h264-10, hevc-12 or ffv1 */
+        char   video_labels[8];    /* off, bands or targets: drawn into videos and streams */
         char   stream[128];        /* udp://HOST:PORT; empty: none */
         char   klv[8];             /* async, sync or off */
         char   vmti[8];            /* atr, truth or off */
@@ -155,6 +158,10 @@ typedef struct Config {
     bool      later[config_keys_max];
 } Config;
 
+/* Whether it is a list of words, such as sensor.bands. */
+bool config_takes_list(const char *name);
+/* exercise.local_solar as Unix time at longitude 0. False: it is no time. */
+bool config_local_solar(double *clock_s, const Config *config);
 Config config_default(void);
 /* Sets the keys of the file, keeps the others. On failure logs and leaves the configuration as it was. */
 Status config_read(Config *config, const char *path);

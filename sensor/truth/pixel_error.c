@@ -11,7 +11,7 @@ void error_spread_add(ErrorSpread *s, double square_k2, double px)
     const double decades = square_k2 > least_k * least_k ? 0.5 * log10(square_k2) - log10(least_k) : 0;
     s->px[(int)clamp(decades * error_bins_a_decade, 0, error_bins - 1)] += px;
     s->all_px += px;
-    s->beyond_px += square_k2 > 1 ? px : 0;
+    s->beyond_px += square_k2 > 0 ? px * erfc(1 / sqrt(2 * square_k2)) : 0;
     s->squares_px_k2 += px * square_k2;
 }
 

@@ -10,7 +10,7 @@
 enum { error_bins_a_decade = 64, error_bins = 8 * error_bins_a_decade };
 typedef struct ErrorSpread {
     double px[error_bins];
-    double all_px, beyond_px; /* beyond 1 K */
+    double all_px, beyond_px; /* expected to be off by more than 1 K */
     double squares_px_k2;
 } ErrorSpread;
 
@@ -20,7 +20,8 @@ void   error_spread_join(ErrorSpread *spread, const ErrorSpread *more);
 /* Within 4 %; NaN: no pixels. */
 double error_spread_median_k(const ErrorSpread *spread);
 double error_spread_rms_k(const ErrorSpread *spread);
-/* 0 .. 1; NaN: no pixels. */
+/* Share of the pixels that are off by more than 1 K, each by chance: normally distributed with its expected error. 0 .. 1;
+ * NaN: no pixels. */
 double error_spread_beyond(const ErrorSpread *spread);
 
 /* A target that may be way_px off, in an unknown direction: by its pixels and the pixels as far from them as that, of at

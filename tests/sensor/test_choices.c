@@ -108,6 +108,19 @@ static void the_time_of_day_comes_from_the_best_that_is_known(void **state)
     CHECK_NEAR(unix_s + 1000, 20625.0 * 86400 + 4 * 3600, 1e-3);
     CHECK(says(&choices, "local solar 10:00 on 21 June"));
 
+    /* 15 degrees an hour, to the west later; it goes before what the log says */
+    Survey told = survey;
+    told.clock_start_unix_s = 6e8;
+    frame.origin.lon_rad = -123.75 * rad_per_deg;
+    strcpy(config.exercise.local_solar, "2026-06-21T10:00:00");
+    assert_int_equal(choose_time(&unix_s, &choices, &told, &config, &frame), STATUS_OK);
+    CHECK_NEAR(unix_s + 1000, 20625.0 * 86400 + 18.25 * 3600, 1e-3);
+    CHECK(says(&choices, "local solar 2026-06-21T10:00:00 is 2026-06-21T18:15:00Z (exercise.local_solar)"));
+    strcpy(config.exercise.local_solar, "2026-06-21T10:00:00Z");
+    assert_int_equal(choose_time(&unix_s, &choices, &told, &config, &frame), STATUS_BAD_VALUE);
+    *config.exercise.local_solar = 0;
+    frame.origin.lon_rad = 90 * rad_per_deg;
+
     survey.absolute_unix_s = 5e8;
     assert_int_equal(choose_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
     CHECK_NEAR(unix_s, 5e8, 0);

@@ -39,9 +39,17 @@ check "pictures: no plane is touched" same_hashes "$tmp/own" "$tmp/default"
 replay "$tmp/air.pcap" "$tmp/part" "${span[@]}" --only 125,127
 check "--only: two frames" [ "$(levels "$tmp/part" | wc -l)" = 2 ]
 check "--only: the first by itself" cmp -s "$tmp/part/frames/lwir/000125.png" "$tmp/own/frames/lwir/000125.png"
+differ() { [ -s "$1" ] && [ -s "$2" ] && ! cmp -s "$1" "$2"; }
 sha() { grep "\"frame\":127," "$1/truth.jsonl" | grep -o '"frame_sha256":"[0-9a-f]*"'; }
 check "--only: planes as in the whole" [ "$(sha "$tmp/part")" = "$(sha "$tmp/default")" ]
 check "--only: and there they are" [ -n "$(sha "$tmp/part")" ]
+# Plateau equalisation: other displays of the same planes, with the same time constant; one frame by itself, alike.
+replay "$tmp/air.pcap" "$tmp/plateau" "${span[@]}" --only 125,127 --set detector.level=plateau
+check "plateau: planes as in the whole" [ "$(sha "$tmp/plateau")" = "$(sha "$tmp/default")" ]
+check "plateau: other grey levels" differ "$tmp/plateau/frames/lwir/000125.png" "$tmp/part/frames/lwir/000125.png"
+replay "$tmp/air.pcap" "$tmp/plateau_own" "${span[@]}" --only 125,127 --set detector.level=plateau --set detector.agc_s=0 --threads 1
+check "plateau: the first by itself" cmp -s "$tmp/plateau/frames/lwir/000125.png" "$tmp/plateau_own/frames/lwir/000125.png"
+check "plateau: the next follows it" differ "$tmp/plateau/frames/lwir/000127.png" "$tmp/plateau_own/frames/lwir/000127.png"
 replay "$tmp/air.pcap" "$tmp/again" "${span[@]}" --only 125,127 --threads 1
 check "the same frames, the same displays" cmp -s "$tmp/part/frames/lwir/000127.png" "$tmp/again/frames/lwir/000127.png"
 finish

@@ -47,6 +47,12 @@ jump() { aim "$1" "$2" | awk 'BEGIN { w = 0 } { b[NR] = $4 } END { for (i = 2; i
 replay "$tmp/demo.pcap" "$tmp/smooth" "${fine[@]}" --rate 20 --from 1366 --to 1368
 check "gimbal: no frame shows the tick before" is "$(jump "$tmp/smooth" 1:3001:22)" '<' 0.02
 
+# A gimbal at its limit is warned of when it is, once; how often it was is no second warning.
+replay "$tmp/demo.pcap" "$tmp/limit" "${fine[@]}" --rate 5 --from 1366 --to 1367 --set sensor.gimbal_limit_deg=0.1
+check "limit: one warning" [ "$(grep -c '^pitviper: warning: ' "$tmp/stderr")" = 1 ]
+check "limit: of it" complained 'is beyond its gimbal at'
+check "limit: how often" said 'beyond the gimbal in 6 of 6 frames'
+
 # Silence for the last 1.5 s, some 470 m: the seeker flies on to its target.
 sed 's/^    time_s: 12$/&\n    silent_s: 1.5/' etc/scenarios/demo.yaml >"$tmp/silent.yaml"
 exercise "$tmp/silent.yaml" "$tmp/silent.pcap"

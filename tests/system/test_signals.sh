@@ -69,4 +69,21 @@ ended deaf
 check "SIGUSR1 that was ignored stays so; SIGTERM ends it" [ $code = 0 ]
 "$pitviper" inspect "$tmp/node.pcapng" --port 0 --pdus tsv | head -n 1 >"$tmp/first"
 check "inspect | head is quiet" [ "$(wc -l <"$tmp/first")" = 1 ]
+
+# a bench that is ended, also by what nothing can catch, leaves no node behind
+for signal in TERM KILL; do
+    TMPDIR=$tmp "$pitviper" bench network --quick >"$tmp/stdout" 2>"$tmp/bench.err" &
+    node[bench]=$!
+    children() { cat /proc/${node[bench]}/task/*/children 2>/dev/null; }
+    has_two() { [ "$(children | wc -w)" -ge 2 ]; }
+    until_of bench has_two
+    left=($(children))
+    check "bench: a node and an exercise" [ ${#left[@]} -ge 2 ]
+    # of what the numbers are, in case they are used again
+    is_ours() { local pid; for pid in "${left[@]}"; do [ "$(readlink /proc/$pid/exe)" = "$(readlink -f "$pitviper")" ] && return; done; return 1; }
+    check "bench: they are ours" is_ours
+    kill -$signal "${node[bench]}"
+    ended bench 2>/dev/null
+    check "SIG$signal: a bench's nodes end with it" until_true not is_ours
+done
 finish

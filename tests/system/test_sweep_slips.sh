@@ -18,6 +18,11 @@ printf 'axes: {weather.visibility_m: [9000, 9000]}\n' >"$tmp/same.yaml"
 sweep "$tmp/same.yaml" "$tmp/same" --no-files
 check "a value said twice is run once" said '1 variant left out: equal to others'
 
+printf 'axes: {sensor.bands: [[mwir, lwir], lwir, [lwir]]}\n' >"$tmp/lists.yaml"
+sweep "$tmp/lists.yaml" "$tmp/lists" --no-files
+check "a list in a list is one value, and the same said otherwise is run once" said '1 variant left out: equal to others'
+check "a list in a list: both bands, and one" [ "$(grep -ohE '"bands":"[a-z,]*"' "$tmp/lists/manifest.jsonl" | tr '\n' ' ')$(grep -ohE '"sensor.bands":"[a-z,]*"' "$tmp/lists/manifest.jsonl" | tr '\n' ' ')" = '"sensor.bands":"mwir,lwir" "sensor.bands":"lwir" ' ]
+
 slip() { # slip WHAT PATTERN TEXT
     printf "$3" >"$tmp/slip.yaml"
     sweep "$tmp/slip.yaml" "$tmp/slip"
@@ -29,6 +34,9 @@ slip "unknown key" 'slip.yaml:3: no such key: weather.visibilty_m; did you mean 
 slip "out of range" "slip.yaml:4: weather.visibility_m: '50' is not a number in 100 .. 300000 m" 'axes:\n  weather.visibility_m:\n    - 5000\n    - 50\n'
 slip "not a word of the key's" "slip.yaml:1: sensor.optical: 'red' is not one of rgb.pan.nir" 'axes: {sensor.optical: [rgb, red]}\n'
 slip "given twice" 'slip.yaml:3: sensor.hfov_deg:.*twice' 'axes:\n  sensor.hfov_deg: [3]\n  sensor: {hfov_deg: [4]}\n'
+slip "a list of what takes none" 'slip.yaml:1: seed: needs single values, or lists of words where the key takes' 'axes: {seed: [[1, 2], [3]]}\n'
+slip "a list in a list in a list" 'slip.yaml:1: sensor.bands: needs single values' 'axes: {sensor.bands: [[[lwir]], [mwir]]}\n'
+slip "a wrong word in a list" "sensor.bands: 'optical,lwr' is not a list.*there is no 'lwr'" 'axes: {sensor.bands: [[optical, lwr]]}\n'
 slip "together wrong" 'in variant 2, exercise.from_s=1400' 'axes: {exercise.from_s: [1366, 1400]}\n'
 slip "a time that is none" "exercise.utc: 'noon'" 'axes: {exercise.utc: [noon]}\n'
 slip "an unknown sensor" "no sensor named 'hubble'" 'axes: {sensor.preset: [none, hubble]}\n'

@@ -12,6 +12,8 @@ enum { target_room = 256 };
 typedef struct Memory {
     Consumer    consumer;
     MemoryRing *ring;
+    char        name[memory_name_size];
+    uint64_t   *unnamed, own_unnamed; /* frames; own: where nobody asked for them */
     bool        counts;
     int         room;   /* for targets; 0: kind sensor */
     int         plane_count;
@@ -98,6 +100,9 @@ static Status put(Consumer *consumer, Frame *frame)
     }
     memory_record(memory_ring_record(m->ring), memory_ring_targets(m->ring), m->room, frame);
     memory_ring_put(m->ring, values);
+    if (!memory_ring_is_named(m->ring) && (*m->unnamed)++ == 0)
+        log_warn("memory: /dev/shm/%s was removed or replaced by another program: who opens it now does not see these frames, "
+                 "who had opened it before does; end this node and start it anew, perhaps with another --memory", m->name);
     return STATUS_OK;
 }
 
@@ -119,7 +124,6 @@ void memory_name(char out[memory_name_size], const Config *config, const char *h
 Status consume_memory(Consumer **out, const MemoryOf *of)
 {
     const Config *config = of->config;
-    char          name[memory_name_size];
     Memory       *m = calloc(1, sizeof *m);
     if (!m) return STATUS_NO_MEMORY;
     const bool truth = strcmp(config->publish.memory_record, "truth") == 0;
@@ -129,8 +133,9 @@ Status consume_memory(Consumer **out, const MemoryOf *of)
     m->height = config->sensor.height_px;
     m->consumer = (Consumer){.wants = (truth ? WANT_TARGETS : 0) | (m->counts ? WANT_COUNTS : 0), .put = put,
                              .close = close_memory, .name = "memory"};
-    memory_name(name, config, of->host);
-    MemoryRingOf ring = {.name = name, .slots = config->publish.memory_slots, .target_room = m->room, .truth = truth,
+    memory_name(m->name, config, of->host);
+    m->unnamed = of->unnamed ? of->unnamed : &m->own_unnamed;
+    MemoryRingOf ring = {.name = m->name, .slots = config->publish.memory_slots, .target_room = m->room, .truth = truth,
                          .host = of->host, .config_sha256 = of->config_sha256,
                          .detections_port = config->publish.detections_port};
     describe(&ring, m, of);
@@ -141,7 +146,7 @@ Status consume_memory(Consumer **out, const MemoryOf *of)
     else free(m);
     if (status == STATUS_OK)
         log_print("memory: /dev/shm/%s: %d planes of %d x %d, %d slots, %.1f MB; to see them: "
-                  "etc/examples/read_memory.py %s\n", name, m->plane_count, m->width, m->height, ring.slots,
-                  1e-6 * (double)memory_ring_size(m->ring), name);
+                  "etc/examples/read_memory.py %s\n", m->name, m->plane_count, m->width, m->height, ring.slots,
+                  1e-6 * (double)memory_ring_size(m->ring), m->name);
     return status;
 }

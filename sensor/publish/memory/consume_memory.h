@@ -12,6 +12,7 @@ typedef struct MemoryOf {
     const char   *config_sha256;
     unsigned      bands;         /* of the run */
     int           count_bits[BAND_COUNT]; /* of raw counts; 0: a band without a sensor has none */
+    uint64_t     *unnamed;       /* counts frames that were written while the ring's name was not its own; NULL: not counted */
     const char   *host;          /* of several hosts of one run: its id, or `observer`; NULL: one alone */
 } MemoryOf;
 

@@ -96,6 +96,7 @@ Status memory_ring_create(MemoryRing **out, const MemoryRingOf *of)
     return status;
 }
 
+bool                  memory_ring_is_named(const MemoryRing *r) { return memory_segment_is_named(&r->segment); }
 size_t                memory_ring_size(const MemoryRing *r) { return r->segment.size; }
 PitviperMemoryRecord *memory_ring_record(MemoryRing *r) { return &r->record; }
 PitviperMemoryTarget *memory_ring_targets(MemoryRing *r) { return r->target; }

@@ -24,6 +24,8 @@ typedef struct MemoryRingOf {
 
 /* STATUS_BAD_VALUE, STATUS_IO, logged with what to do: the name is in use; no room. */
 Status memory_ring_create(MemoryRing **out, const MemoryRingOf *of);
+/* Whether readers can find it: its name is neither removed nor another's. */
+bool   memory_ring_is_named(const MemoryRing *ring);
 size_t memory_ring_size(const MemoryRing *ring); /* octets */
 /* To be filled in for the next frame: all but lock, sequence and written_ns; targets: [target_room]. */
 PitviperMemoryRecord *memory_ring_record(MemoryRing *ring);

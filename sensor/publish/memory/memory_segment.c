@@ -35,6 +35,11 @@ Status memory_segment_create(MemorySegment *out, const char *name, size_t size)
     snprintf(s->temporary, sizeof s->temporary, ".pitviper-%s-%d", name, (int)getpid());
     shm_unlink(s->temporary); /* of a killed process with the same number */
     s->file = shm_open(s->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (s->file < 0 && errno == EEXIST) {
+        log_error("memory: /dev/shm/%s is there and belongs to another user; have it removed, or choose another name with --memory",
+                  s->temporary);
+        return STATUS_IO;
+    }
     if (s->file < 0) return not_created(s, "create", errno);
     /* all of it now: a page that cannot be had later would end the process (SIGBUS); and mapped now, not in a frame */
     const int reserved = posix_fallocate(s->file, 0, (off_t)size);
@@ -70,8 +75,8 @@ static Replaced replace(const MemorySegment *s, const char *temporary, const cha
     const int   old    = open(path, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (old < 0 && errno == ENOENT) return REPLACED_NOT_THERE;
     if (old < 0) {
-        log_error("memory: %s is there and cannot be opened: %s; choose another name with --memory", path,
-                  strerror(errno));
+        log_error("memory: %s is there and cannot be opened: %s; choose another name with --memory, or remove it", path,
+                  errno == ELOOP ? "it is a symbolic link" : strerror(errno));
         return REPLACED_REFUSED;
     }
     if (fstat(old, &opened) != 0 || !S_ISREG(opened.st_mode) || !is_ring(&pid, old))
@@ -112,14 +117,20 @@ Status memory_segment_publish(MemorySegment *s)
     return s->named ? STATUS_OK : STATUS_BAD_VALUE;
 }
 
-void memory_segment_close(MemorySegment *s)
+bool memory_segment_is_named(const MemorySegment *s)
 {
     struct stat own, there;
     char        path[path_size];
     path_of(path, s->name);
-    if (s->named && fstat(s->file, &own) == 0 && stat(path, &there) == 0 && own.st_ino == there.st_ino &&
-        own.st_dev == there.st_dev)
-        unlink(path);
+    return s->named && fstat(s->file, &own) == 0 && lstat(path, &there) == 0 && own.st_ino == there.st_ino &&
+           own.st_dev == there.st_dev;
+}
+
+void memory_segment_close(MemorySegment *s)
+{
+    char path[path_size];
+    path_of(path, s->name);
+    if (memory_segment_is_named(s)) unlink(path);
     if (!s->named && s->file >= 0) shm_unlink(s->temporary);
     if (s->at) munmap(s->at, s->size);
     if (s->file >= 0) close(s->file);

@@ -24,6 +24,8 @@ typedef struct MemorySegment {
 Status memory_segment_create(MemorySegment *out, const char *name, size_t size);
 /* Gives it its name. STATUS_BAD_VALUE, logged: the name is in use. */
 Status memory_segment_publish(MemorySegment *segment);
+/* Whether the name is this segment's still: nothing keeps others from removing or replacing it. */
+bool   memory_segment_is_named(const MemorySegment *segment);
 /* Removes the name, if it still is this segment's, and the mapping; readers keep theirs. */
 void   memory_segment_close(MemorySegment *segment);
 

@@ -3,6 +3,7 @@
 
 #include "sensor/publish/display.h"
 #include "sensor/publish/frame_files.h"
+#include "sensor/publish/letters.h"
 #include "sensor/publish/video/video_library.h"
 #include "sensor/publish/video/video_output.h"
 
@@ -22,8 +23,11 @@ typedef struct Channel {
     int64_t      last_90k, key_90k; /* of the last frame and key frame; INT64_MIN: none yet */
 } Channel;
 
+typedef enum Labels { LABEL_OFF, LABEL_BANDS, LABEL_TARGETS } Labels;
+
 typedef struct Video {
     Consumer     consumer;
+    Labels       labels;
     VideoOf      of;
     unsigned     to;           /* VideoTo: those of `of` that are configured */
     KlvMode      klv;
@@ -63,6 +67,23 @@ static void put_tile(uint8_t *image, const uint8_t *tile, const EncoderConfig *c
     }
 }
 
+/* Names of bands, and boxes and names of targets, as publish.video_labels has it, on the tile that begins at a column. */
+static void label(Video *v, const EncoderConfig *form, Band band, int column, int width, const Frame *frame)
+{
+    const int     bits = encoder_bits(form->codec), times = width < 320 ? 1 : 2;
+    const Drawing d = {v->image, form->width, form->height, form->colour ? 3 : 1, bits > 8, (1 << bits) - 1, column, column + width};
+    for (int i = 0; v->labels == LABEL_TARGETS && i < frame->record.target_count; i++) {
+        const TargetRecord *t = &frame->record.target[i];
+        char                id[dis_id_text_size];
+        dis_entity_id_text(id, t->id);
+        if (box_is_empty(t->box)) continue;
+        const int box[4] = {t->box[0] + column, t->box[1], t->box[2] + column, t->box[3]};
+        drawing_box(&d, box);
+        drawing_text(&d, box[0], box[1] >= 10 * times + 2 ? box[1] - 9 * times - 2 : box[3] + 3 * times, times, *t->marking ? t->marking : id);
+    }
+    drawing_text(&d, column + 2 * times, 2 * times, times, band_name(band));
+}
+
 /* The image of a channel, and its form. A band without a display is black. */
 static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Frame *frame)
 {
@@ -83,6 +104,7 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
         if (display->planes) frame_display_quantise(v->tile, display, (size_t)width * (size_t)height, bits);
         else memset(v->tile, 0, (size_t)width * (size_t)height * (bits == 8 ? 1 : 2));
         put_tile(v->image, v->tile, form, column, width, planes);
+        if (v->labels != LABEL_OFF) label(v, form, (Band)b, column, width, frame);
         column += width;
     }
     return STATUS_OK;
@@ -206,6 +228,7 @@ static Status add_stream(Video *v, Channel *c)
     const Band    band = (Band)__builtin_ctz(c->bands);
     if (!(v->to & VIDEO_TO_STREAM) || !video_stream_url(&url, config, v->of.bands, band)) return STATUS_OK;
     const Status status = add_output(&o, v, c, VIDEO_TS);
+    if (status == STATUS_OK) o->sent = v->of.sent;
     return status == STATUS_OK ? udp_video_open(&o->udp, &url, config->network.interface, config->network.ttl)
                                : status;
 }
@@ -268,6 +291,9 @@ Status consume_video(Consumer **out, const VideoOf *of)
     v->of.to    = to;
     v->found    = (KlvDetections){.from = of->detections};
     v->to       = to;
+    v->labels   = strcmp(of->config->publish.video_labels, "off") == 0     ? LABEL_OFF
+                  : strcmp(of->config->publish.video_labels, "bands") == 0 ? LABEL_BANDS
+                                                                           : LABEL_TARGETS;
     v->klv      = strcmp(of->config->publish.klv, "async") == 0  ? KLV_ASYNCHRONOUS
                   : strcmp(of->config->publish.klv, "sync") == 0 ? KLV_SYNCHRONOUS
                                                                  : KLV_NONE;
@@ -276,6 +302,7 @@ Status consume_video(Consumer **out, const VideoOf *of)
         if (v->channel[i].klv) v->consumer.wants |= WANT_FOOTPRINT;
     if (v->consumer.wants & WANT_FOOTPRINT && strcmp(of->config->publish.vmti, "truth") == 0)
         v->consumer.wants |= WANT_TARGETS;
+    if (v->labels == LABEL_TARGETS) v->consumer.wants |= WANT_TARGETS;
     if (status == STATUS_OK) *out = &v->consumer;
     else close_video(&v->consumer);
     return status;

@@ -9,6 +9,7 @@
 #define SENSOR_PUBLISH_VIDEO_CONSUME_VIDEO_H
 
 #include "sensor/publish/consumer.h"
+#include "sensor/publish/sent_counters.h"
 #include "sensor/publish/video/video_names.h"
 #include "sensor/publish/klv/klv_detections.h"
 
@@ -20,6 +21,7 @@ typedef struct VideoOf {
     const char      *host_folder; /* of several hosts: this one's, below that of the videos; NULL: the only one */
     bool             patient;     /* live: what cannot be encoded or written is counted and retried */
     const Geoid     *geoid;       /* NULL: no heights above mean sea level */
+    StreamCounters  *sent;        /* of all streams, added at the end; NULL: nowhere */
     Detections      *detections;  /* of a recogniser, for publish.vmti=atr; outlive the consumer; NULL: none */
 } VideoOf;
 

@@ -21,10 +21,10 @@ struct UdpVideo {
     struct sockaddr_in to;
     bool               connected;
     char               url[url_size];
-    UdpVideoCounters   counters;
+    StreamCounters     counters;
     bool               away;           /* reported */
     double             refused_s;      /* wall clock: the last refusal */
-    uint64_t           refused_before; /* when it was reported */
+    uint64_t           refused_before; /* when it was reported: refused, and without a route */
 };
 
 static bool set_flag(int socket, int level, int name, int value)
@@ -38,10 +38,11 @@ static bool is_no_route(int error)
     return error == ENETUNREACH || error == EHOSTUNREACH || error == ENETDOWN || error == EHOSTDOWN;
 }
 
-static bool connect_to(UdpVideo *u)
+/* 0, or the error. */
+static int connect_to(UdpVideo *u)
 {
     u->connected = connect(u->socket, (const struct sockaddr *)&u->to, sizeof u->to) == 0;
-    return u->connected || is_no_route(errno);
+    return u->connected ? 0 : errno;
 }
 
 static bool choose_interface(const UdpVideo *u, const char *interface)
@@ -67,10 +68,14 @@ Status udp_video_open(UdpVideo **out, const StreamUrl *to, const char *interface
              !set_flag(u->socket, IPPROTO_IP, IP_MULTICAST_LOOP, 1) ||
              !set_flag(u->socket, SOL_SOCKET, SO_BROADCAST, 1))
         failed = "set the options of";
-    else if (!connect_to(u)) failed = "connect to";
+    const int reached = failed ? 0 : connect_to(u);
+    if (reached && !is_no_route(reached)) {
+        failed = "connect to";
+        errno  = reached;
+    }
     if (failed) {
         log_error("video: cannot %s %s: %s", failed, u->url, strerror(errno));
-        udp_video_close(u);
+        udp_video_close(u, NULL);
         return STATUS_IO;
     }
     set_flag(u->socket, SOL_SOCKET, SO_SNDBUF, send_buffer_octets); /* what the system allows is enough */
@@ -78,12 +83,24 @@ Status udp_video_open(UdpVideo **out, const StreamUrl *to, const char *interface
     return STATUS_OK;
 }
 
-void udp_video_close(UdpVideo *u)
+static uint64_t unsent(const StreamCounters *c) { return c->refused + c->no_route; }
+
+void udp_video_close(UdpVideo *u, StreamCounters *sum)
 {
     if (!u) return;
-    if (u->counters.refused || u->counters.lost)
-        log_info("video: %s: datagrams: sent=%llu refused=%llu lost=%llu", u->url, (unsigned long long)u->counters.sent,
-                 (unsigned long long)u->counters.refused, (unsigned long long)u->counters.lost);
+    const StreamCounters *c = &u->counters;
+    if (unsent(c) || c->lost)
+        log_info("video: %s: datagrams: sent=%llu refused=%llu no_route=%llu lost=%llu", u->url, (unsigned long long)c->sent,
+                 (unsigned long long)c->refused, (unsigned long long)c->no_route, (unsigned long long)c->lost);
+    if (c->sent == 0 && c->no_route)
+        log_warn("video: %s: there was never a route to it, so nothing was sent; check publish.stream and this machine's "
+                 "network (ip route get ADDRESS)", u->url);
+    if (sum) {
+        sum->sent += c->sent;
+        sum->refused += c->refused;
+        sum->no_route += c->no_route;
+        sum->lost += c->lost;
+    }
     if (u->socket >= 0) close(u->socket);
     free(u);
 }
@@ -91,8 +108,8 @@ void udp_video_close(UdpVideo *u)
 /* 0, or the error. */
 static int try_send(UdpVideo *u, const uint8_t *bytes, size_t count)
 {
-    if (!u->connected && !connect_to(u)) return errno;
-    return send(u->socket, bytes, count, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0 ? 0 : errno;
+    const int away = u->connected ? 0 : connect_to(u);
+    return away ? away : send(u->socket, bytes, count, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0 ? 0 : errno;
 }
 
 static void note_refused(UdpVideo *u, int error)
@@ -100,11 +117,12 @@ static void note_refused(UdpVideo *u, int error)
     u->refused_s = wall_clock_s();
     if (!u->away) {
         u->away           = true;
-        u->refused_before = u->counters.refused;
-        log_info("video: %s: %s; sending goes on", u->url,
-                 error == ECONNREFUSED ? "no program receives it at present" : strerror(error));
+        u->refused_before = unsent(&u->counters);
+        if (error == ECONNREFUSED) log_info("video: %s: no program receives it at present; sending goes on", u->url);
+        else log_warn("video: %s: no route to it: %s; sending goes on, for when there is one", u->url, strerror(error));
     }
-    u->counters.refused++;
+    if (error == ECONNREFUSED) u->counters.refused++;
+    else u->counters.no_route++;
 }
 
 static void note_sent(UdpVideo *u)
@@ -112,8 +130,8 @@ static void note_sent(UdpVideo *u)
     u->counters.sent++;
     if (!u->away || wall_clock_s() - u->refused_s < back_after_s) return;
     u->away = false;
-    log_info("video: %s: received again; %llu datagrams were refused", u->url,
-             (unsigned long long)(u->counters.refused - u->refused_before));
+    log_info("video: %s: received again; %llu datagrams were not", u->url,
+             (unsigned long long)(unsent(&u->counters) - u->refused_before));
 }
 
 void udp_video_send(UdpVideo *u, const uint8_t *bytes, size_t count)
@@ -127,5 +145,3 @@ void udp_video_send(UdpVideo *u, const uint8_t *bytes, size_t count)
     else if (error == ECONNREFUSED || is_no_route(error)) note_refused(u, error);
     else u->counters.lost++;
 }
-
-const UdpVideoCounters *udp_video_counters(const UdpVideo *u) { return &u->counters; }

@@ -5,19 +5,15 @@
 #ifndef SENSOR_PUBLISH_VIDEO_UDP_VIDEO_H
 #define SENSOR_PUBLISH_VIDEO_UDP_VIDEO_H
 
+#include "sensor/publish/sent_counters.h"
 #include "sensor/settings/video_choice.h"
-
-typedef struct UdpVideoCounters {
-    uint64_t sent, refused, lost; /* datagrams: taken by the kernel; no receiver or no route; full buffers */
-} UdpVideoCounters;
 
 typedef struct UdpVideo UdpVideo;
 
 /* interface: its name; empty: the system's choice. ttl: of multicast; local programs receive it in any case. Logged. */
 Status udp_video_open(UdpVideo **out, const StreamUrl *to, const char *interface, int ttl);
-void   udp_video_close(UdpVideo *udp); /* NULL is valid */
+/* Adds its counters to others; NULL: nowhere. Warns if not one datagram left. NULL is valid. */
+void   udp_video_close(UdpVideo *udp, StreamCounters *sum);
 /* count: at most 7 packets of 188 octets. */
 void   udp_video_send(UdpVideo *udp, const uint8_t *bytes, size_t count);
-const UdpVideoCounters *udp_video_counters(const UdpVideo *udp);
-
 #endif

@@ -87,7 +87,7 @@ Status video_output_close(VideoOutput *o)
         if (status == STATUS_OK) status = closed;
         o->file = NULL;
     }
-    udp_video_close(o->udp);
+    udp_video_close(o->udp, o->sent);
     o->udp = NULL;
     return o->patient ? STATUS_OK : status;
 }

@@ -16,6 +16,7 @@ typedef struct VideoOutput {
     KlvMode      klv;
     bool         patient;
     UdpVideo    *udp;       /* of a stream, open; NULL: a file */
+    StreamCounters *sent;   /* its counters are added to these at the end; NULL: nowhere */
     char         path[video_path_size]; /* of a file */
     char         title[32];
     VideoFile   *file;
