@@ -13,7 +13,7 @@ typedef struct ShapeScene {
     RTCScene          scene;
     const PlantShape *shape;
     const LeafOutline *outline; /* [plant_outlines] */
-    double            centre[3], half[3]; /* box, of a plant 1 m high */
+    double            centre[4], half[4]; /* box, of a plant 1 m high; the fourth are 0 */
     double            reach[shape_azimuths + 1]; /* how far it reaches towards azimuths from x to y, from its axis; the last
                                                   * is the first */
 } ShapeScene;

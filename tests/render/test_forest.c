@@ -165,6 +165,42 @@ static void bare_trees(void **state)
     close_forest();
 }
 
+/* Rays along the sides of a plant's box, and across it along one of them, within the box and beside it. */
+static void along_the_box(void **state)
+{
+    enum { side = 24, ways = 5 };
+    static const double way[ways][3] = {{0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {0.6, 0.8, 0}, {0, 0.6, -0.8}};
+    static Plant plant[1];
+    const double origin[3] = {0, 0, 0}, middle[3] = {0, 0, 5};
+    int          met = 0, missed = 0;
+    (void)state;
+    hand_grow(false, 0.06);
+    const Woods woods = hand_stand(plant, 1, origin, 0.5);
+    plant[0] = (Plant){.height = 1000, .width = 128, .kind = plant[0].kind};
+    open_forest(&woods, &(ForestConfig){.leaves = true}, origin, 1000);
+    for (int w = 0; w < ways; w++)
+        for (int k = 0; k < side * side; k++) {
+            double   u[3], v[3], o[3], range_m = INFINITY;
+            uint32_t at, quad;
+            ForestHit hit = {0};
+            uint8_t   dark = 0;
+            const double far_m = INFINITY;
+            v3_cross(u, way[w], fabs(way[w][2]) > 0.9 ? (const double[3]){1, 0, 0} : (const double[3]){0, 0, 1});
+            v3_normalize(u, u), v3_cross(v, u, way[w]);
+            v3_add_scaled(o, middle, -20, way[w]);
+            v3_add_scaled(o, o, 9.0 * (k % side + 0.37) / side - 4.5, u), v3_add_scaled(o, o, 9.0 * (k / side + 0.41) / side - 4.5, v);
+            const double *const from[3] = {&o[0], &o[1], &o[2]}, *const d[3] = {&way[w][0], &way[w][1], &way[w][2]};
+            forest_first_hits(&range_m, &hit, &frame, 1, from, d, NULL);
+            forest_any_hits(&dark, &frame, 1, from, d, &far_m, NULL);
+            const double want_m = by_force(&at, &quad, &woods, o, way[w], 0, true, INFINITY);
+            assert_true(want_m < INFINITY ? fabs(range_m - want_m) < 1e-5 && hit.quad == quad : range_m == INFINITY);
+            assert_int_equal(dark, want_m < INFINITY);
+            met += want_m < INFINITY, missed += !(want_m < INFINITY);
+        }
+    if (!(met > 200 && missed > 200)) fail_msg("%d met, %d missed", met, missed);
+    close_forest();
+}
+
 /* From far away plants are traced at level 1, but not by rays that must meet real ones. */
 static void levels(void **state)
 {
@@ -328,6 +364,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tree), cmocka_unit_test(a_stand),  cmocka_unit_test(bare_trees),    cmocka_unit_test(levels),
+        cmocka_unit_test(along_the_box),
         cmocka_unit_test(far_away), cmocka_unit_test(order), cmocka_unit_test(transmittance), cmocka_unit_test(openness),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
