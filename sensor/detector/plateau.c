@@ -69,26 +69,40 @@ void detector_plateau_follow(DetectorCurve *state, bool *quick, const DetectorCu
         state->value[k] = keep == 0 ? now->value[k] : now->value[k] + keep * (state->value[k] - now->value[k]);
 }
 
-/* Grey level 0 .. 1 of a value. */
-static double curve_at(const DetectorCurve *c, double x)
+/* Pixels that are sought together: each step of one search waits for the step before. */
+enum { together = 8 };
+
+/* Grey levels 0 .. 1; NaN: 0. */
+static void curve_levels(double level[together], const DetectorCurve *c, const float x[together])
 {
-    if (!(x > c->value[0])) return 0; /* NaN too */
-    if (x >= c->value[curve_steps]) return 1;
-    int k = 0;
-    for (int step = curve_steps / 2; step; step /= 2) k += c->value[k + step] <= x ? step : 0;
-    return (k + (x - c->value[k]) / (c->value[k + 1] - c->value[k])) / curve_steps;
+    double at[together];
+    int    k[together] = {0};
+    for (int i = 0; i < together; i++) {
+        at[i] = x[i] > c->value[0] ? (double)x[i] : c->value[0]; /* NaN: the first */
+        at[i] = at[i] < c->value[curve_steps] ? at[i] : c->value[curve_steps];
+    }
+    for (int step = curve_steps / 2; step; step /= 2)
+        for (int i = 0; i < together; i++) k[i] += step * (c->value[k[i] + step] <= at[i]); /* without a branch */
+    for (int i = 0; i < together; i++)
+        level[i] = (k[i] + (at[i] - c->value[k[i]]) / (c->value[k[i] + 1] - c->value[k[i]])) / curve_steps;
 }
 
 void detector_display_curve(void *out, const float *in, size_t count, const DetectorConfig *config,
                             const DetectorCurve *curve)
 {
     const double full = config->bits == 16 ? 65535 : 255;
-    for (size_t i = 0; i < count; i++) {
-        const double x = 0.5 + (curve_at(curve, in[i]) - 0.5) * config->gain + config->offset;
-        const double code = full * fmin(1, fmax(0, isnan(in[i]) ? 0 : x)) + 0.5;
-        if (config->bits == 16)
-            ((uint16_t *)out)[i] = (uint16_t)code;
-        else
-            ((uint8_t *)out)[i] = (uint8_t)code;
+    for (size_t first = 0; first < count; first += together) {
+        const size_t n = count - first < together ? count - first : together;
+        float        x[together] = {0};
+        double       level[together];
+        memcpy(x, in + first, n * sizeof *x);
+        curve_levels(level, curve, x);
+        for (size_t i = 0; i < n; i++) {
+            const double shown = isnan(x[i]) ? 0 : clamp(0.5 + (level[i] - 0.5) * config->gain + config->offset, 0, 1);
+            if (config->bits == 16)
+                ((uint16_t *)out)[first + i] = (uint16_t)(full * shown + 0.5);
+            else
+                ((uint8_t *)out)[first + i] = (uint8_t)(full * shown + 0.5);
+        }
     }
 }
