@@ -1,13 +1,16 @@
 /* render/frame/error_budget.c: the error estimate of a frame by re-sampling some of its pixels. One candidate in
  * each of many equal fields is weighted by its difference from its neighbours; the pixels to re-sample are drawn
- * with these weights; blocks of them are shaded, each into its own sums. */
+ * with these weights; blocks of them are shaded, each into its own sums. Where targets are not refined their pixels are
+ * fields of their own: they are few, and hold most of an infrared band's error. */
 #include "render/frame/error_budget.h"
 
 #include "render/frame/error_estimate.h"
 #include "render/frame/edges.h"
 
 enum { probes_a_block = 64, blocks_most = 12, candidates_a_probe = 4, tables_probes = 48, hottest_probes = 2,
-       tables_blocks = 4 /* of them, for as many threads */ };
+       tables_blocks = 4 /* of them, for as many threads */, target_candidates = 512,
+       target_blocks = 4 };
+static const double large_target = 1.0 / 16; /* of the picture: a box above it has fields enough */
 static const double pixels_a_probe = 1200; /* 16 rays each: 1.3 % of a frame of one ray a pixel */
 static const uint32_t stream = 0x6275;     /* "bu" */
 
@@ -41,6 +44,9 @@ typedef struct ProbeTask {
 typedef struct Budget {
     const Job  *job;
     int         field_px, columns, rows, candidates, probes, blocks, n;
+    int         target_first;  /* the first of their candidates */
+    int         target_px;     /* number of pixels in boxes of targets that are not refined */
+    uint8_t    *of_target;     /* 1: one of them; NULL: none */
     bool        law;       /* too many rays to re-sample more finely: the sampling variance is used */
     Candidate  *candidate;
     ProbeOf    *probe, tables_probe[tables_probes + hottest_probes];
@@ -74,6 +80,71 @@ static unsigned planes_to_ask(const Job *job, size_t px)
     return planes;
 }
 
+/* Marks the boxes of targets and a pixel about them. */
+static Status mark_targets(Budget *b, Arena *arena)
+{
+    const Job     *job = b->job;
+    const Picture *p = job->picture;
+    const int      pixels = p->width * p->height;
+    if (looks_for_edges(job->request)) return STATUS_OK; /* they are refined */
+    if (!(b->of_target = arena_alloc(arena, (size_t)pixels, 1))) return STATUS_NO_MEMORY;
+    for (int i = 0; i < job->scene.snapshot->count; i++) {
+        const double *box = job->boxes[i].projected_box;
+        if (!job->boxes[i].projected) continue;
+        const int x0 = (int)fmax(0, floor(box[0]) - 1), x1 = (int)fmin(p->width, ceil(box[2]) + 1);
+        const int y0 = (int)fmax(0, floor(box[1]) - 1), y1 = (int)fmin(p->height, ceil(box[3]) + 1);
+        if ((double)(x1 - x0) * (y1 - y0) > large_target * pixels) continue;
+        for (int y = y0; y < y1; y++)
+            for (int x = x0; x < x1; x++) b->of_target[pixel_index(job, x, y)] = 1;
+    }
+    for (int k = 0; k < pixels; k++) b->target_px += b->of_target[k];
+    return STATUS_OK;
+}
+
+static void read_candidate(Candidate *c, const Job *job)
+{
+    const Picture *p = job->picture;
+    c->planes = planes_to_ask(job, pixel_index(job, c->x, c->y));
+    for (int k = 0; k < picture_plane_count; k++) {
+        const float *value = picture_plane(p, k);
+        if (!value) continue;
+        c->value[k]    = value[pixel_index(job, c->x, c->y)];
+        c->contrast[k] = (float)plane_contrast(p, value, c->x, c->y);
+    }
+}
+
+/* One of as many equal shares of the targets' pixels, in the picture's order: candidates behind those of the fields. */
+static void add_target_candidates(Budget *b)
+{
+    const int    width = b->job->picture->width;
+    const int    count = b->target_px < target_candidates ? b->target_px : target_candidates;
+    const double share = (double)b->target_px / count;
+    int          met = 0, px = -1;
+    for (int k = 0; k < count; k++) {
+        const int wanted = (int)((k + random_uniform(1, stream, 1, (uint64_t)k)) * share); /* below target_px */
+        while (met <= wanted) met += b->of_target[++px];
+        Candidate *c = &b->candidate[b->candidates++]; /* target_first and on */
+        *c = (Candidate){.x = (uint16_t)(px % width), .y = (uint16_t)(px / width), .area = share};
+        read_candidate(c, b->job);
+    }
+}
+
+/* A field's candidate stands for those of its pixels that are no target's, and is one of them. */
+static void leave_targets_out(Candidate *c, const Budget *b, int x0, int y0, int w, int h)
+{
+    const int first = (c->y - y0) * w + c->x - x0;
+    int       found = -1;
+    c->area = 0;
+    for (int k = 0; k < w * h; k++) {
+        const int at = (first + k) % (w * h);
+        if (b->of_target[pixel_index(b->job, x0 + at % w, y0 + at / w)]) continue;
+        if (found < 0) found = at;
+        c->area++;
+    }
+    if (found < 0) return;
+    c->x = (uint16_t)(x0 + found % w), c->y = (uint16_t)(y0 + found / w);
+}
+
 /* A row of fields. */
 static void candidate_task(void *user, int worker, int row)
 {
@@ -89,27 +160,21 @@ static void candidate_task(void *user, int worker, int row)
         c->x    = (uint16_t)(x0 + (int)(random_uniform(1, stream, 0, 2 * field) * w));
         c->y    = (uint16_t)(y0 + (int)(random_uniform(1, stream, 0, 2 * field + 1) * h));
         c->area = (double)w * h;
-        const size_t px = pixel_index(b->job, c->x, c->y);
-        c->planes = planes_to_ask(b->job, px);
-        for (int k = 0; k < picture_plane_count; k++) {
-            const float *value = picture_plane(p, k);
-            if (!value) continue;
-            c->value[k]    = value[px];
-            c->contrast[k] = (float)plane_contrast(p, value, c->x, c->y);
-        }
+        if (b->of_target) leave_targets_out(c, b, x0, y0, w, h);
+        read_candidate(c, b->job);
     }
 }
 
-/* By weight, in steps. Returns how many. */
-static int draw(ProbeOf *out, int most, const Budget *b)
+/* Of candidates from .. end - 1, by weight, in steps. Returns how many. */
+static int draw(ProbeOf *out, int most, const Budget *b, int from, int end)
 {
     double sum = 0, gone = 0;
     int    count = 0;
-    for (int i = 0; i < b->candidates; i++) sum += b->candidate[i].weight * b->candidate[i].area;
+    for (int i = from; i < end; i++) sum += b->candidate[i].weight * b->candidate[i].area;
     if (!(sum > 0)) return 0;
     const double step = sum / most;
     double       to = 0.5 * step;
-    for (int i = 0; i < b->candidates; i++) {
+    for (int i = from; i < end; i++) {
         const Candidate *c = &b->candidate[i];
         int              drawn = 0;
         for (gone += c->weight * c->area; to < gone; to += step) drawn++;
@@ -120,14 +185,14 @@ static int draw(ProbeOf *out, int most, const Budget *b)
 
 /* Weight: root of the difference from its neighbours over each plane's own mean difference (so that the ground's noise
  * in one band does not hide the borders of another), and no less than a uniform share. */
-static int draw_probes(Budget *b)
+static int draw_probes(ProbeOf *out, int most, Budget *b, int from, int end)
 {
     double sum = 0, area = 0, typical[picture_plane_count] = {0};
-    for (int i = 0; i < b->candidates; i++)
+    for (int i = from; i < end; i++)
         for (int k = 0; k < picture_plane_count; k++)
             if (b->candidate[i].planes >> k & 1)
                 typical[k] += b->candidate[i].area * (double)b->candidate[i].contrast[k];
-    for (int i = 0; i < b->candidates; i++) {
+    for (int i = from; i < end; i++) {
         Candidate *c = &b->candidate[i];
         double     relative = 0;
         c->weight = 0;
@@ -140,9 +205,9 @@ static int draw_probes(Budget *b)
     }
     if (!(area > 0)) return 0;
     const double even = sum > 0 ? sum / area : 1;
-    for (int i = 0; i < b->candidates; i++)
+    for (int i = from; i < end; i++)
         if (b->candidate[i].planes) b->candidate[i].weight += even;
-    return draw(b->probe, b->probes, b);
+    return draw(out, most, b, from, end);
 }
 
 /* The brightest pixel of each infrared plane, for itself alone: one exhaust may hold most of its plane's error, and few
@@ -180,7 +245,7 @@ static int draw_tables(Budget *b, const double mean[picture_plane_count])
         for (int k = 0; k < picture_radar; k++)
             if (c->planes >> k & 1 && mean[k] > 0) c->weight = fmax(c->weight, (double)c->value[k] / mean[k]);
     }
-    const int drawn = draw(b->tables_probe, tables_probes, b);
+    const int drawn = draw(b->tables_probe, tables_probes, b, 0, b->candidates);
     return drawn > 0 ? drawn + add_hottest(b->tables_probe + drawn, b) : 0;
 }
 
@@ -381,15 +446,17 @@ static Status plan(Budget *b, Pool *pool, Arena *arena)
     b->columns  = (p->width + b->field_px - 1) / b->field_px;
     b->rows     = (p->height + b->field_px - 1) / b->field_px;
     b->candidates = b->columns * b->rows;
-    b->candidate = arena_alloc(arena, (size_t)b->candidates + hottest_probes, sizeof *b->candidate);
-    b->probe     = arena_alloc(arena, (size_t)b->probes, sizeof *b->probe);
-    b->task      = arena_alloc(arena, (size_t)b->blocks + tables_blocks, sizeof *b->task);
+    b->candidate = arena_alloc(arena, (size_t)b->candidates + target_candidates + hottest_probes, sizeof *b->candidate);
+    const size_t most = (size_t)(b->probes + target_blocks * probes_a_block);
+    b->target_first = b->candidates;
+    b->probe     = arena_alloc(arena, most, sizeof *b->probe);
+    b->task      = arena_alloc(arena, (size_t)b->blocks + target_blocks + tables_blocks, sizeof *b->task);
     b->direct    = arena_alloc(arena, (size_t)pool_threads(pool), sizeof *b->direct);
-    b->probe_px  = arena_alloc(arena, (size_t)b->probes, sizeof *b->probe_px);
+    b->probe_px  = arena_alloc(arena, most, sizeof *b->probe_px);
     bool ok = b->candidate && b->probe && b->task && b->direct && b->probe_px;
     for (int k = 0; k < error_thermal_planes; k++)
-        ok = (b->square[k] = arena_alloc(arena, (size_t)b->probes, sizeof *b->square[k])) && ok;
-    return ok ? STATUS_OK : STATUS_NO_MEMORY;
+        ok = (b->square[k] = arena_alloc(arena, most, sizeof *b->square[k])) && ok;
+    return ok ? mark_targets(b, arena) : STATUS_NO_MEMORY;
 }
 
 /* Blocks of re-sampled pixels, then those that check the tables; returns the number of both. */
@@ -422,11 +489,14 @@ Status error_estimate(const Job *job, Pool *pool, Arena *arena)
     Status       status = out ? plan(&b, pool, arena) : STATUS_NO_MEMORY;
     if (status != STATUS_OK) return status;
     pool_run(pool, b.rows, candidate_task, &b);
+    if (b.target_px > 0) add_target_candidates(&b);
     for (int i = 0; i < b.candidates; i++)
         for (int k = 0; k < picture_plane_count; k++)
             out->mean[k] += (double)b.candidate[i].value[k] * b.candidate[i].area;
     for (int k = 0; k < picture_plane_count; k++) out->mean[k] /= pixels;
-    out->probes = draw_probes(&b);
+    out->probes = draw_probes(b.probe, b.probes, &b, 0, b.target_first);
+    if (b.candidates > b.target_first)
+        out->probes += draw_probes(b.probe + out->probes, target_blocks * probes_a_block, &b, b.target_first, b.candidates);
     const int tasks = deal(&b, out->probes, draw_tables(&b, out->mean));
     pool_run(pool, tasks, probe_task, &b);
 

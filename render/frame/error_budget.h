@@ -4,7 +4,8 @@
  *   sampling         Pixels of edge_samples x edge_samples rays: from the differences among their own samples, by
  *                    mean_variance_factor. Small targets: likewise from their cells, and the variation of the pixels
  *                    behind them. All others: some are re-sampled with four times the rays a side, drawn by how much
- *                    they differ from their neighbours. Details thinner than the spacing of those rays are missed.
+ *                    they differ from their neighbours; where targets are not refined (antialias off), up to 256 of
+ *                    the pixels in their boxes besides. Details thinner than the spacing of those rays are missed.
  *   level_of_detail  Ground: change of the picked pixels if the ground were known at every second post only, by its
  *                    normals and by its displacement on the image. What is missing below the post spacing is taken
  *                    to be as much again: where hills are as high as they are long (terrain/landscape/landscape.c)

@@ -27,6 +27,32 @@ static void estimates_are_near_the_truth(void **state)
     for (int b = BAND_MWIR; b <= BAND_LWIR; b++) CHECK(heat.cases[b] == 1 && heat.held[b] == 1);
 }
 
+/* Without antialiasing a band's error is that of a few pixels of vehicles, between which the fields of other pixels fall. */
+static void targets_that_are_not_refined_count(void **state)
+{
+    (void)state;
+    static const ErrorScene far[] = {{"vehicles at 600 m, off", 600, 60, 16, 10, false, 0, false},
+                                     {"vehicles at 1500 m, off", 1500, 150, 12, 15, false, 0, false}};
+    Tally rays = {0};
+    for (int k = 0; k < 2; k++) {
+        TrialScene scene;
+        open_scene(&scene, &lab.ground, &far[k]);
+        RenderRequest request = request_of(&scene, &far[k]);
+        request.view = trial_view(&scene, far[k].back_m, far[k].above_m, far[k].hfov_deg * rad_per_deg, 256, 192);
+        request.edge_samples = request.target_samples = 0;
+        TrialFrame       frame = frame_of(&scene, &request, 0);
+        const FrameError error = error_of(&frame);
+        request.budget  = false;
+        request.samples = 16;
+        const TrialFrame better = frame_of(&scene, &request, 1);
+        for (int b = 0; b < radiance_bands; b++)
+            judge(&rays, far[k].name, "sampling", (Band)b, error.share[b][ERROR_SAMPLING],
+                  apart(&frame.picture, &better.picture, (Band)b));
+        trial_scene_close(&scene);
+    }
+    CHECK(nine_in_ten(&rays, "sampling, off"));
+}
+
 /* What the tests count by can fail, in one band alone, too; and an estimate that is two and a half times the truth
  * does. */
 static void too_few_are_too_few(void **state)
@@ -44,6 +70,7 @@ static void too_few_are_too_few(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(too_few_are_too_few), cmocka_unit_test(estimates_are_near_the_truth)};
+        cmocka_unit_test(too_few_are_too_few), cmocka_unit_test(estimates_are_near_the_truth),
+        cmocka_unit_test(targets_that_are_not_refined_count)};
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }
