@@ -173,22 +173,21 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
         uint64_t       left_out = 0;
 
         some->count = some->columns = 0;
+        visibility_lie_beyond(sums->beyond, rules->visibility, index, &s->rays, s->hits.range_m);
         for (int i = 0; i < s->hits.count; i++) {
             if (s->hits.entity[i] == id) {
                 count_seen(sums, index, rules, s, block, share, i);
                 continue;
             }
-            const double o_enu[3] = {s->rays.o_enu[0][i], s->rays.o_enu[1][i], s->rays.o_enu[2][i]};
-            const double d_enu[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
-            if (!visibility_may_lie_beyond(rules->visibility, index, o_enu, d_enu, s->hits.range_m[i])) {
+            if (!sums->beyond[i]) {
                 left_out++;
                 continue;
             }
-            const int to      = some->count++;
+            const int to = some->count++;
             sums->some_index[to] = i;
             for (int k = 0; k < 3; k++) {
-                some->o_enu[k][to] = o_enu[k];
-                some->d_enu[k][to] = d_enu[k];
+                some->o_enu[k][to] = s->rays.o_enu[k][i];
+                some->d_enu[k][to] = s->rays.d_enu[k][i];
             }
             some->far_m[to] = INFINITY;
         }

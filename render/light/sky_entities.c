@@ -4,8 +4,10 @@
 
 #include "pitviper_simd.h"
 
+#include <sched.h>
+
 enum { grid_directions = 28 /* a point */, grid_least = 3, grid_most = 48 /* places over an entity's box, a side */ };
-enum { task_places = 32 };
+enum { task_places = 32 }; /* points that are traced together */
 static const double grid_px = 2.75;
 
 Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity *posed, const double box_px[4],
@@ -37,11 +39,15 @@ Status sky_entities_tasks(SkyVisibility *v, Arena *arena)
     v->task_entity = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_entity);
     v->task_first  = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_first);
     if (!v->task_entity || !v->task_first) return STATUS_NO_MEMORY;
-    for (int k = 0; k < v->on_image; k++)
-        for (int first = 0; first < v->entity[k].columns * v->entity[k].rows; first += task_places) {
+    for (int k = 0; k < v->on_image; k++) {
+        SkyEntity *e = &v->entity[k];
+        e->first_task = v->tasks;
+        for (int first = 0; first < e->columns * e->rows; first += task_places) {
             v->task_entity[v->tasks]  = k;
             v->task_first[v->tasks++] = first;
         }
+        e->tasks = v->tasks - e->first_task;
+    }
     return STATUS_OK;
 }
 
@@ -54,7 +60,7 @@ static uint64_t spot_key(int entity, int spot)
 int sky_visibility_tasks(const SkyVisibility *v) { return v->tasks; }
 
 /* Traces the visible surface of the entity at some points of its grid, and computes the light there. */
-void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
+static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
 {
     const SkyEntity    *e = &v->entity[v->task_entity[task]];
     const int           index = e->index, first = v->task_first[task];
@@ -110,6 +116,39 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
         sky_answer(&found, v, n_enu, &w->change[k]);
         memcpy(e->spot.factor[of[k]], found.factor, sizeof found.factor);
         e->spot.value[SPOT_PART][of[k]] = places->part[k];
+    }
+}
+
+void sky_visibility_task(const SkyVisibility *v, SkyWorker *w, int task)
+{
+    SkyEntity *e = &v->entity[v->task_entity[task]];
+    ask_points(v, w, task);
+    atomic_fetch_add_explicit(&e->taken, 1, memory_order_relaxed);
+    atomic_fetch_add_explicit(&e->done, 1, memory_order_release);
+}
+
+/* Each thread takes tasks that none has taken, and waits for those of others: these wait for nobody. */
+static void complete(const SkyVisibility *v, SkyWorker *w, SkyEntity *e)
+{
+    if (atomic_load_explicit(&e->done, memory_order_acquire) == e->tasks) return;
+    for (;;) {
+        const int k = atomic_fetch_add_explicit(&e->taken, 1, memory_order_relaxed);
+        if (k >= e->tasks) break;
+        ask_points(v, w, e->first_task + k);
+        atomic_fetch_add_explicit(&e->done, 1, memory_order_release);
+    }
+    while (atomic_load_explicit(&e->done, memory_order_acquire) < e->tasks) sched_yield();
+}
+
+void sky_entities_complete(const SkyVisibility *v, SkyWorker *w, const Hits *hits)
+{
+    uint32_t before = 0;
+    for (int i = 0; i < hits->count; i++) {
+        const uint32_t entity = hits->entity[i];
+        if (entity == 0 || entity == before || !(hits->range_m[i] < INFINITY)) continue;
+        const int of = v->grid_of[entity - 1];
+        if (of > 0) complete(v, w, &v->entity[of - 1]);
+        before = entity;
     }
 }
 

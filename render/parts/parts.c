@@ -285,6 +285,21 @@ const double (*parts_node_corners(const PosedNode *node, int *count))[3]
     return (const double (*)[3])node->mesh->corner;
 }
 
+void parts_node_box(double corner[8][3], const PosedNode *node)
+{
+    const NodeMesh *mesh = node->mesh;
+    for (int k = 0; k < 8; k++)
+        for (int c = 0; c < 3; c++) corner[k][c] = mesh->centre[c] + (k >> c & 1 ? mesh->half[c] : -mesh->half[c]);
+}
+
+int parts_largest_node(const PosedEntity *entity)
+{
+    int largest = 0;
+    for (int k = 1; k < entity->node_count; k++)
+        if (entity->node[k].mesh->radius_m > entity->node[largest].mesh->radius_m) largest = k;
+    return largest;
+}
+
 const double (*parts_node_triangle(const PosedNode *node, int k))[3]
 {
     return k < node->mesh->triangle_count ? (const double (*)[3])node->mesh->facet[k].corner : NULL;

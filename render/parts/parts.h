@@ -48,6 +48,11 @@ typedef struct PartHit {
 /* All vertices of a posed node, each once, in its axes. */
 const double (*parts_node_corners(const PosedNode *node, int *count))[3];
 
+/* The corners of a box that holds them, in its axes. */
+void parts_node_box(double corner[8][3], const PosedNode *node);
+/* The node of the largest sphere; of equals, the first. */
+int parts_largest_node(const PosedEntity *entity);
+
 /* The three corners of its triangle number k, in its axes; NULL: k is out of range. */
 const double (*parts_node_triangle(const PosedNode *node, int k))[3];
 

@@ -22,7 +22,7 @@ typedef enum Skip {
     SKIP_CELL,          /* rays over a small target's box that miss it */
     SKIP_RETRACE,       /* a pixel's first ray, when more are traced: its planes still hold its hit */
     SKIP_SMOKE,         /* smoke and dust that a block of pixels cannot see */
-    SKIP_LIGHT,         /* light of sample points that a neighbouring hit has computed already in this frame */
+    SKIP_LIGHT,         /* light of sample points that a neighbouring hit has computed already in this frame, or that none needs */
     SKIP_TREE,          /* entities that the tree of their spheres leaves out: blocks, rays, sun rays, places near */
     SKIP_COUNT
 } Skip;

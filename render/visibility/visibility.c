@@ -453,16 +453,24 @@ void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *ray
                                                    !skips(v->skips_off, SKIP_PART));
 }
 
-bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m)
+/* As rays_meet_sphere: plain arrays, no branches. */
+void visibility_lie_beyond(uint8_t *may, const Visibility *v, int index, const Rays *rays, const double *range_m)
 {
     const PosedEntity *entity = visibility_posed(v, index);
-    double             m[3], across[3];
-    if (!skips(v->skips_off, SKIP_AMODAL)) return true;
-    if (entity->model < 0) return false;
-    v3_sub(m, entity->centre_enu, o_enu);
-    const double along = v3_dot(m, d_enu), past_m = range_m - along;
-    if (!(past_m < entity->radius_m)) return false;
-    v3_add_scaled(across, m, -along, d_enu);
-    const double left = entity->radius_m * entity->radius_m - v3_dot(across, across);
-    return left > 0 && (past_m <= 0 || past_m * past_m < left);
+    const double      *ox = rays->o_enu[0], *oy = rays->o_enu[1], *oz = rays->o_enu[2];
+    const double      *dx = rays->d_enu[0], *dy = rays->d_enu[1], *dz = rays->d_enu[2];
+    const double       x = entity->centre_enu[0], y = entity->centre_enu[1], z = entity->centre_enu[2];
+    const double       radius_m = entity->radius_m;
+    const bool         all = !skips(v->skips_off, SKIP_AMODAL);
+    if (all || entity->model < 0) {
+        memset(may, all, (size_t)rays->count);
+        return;
+    }
+    for (int i = 0; i < rays->count; i++) {
+        const double mx = x - ox[i], my = y - oy[i], mz = z - oz[i];
+        const double along = mx * dx[i] + my * dy[i] + mz * dz[i], past_m = range_m[i] - along;
+        const double cx = mx - along * dx[i], cy = my - along * dy[i], cz = mz - along * dz[i];
+        const double left = radius_m * radius_m - (cx * cx + cy * cy + cz * cz);
+        may[i] = (past_m < radius_m) & (left > 0) & ((past_m <= 0) | (past_m * past_m < left));
+    }
 }

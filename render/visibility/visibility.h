@@ -44,6 +44,10 @@ struct PosedEntity;
 int visibility_count(const Visibility *v);
 const struct PosedEntity *visibility_posed(const Visibility *v, int index);
 
+/* Where there are many entities: rays are tested with the boxes of those that are posed by now, and no longer with their
+ * spheres. No bit depends on it. One thread, before the rays. */
+void visibility_tighten(const Visibility *v);
+
 /* The table that Hits.material indexes: set before anything is traced. Without: all 0. It must outlive the frame. */
 void visibility_materials(Visibility *v, const Materials *materials);
 
@@ -92,9 +96,9 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
 /* Whether each ray would meet entity `index` with nothing else in the world (amodal truth). */
 void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters);
 
-/* Whether any part of entity `index` may lie farther along a ray than the first hit, at range_m, of a search that
- * included it; otherwise the ray misses it. True without SKIP_AMODAL. */
-bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m);
+/* Whether any part of entity `index` may lie farther along each ray than its first hit, at range_m, of a search that
+ * included it; otherwise the ray misses it. All 1 without SKIP_AMODAL. */
+void visibility_lie_beyond(uint8_t *may, const Visibility *v, int index, const Rays *rays, const double *range_m);
 
 /* Bounding box of an entity on the image (of its vertices; through a lens, which bows them, of its edges), clipped to
  * nothing: x0, y0, x1, y1 in px. False when any of its box is behind the eye. */

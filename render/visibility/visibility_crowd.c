@@ -54,6 +54,16 @@ static int list_rays(int list[broad_packet], const uint8_t *ask, int count)
     return listed;
 }
 
+/* The next number after one that is finite and not below 0. */
+static double next_up(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits++;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
 static void visit_first(void *user, int item)
 {
     Walk   *w = user;
@@ -64,8 +74,10 @@ static void visit_first(void *user, int item)
     const PosedEntity *entity = visibility_posed(w->v, item);
     if (entity->model < 0) return;
     /* at equal range the lower index has priority */
-    for (int k = 0; k < w->count; k++)
-        until_m[k] = w->entity[k] > (uint32_t)item + 1 ? nextafter(w->rays.limit_m[k], INFINITY) : w->rays.limit_m[k];
+    for (int k = 0; k < w->count; k++) {
+        until_m[k] = w->rays.limit_m[k];
+        if (w->entity[k] > (uint32_t)item + 1) until_m[k] = next_up(until_m[k]);
+    }
     rays_meet_sphere(ask, w->count, w->o, w->d, until_m, entity->centre_enu, entity->radius_m);
     const int listed = list_rays(list, ask, w->count);
     if (listed == 0) return;

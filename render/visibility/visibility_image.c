@@ -144,30 +144,51 @@ static void grow_by_bowed_edges(double box_px[4], const PosedEntity *entity, con
     }
 }
 
+/* Widens the box by the projections of count points of a node; false: one is not in front of the eye. */
+static bool grow_by_points(double box_px[4], const View *view, const double r_cam_from_node[9], const double p_cam[3],
+                           const double (*point)[3], int count)
+{
+    for (int c = 0; c < count; c++) {
+        double at[3], image_px[2];
+        m3_mul_v3(at, r_cam_from_node, point[c]);
+        v3_add(at, at, p_cam);
+        if (!(at[2] > 0)) return false;
+        view_project(image_px, view, at);
+        grow_image_box(box_px, image_px);
+    }
+    return true;
+}
+
+/* Whether all of a node's own box, which no vertex of it exceeds, lies within box_px. */
+static bool node_lies_within(const double box_px[4], const View *view, const double r_cam_from_node[9],
+                             const double p_cam[3], const PosedNode *node)
+{
+    double around[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY}, corner[8][3];
+    parts_node_box(corner, node);
+    return grow_by_points(around, view, r_cam_from_node, p_cam, (const double (*)[3])corner, 8) &&
+           around[0] > box_px[0] && around[1] > box_px[1] && around[2] < box_px[2] && around[3] < box_px[3];
+}
+
+/* The vertices of the largest node first: most others lie within its box. */
 bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index)
 {
     const PosedEntity *entity = visibility_posed(v, index);
+    const bool         lens = view_has_lens(view);
     double             box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     if (entity->model < 0) return false;
-    for (int k = 0; k < entity->node_count; k++) {
-        const PosedNode *node = &entity->node[k];
+    const int largest = parts_largest_node(entity);
+    for (int n = 0; n < entity->node_count; n++) {
+        const PosedNode *node = &entity->node[n == 0 ? largest : n <= largest ? n - 1 : n];
         int              count;
         const double   (*corner)[3] = parts_node_corners(node, &count);
         double           r_cam_from_node[9], from_eye[3], p_cam[3];
         m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
         v3_sub(from_eye, node->p_enu, view->p_enu);
         m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
-        for (int c = 0; c < count; c++) {
-            double at[3];
-            m3_mul_v3(at, r_cam_from_node, corner[c]);
-            v3_add(at, at, p_cam);
-            if (!(at[2] > 0)) return false;
-            double image_px[2];
-            view_project(image_px, view, at);
-            grow_image_box(box, image_px);
-        }
+        if (n > 0 && !lens && count > 8 && node_lies_within(box, view, r_cam_from_node, p_cam, node)) continue;
+        if (!grow_by_points(box, view, r_cam_from_node, p_cam, corner, count)) return false;
     }
-    if (view_has_lens(view)) grow_by_bowed_edges(box, entity, view);
+    if (lens) grow_by_bowed_edges(box, entity, view);
     memcpy(box_px, box, sizeof box);
     return true;
 }
