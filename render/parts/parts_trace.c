@@ -153,17 +153,17 @@ static Bundle bundle_of(const Chunk *chunk)
     return b;
 }
 
-/* The sphere's centre may be no farther from the cone's side than this. */
-static bool bundle_may_meet(const Bundle *b, const PosedNode *node)
+/* The sphere's centre may be no farther from the cone's side than this: across * cosine - along * sine <= reach_m. */
+static inline bool bundle_may_meet(const Bundle *b, const PosedNode *node)
 {
-    double turned[3], v[3], across[3];
     if (!(b->cosine > 0)) return true;
-    m3_mul_v3(turned, node->r_enu_from_node, node->mesh->centre);
-    for (int c = 0; c < 3; c++) v[c] = node->p_enu[c] + turned[c] - b->origin[c];
-    const double along = v3_dot(v, b->axis);
-    v3_add_scaled(across, v, -along, b->axis);
-    const double away_m = v3_length(across) * b->cosine - along * b->sine;
-    return away_m <= (node->mesh->radius_m + b->radius_m) * (1 + 1e-9) + 1e-6 + 1e-9 * fabs(along);
+    const double x = node->centre_enu[0] - b->origin[0], y = node->centre_enu[1] - b->origin[1];
+    const double z = node->centre_enu[2] - b->origin[2];
+    const double along = x * b->axis[0] + y * b->axis[1] + z * b->axis[2];
+    const double ax = x - along * b->axis[0], ay = y - along * b->axis[1], az = z - along * b->axis[2];
+    const double reach_m = (node->mesh->radius_m + b->radius_m) * (1 + 1e-9) + 1e-6 + 1e-9 * fabs(along);
+    const double most = reach_m + along * b->sine;
+    return most >= 0 && (ax * ax + ay * ay + az * az) * (b->cosine * b->cosine) <= most * most;
 }
 
 /* ---- candidates and the exact test ------------------------------------------------------------ */
