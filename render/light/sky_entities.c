@@ -59,18 +59,41 @@ static uint64_t spot_key(int entity, int spot)
 
 int sky_visibility_tasks(const SkyVisibility *v) { return v->tasks; }
 
+/* Leaves out the rays that would miss the entity if it were alone, and ends the others just beyond it: the tree is not
+ * followed behind it. Returns their number. */
+static int keep_meeting(Rays *rays, int point[task_places], const Visibility *v, int index)
+{
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    double              range_m[task_places];
+    PartHit             hit[task_places];
+    int                 all[task_places], kept = 0;
+    for (int i = 0; i < rays->count; i++) range_m[i] = INFINITY, all[i] = i;
+    parts_first_hits(range_m, hit, visibility_posed(v, index), o, d, rays->far_m, all, rays->count, false);
+    for (int i = 0; i < rays->count; i++) {
+        if (!(range_m[i] < INFINITY)) continue;
+        for (int c = 0; c < 3; c++) {
+            rays->o_enu[c][kept] = rays->o_enu[c][i];
+            rays->d_enu[c][kept] = rays->d_enu[c][i];
+        }
+        rays->far_m[kept] = range_m[i] * (1 + 1e-9) + 1e-3;
+        point[kept++] = point[i];
+    }
+    return rays->count = kept;
+}
+
 /* Traces the visible surface of the entity at some points of its grid, and computes the light there. */
 static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
 {
     const SkyEntity    *e = &v->entity[v->task_entity[task]];
     const int           index = e->index, first = v->task_first[task];
     const View         *view = v->scene.view;
-    const int           all = e->columns * e->rows, count = all - first < task_places ? all - first : task_places;
+    const int           all = e->columns * e->rows;
     const HemisphereScene  *scene = &v->scene.gather;
     VisibilityCounters  unused = {0};
     Rays               *rays = &w->rays;
     Hits               *met = &w->met, *places = &w->places;
-    int                 of[task_places];
+    int                 of[task_places], point[task_places], count = all - first < task_places ? all - first : task_places;
     double              box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (int i = 0; i < count; i++) {
         double d_enu[3];
@@ -78,11 +101,14 @@ static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
                  e->y0_px + e->step_px[1] * ((first + i) / e->columns + 0.5));
         for (int c = 0; c < 3; c++) rays->o_enu[c][i] = view->p_enu[c], rays->d_enu[c][i] = d_enu[c];
         rays->far_m[i] = INFINITY;
+        point[i] = first + i;
     }
     rays->count = count, rays->columns = 0;
+    if (skips(v->scene.skips_off, SKIP_LIGHT)) count = keep_meeting(rays, point, scene->visibility, index);
+    if (count == 0) return;
     /* those that the rows of these points may see: with many entities a fraction of all */
-    const double y_px = e->y0_px + e->step_px[1] * (first / e->columns),
-                 end_px = e->y0_px + e->step_px[1] * ((first + count - 1) / e->columns + 1);
+    const double y_px = e->y0_px + e->step_px[1] * (point[0] / e->columns),
+                 end_px = e->y0_px + e->step_px[1] * (point[count - 1] / e->columns + 1);
     const int    seen = visibility_block_entities(w->near, scene->visibility, view, e->x0_px, y_px,
                                                   e->x0_px + e->step_px[0] * e->columns, end_px, v->scene.hidden_entity,
                                                   &unused);
@@ -91,8 +117,8 @@ static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
     for (int i = 0; i < count; i++) {
         if (met->entity[i] != (uint32_t)index + 1) continue;
         const int to = places->count++;
-        of[to] = first + i;
-        w->key[to] = spot_key(index, first + i);
+        of[to] = point[i];
+        w->key[to] = spot_key(index, point[i]);
         places->entity[to] = met->entity[i], places->part[to] = met->part[i];
         for (int c = 0; c < 3; c++) {
             places->p_enu[c][to] = met->p_enu[c][i];
