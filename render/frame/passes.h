@@ -32,6 +32,7 @@ typedef struct Worker {
     uint64_t       key[hits_capacity];
     double         area_px[hits_capacity];
     uint8_t        meets[hits_capacity];
+    EntityHits     known;
     Hits           hits;    /* before some of them are removed or split */
     Rays           rays;
 } Worker;

@@ -12,6 +12,7 @@
 #include "entities/table/snapshot.h"
 #include "render/forest/forest.h"
 #include "render/materials/materials.h"
+#include "render/parts/parts.h"
 #include "render/parts/tracer.h"
 #include "render/scene/hits.h"
 #include "render/scene/skip.h"
@@ -82,6 +83,17 @@ int visibility_block_entities(int *list, const Visibility *v, const View *view, 
  * but `hidden`, culled per ray. Thread-safe; counters are the caller's own. */
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                           int hidden, VisibilityCounters *counters);
+
+/* What rays meet of one entity with nothing else in the world; INFINITY: nothing. */
+typedef struct EntityHits {
+    int     entity; /* snapshot index */
+    double  range_m[hits_capacity];
+    PartHit hit[hits_capacity];
+} EntityHits;
+void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters);
+/* As visibility_first_hit, for rays of which that is known: the entity is not traced again. */
+void visibility_first_hit_knowing(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                                  int hidden, const EntityHits *known, VisibilityCounters *counters);
 
 /* The same as if there were neither ground nor plants. */
 void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,

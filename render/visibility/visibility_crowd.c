@@ -11,6 +11,8 @@ typedef struct Walk {
     /* first hits */
     const int        *list;
     int               list_count, hidden;
+    const EntityHits *known;       /* of rays of the block: */
+    const int        *index;       /* [count] */
     uint32_t          entity[broad_packet];
     PartHit           hit[broad_packet];
     /* any hits */
@@ -78,6 +80,16 @@ static void visit_first(void *user, int item)
         until_m[k] = w->rays.limit_m[k];
         if (w->entity[k] > (uint32_t)item + 1) until_m[k] = next_up(until_m[k]);
     }
+    if (w->known && w->known->entity == item) {
+        for (int k = 0; k < w->count; k++) {
+            const double range_m = w->known->range_m[w->index[k]];
+            if (!(range_m < until_m[k])) continue;
+            w->rays.limit_m[k] = range_m;
+            w->hit[k]          = w->known->hit[w->index[k]];
+            w->entity[k]       = (uint32_t)item + 1;
+        }
+        return;
+    }
     rays_meet_sphere(ask, w->count, w->o, w->d, until_m, entity->centre_enu, entity->radius_m);
     const int listed = list_rays(list, ask, w->count);
     if (listed == 0) return;
@@ -96,11 +108,12 @@ static void visit_first(void *user, int item)
 
 void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v, int count,
                       const double *const o[3], const double *const d[3], const int *order, const int *list,
-                      int list_count, int hidden)
+                      int list_count, int hidden, const EntityHits *known)
 {
-    Walk walk = {.v = v, .counts = counts, .list = list, .list_count = list_count, .hidden = hidden};
+    Walk walk = {.v = v, .counts = counts, .list = list, .list_count = list_count, .hidden = hidden, .known = known};
     for (int first = 0; first < count; first += broad_packet) {
         take_rays(&walk, o, d, order + first, count - first < broad_packet ? count - first : broad_packet);
+        walk.index = order + first;
         for (int k = 0; k < walk.count; k++) {
             const int i = order[first + k];
             walk.rays.limit_m[k] = limit_m[i];
