@@ -61,7 +61,7 @@ int sky_visibility_tasks(const SkyVisibility *v) { return v->tasks; }
 
 /* Leaves out the rays that would miss the entity if it were alone, and ends the others just beyond it: the tree is not
  * followed behind it. Returns their number. */
-static int keep_meeting(Rays *rays, int point[task_places], const Visibility *v, int index)
+static int keep_meeting(Rays *rays, int point[task_places], const Visibility *v, int index, bool ask_all)
 {
     const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
     const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
@@ -69,7 +69,7 @@ static int keep_meeting(Rays *rays, int point[task_places], const Visibility *v,
     PartHit             hit[task_places];
     int                 all[task_places], kept = 0;
     for (int i = 0; i < rays->count; i++) range_m[i] = INFINITY, all[i] = i;
-    parts_first_hits(range_m, hit, visibility_posed(v, index), o, d, rays->far_m, all, rays->count, false);
+    parts_first_hits(range_m, hit, visibility_posed(v, index), o, d, rays->far_m, all, rays->count, ask_all);
     for (int i = 0; i < rays->count; i++) {
         if (!(range_m[i] < INFINITY)) continue;
         for (int c = 0; c < 3; c++) {
@@ -104,7 +104,8 @@ static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
         point[i] = first + i;
     }
     rays->count = count, rays->columns = 0;
-    if (skips(v->scene.skips_off, SKIP_LIGHT)) count = keep_meeting(rays, point, scene->visibility, index);
+    if (skips(v->scene.skips_off, SKIP_LIGHT)) count = keep_meeting(rays, point, scene->visibility, index,
+                                                                              !skips(v->scene.skips_off, SKIP_PART));
     if (count == 0) return;
     /* those that the rows of these points may see: with many entities a fraction of all */
     const double y_px = e->y0_px + e->step_px[1] * (point[0] / e->columns),

@@ -478,12 +478,14 @@ void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *ra
     out->entity = index;
     for (int i = 0; i < rays->count; i++) out->range_m[i] = INFINITY;
     if (entity->model < 0) return;
-    rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    else memset(meets, 1, sizeof meets);
     order_rays(order, rays->count, rays->columns);
     const int listed = list_asked(list, order, meets, rays->count);
     counters->skipped[SKIP_SPHERE] += (uint64_t)(rays->count - listed);
     counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
-                                    parts_first_hits(out->range_m, out->hit, entity, o, d, rays->far_m, list, listed, false);
+                                    parts_first_hits(out->range_m, out->hit, entity, o, d, rays->far_m, list, listed,
+                                                     !skips(v->skips_off, SKIP_PART));
 }
 
 /* As rays_meet_sphere: plain arrays, no branches. */

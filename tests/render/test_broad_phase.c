@@ -178,6 +178,70 @@ static void rays_lose_nothing(void **state)
     }
 }
 
+/* The inner ball of a sphere: a third of it, off its middle. */
+static double inner(double centre[3], int i)
+{
+    for (int c = 0; c < 3; c++) centre[c] = sphere[i][c] + (c - 1) * 0.4 * sphere[i][3];
+    return sphere[i][3] / 3;
+}
+
+typedef struct Items {
+    int count, odd; /* odd: only these have boxes of their own */
+} Items;
+
+static bool box_of_inner(void *user, int at, double low[3], double high[3])
+{
+    const Items *items = user;
+    double       centre[3];
+    int          i = 0;
+    while (i < items->count && item[i] != at) i++;
+    if (i == items->count || i % 2 != items->odd) return false;
+    const double r = inner(centre, i);
+    for (int c = 0; c < 3; c++) low[c] = centre[c] - r, high[c] = centre[c] + r;
+    return true;
+}
+
+/* With boxes of their own: rays that meet an inner ball still come to its item, and many others no more. */
+static void closer_boxes_lose_nothing_in_them(void **state)
+{
+    (void)state;
+    uint64_t visited[2] = {0}, met = 0;
+    for (int scene = 0; scene < scenes; scene++) {
+        const int   count = strew(scene);
+        BroadPhase *tree = plant(count);
+        Items       items = {count, scene % 2};
+        for (int tight = 0; tight < 2; tight++) {
+            if (tight) broad_phase_tighten(tree, box_of_inner, &items);
+            for (int n = 0; n < 40; n++) {
+                BroadRays rays;
+                Visits    visits = {.rays = &rays};
+                for (int k = 0; k < broad_packet; k++) {
+                    for (int c = 0; c < 3; c++) rays.o[c][k] = -1500 + 71 * ((n * 7 + c * 13 + k) % 43), rays.d[c][k] = (n + c) % 3 ? 0.48 : 0.64;
+                    const double length = sqrt(rays.d[0][k] * rays.d[0][k] + rays.d[1][k] * rays.d[1][k] + rays.d[2][k] * rays.d[2][k]);
+                    for (int c = 0; c < 3; c++) rays.d[c][k] /= length;
+                    rays.limit_m[k] = INFINITY;
+                }
+                broad_phase_rays(tree, &rays, note_visit, &visits);
+                visited[tight] += (uint64_t)visits.count;
+                for (int i = 0; i < count; i++)
+                    for (int k = 0; k < broad_packet && is_sphere(i); k++) {
+                        const double o[3] = {rays.o[0][k], rays.o[1][k], rays.o[2][k]}, d[3] = {rays.d[0][k], rays.d[1][k], rays.d[2][k]};
+                        double       centre[3], m[3], across[3];
+                        const double r = inner(centre, i);
+                        v3_sub(m, centre, o);
+                        const double along = v3_dot(m, d);
+                        v3_add_scaled(across, m, -along, d);
+                        if (along < 0 || v3_dot(across, across) > r * r) continue;
+                        met++;
+                        CHECK(has(visits.count, item[i]));
+                    }
+            }
+        }
+    }
+    CHECK(met > 100);
+    CHECK(visited[1] < visited[0] - visited[0] / 8); /* half of the items have boxes of a ninth of the area */
+}
+
 static void nothing_and_one(void **state)
 {
     (void)state;
@@ -208,6 +272,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(volumes_lose_nothing),
         cmocka_unit_test(rays_lose_nothing),
+        cmocka_unit_test(closer_boxes_lose_nothing_in_them),
         cmocka_unit_test(nothing_and_one),
     };
     return cmocka_run_group_tests(tests, open_arena, close_arena);
