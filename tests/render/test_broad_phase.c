@@ -215,29 +215,33 @@ static void closer_boxes_lose_nothing_in_them(void **state)
             for (int n = 0; n < 40; n++) {
                 BroadRays rays;
                 Visits    visits = {.rays = &rays};
+                hand_draw = (uint64_t)(100 * n + 1); /* the same rays again: close together, past one of the spheres */
+                const double *at = sphere[n * 37 % count];
+                double        o[3], d[3];
+                for (int c = 0; c < 3; c++) o[c] = between(-1500, 1500), d[c] = at[c] + between(-8, 8) - o[c];
+                if (!v3_normalize(d, d)) continue;
                 for (int k = 0; k < broad_packet; k++) {
-                    for (int c = 0; c < 3; c++) rays.o[c][k] = -1500 + 71 * ((n * 7 + c * 13 + k) % 43), rays.d[c][k] = (n + c) % 3 ? 0.48 : 0.64;
-                    const double length = sqrt(rays.d[0][k] * rays.d[0][k] + rays.d[1][k] * rays.d[1][k] + rays.d[2][k] * rays.d[2][k]);
-                    for (int c = 0; c < 3; c++) rays.d[c][k] /= length;
+                    for (int c = 0; c < 3; c++) rays.o[c][k] = o[c] + 0.01 * k, rays.d[c][k] = d[c];
                     rays.limit_m[k] = INFINITY;
                 }
                 broad_phase_rays(tree, &rays, note_visit, &visits);
-                visited[tight] += (uint64_t)visits.count;
+                if (scene != 3 && scene != 5) visited[tight] += (uint64_t)visits.count; /* those have giants, which all meet */
                 for (int i = 0; i < count; i++)
                     for (int k = 0; k < broad_packet && is_sphere(i); k++) {
-                        const double o[3] = {rays.o[0][k], rays.o[1][k], rays.o[2][k]}, d[3] = {rays.d[0][k], rays.d[1][k], rays.d[2][k]};
+                        const double from[3] = {rays.o[0][k], rays.o[1][k], rays.o[2][k]};
                         double       centre[3], m[3], across[3];
                         const double r = inner(centre, i);
-                        v3_sub(m, centre, o);
+                        v3_sub(m, centre, from);
                         const double along = v3_dot(m, d);
                         v3_add_scaled(across, m, -along, d);
-                        if (along < 0 || v3_dot(across, across) > r * r) continue;
+                        if (!(along >= 0 && v3_dot(across, across) <= r * r && r < 1e100)) continue;
                         met++;
                         CHECK(has(visits.count, item[i]));
                     }
             }
         }
     }
+    print_message("closer boxes: %llu visits instead of %llu\n", (unsigned long long)visited[1], (unsigned long long)visited[0]);
     CHECK(met > 100);
     CHECK(visited[1] < visited[0] - visited[0] / 8); /* half of the items have boxes of a ninth of the area */
 }
