@@ -51,6 +51,6 @@ void base_tile(void *user, int worker, int task)
     block_light(w, job);
     block_write(w, job, 1);
     block_add(w, job, 1);
-    if (job->picture->target) block_add_areas(w, job, 1, listed);
+    if (job->picture->target) block_add_areas(w, job, 1, w->list, listed);
     if (job->picture->entity) write_truth(w, job);
 }

@@ -93,9 +93,9 @@ void block_add(Worker *w, const Job *job, double share)
     target_sums_profile(&w->sums, &job->rules, job->request, s, w->area_px);
 }
 
-void block_add_areas(Worker *w, const Job *job, double share, int listed)
+void block_add_areas(Worker *w, const Job *job, double share, const int *list, int listed)
 {
-    target_sums_areas(&w->sums, &job->rules, &w->samples, &w->block, share, w->list, listed, &w->shader.counters);
+    target_sums_areas(&w->sums, &job->rules, &w->samples, &w->block, share, list, listed, &w->shader.counters);
 }
 
 void block_write(Worker *w, const Job *job, double share)

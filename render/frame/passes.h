@@ -27,10 +27,12 @@ typedef struct Worker {
     TargetSums     sums;
     RenderCounters counters; /* without visibility, which is in shader.counters */
     int           *list;    /* [snapshot count]: entities */
+    int           *outline; /* [snapshot count]: those whose areas are sampled again */
     int           *volume;  /* [volumes of the effects] */
     uint64_t       key[hits_capacity];
     double         area_px[hits_capacity];
     uint8_t        meets[hits_capacity];
+    EntityHits     known;
     Hits           hits;    /* before some of them are removed or split */
     Rays           rays;
 } Worker;
@@ -88,7 +90,7 @@ void block_light(Worker *w, const Job *job);
 /* Adds a share of the block's contribution to the sums of the targets and of the range profile; below 0: takes it back. */
 void block_add(Worker *w, const Job *job, double share);
 /* A share of the areas of the listed targets to the sums. */
-void block_add_areas(Worker *w, const Job *job, double share, int listed);
+void block_add_areas(Worker *w, const Job *job, double share, const int *list, int listed);
 /* The block's means into the planes of its channels, with this share; the rest is what they hold. */
 void block_write(Worker *w, const Job *job, double share);
 /* Array of a plane's values at the block's samples; NULL: not requested. */

@@ -28,7 +28,8 @@ typedef struct ErrorBudget {
     double ms;                                   /* wall time */
 } ErrorBudget;
 
-/* Result of a target in this view, in units of pixels: areas, which may be fractions. */
+/* Result of a target in this view, in units of pixels: areas, which may be fractions. Where more than 40 boxes share a tile the
+ * outlines of hidden ones (amodal, occluded_*) are of one sample a pixel (refine.c). */
 typedef struct TargetPixels {
     double visible, amodal;
     /* its own radiance at the aperture, by the area it fills, less by the cube of the cosine off the axis:

@@ -8,12 +8,19 @@
 #include "render/frame/ground_mix.h"
 #include "render/frame/sampling_variance.h"
 
+#include <stdlib.h>
+
 /* One kind of refinement, and the pixels that get it. */
 typedef struct Refinement {
     unsigned has, lacks; /* RefineFlag: pixels with all of these and none of those */
     unsigned bands;
     int      n;
 } Refinement;
+
+enum {
+    few_entities   = 8, /* of a tile: up to here a closer list saves nothing */
+    crowd_entities = 40 /* in a tile: beyond, list_outlines */
+};
 
 /* Whether the planes still hold all that a pixel's own sample contributed to the sums; else it is traced again. */
 static bool planes_remember(const Job *job)
@@ -22,34 +29,82 @@ static bool planes_remember(const Job *job)
            skips(job->request->skips_off, SKIP_RETRACE);
 }
 
-/* Takes back from the sums a share of what the block's pixels contributed with one sample each, restored from the planes
- * before they change. */
-static void take_back(Worker *w, const Job *job, unsigned bands, int listed, bool areas, double share)
+/* What the block's first samples met, one a pixel, from the planes. */
+static void restore_first(Worker *w, const Job *job)
 {
     const Picture *picture = job->picture;
     PixelBlock    *block   = &w->block;
     Samples       *s       = &w->samples;
-    const size_t   pixels  = (size_t)block->pixels;
     block->n = 1;
     pixels_rays(&s->rays, block, &job->request->view);
     s->hits.count   = block->pixels;
     s->hits.several = false;
     s->smoke.any    = false;
-    for (size_t p = 0; p < pixels; p++) {
+    for (size_t p = 0; p < (size_t)block->pixels; p++) {
         const size_t px = pixel_index(job, block->x[p], block->y[p]);
         s->hits.entity[p]  = picture->entity[px];
         s->hits.plant[p]   = picture->instance ? picture->instance[px] : 0;
         s->hits.range_m[p] = picture->range_m[px] * (1 - 1e-6); /* a float's: no farther than it was */
     }
+}
+
+/* Takes back from the sums a share of what the block's pixels contributed with one sample each, but for areas, restored
+ * from the planes before they change. */
+static void take_back(Worker *w, const Job *job, unsigned bands, double share)
+{
+    const Picture *picture = job->picture;
+    PixelBlock    *block   = &w->block;
+    restore_first(w, job);
     ask_bands(w, job, bands);
     for (int plane = 0; plane < picture_plane_count; plane++) {
         float *out = block_values(w, job, plane);
-        for (size_t p = 0; out && p < pixels; p++)
+        for (size_t p = 0; out && p < (size_t)block->pixels; p++)
             out[p] = picture_plane(picture, plane)[pixel_index(job, block->x[p], block->y[p])];
     }
     block_add(w, job, -share);
-    if (areas) block_add_areas(w, job, -share, listed);
     w->shader.counters.skipped[SKIP_RETRACE] += (uint64_t)block->pixels;
+}
+
+static int compare_indices(const void *a, const void *b)
+{
+    const int p = *(const int *)a, q = *(const int *)b;
+    return (p > q) - (p < q);
+}
+
+/* Whether the boxes of many entities share a tile. */
+static bool is_crowd(const Job *job, const Tile *tile)
+{
+    int count = 0;
+    for (int i = 0; i < job->scene.snapshot->count && count <= crowd_entities; i++) {
+        const double *box = job->boxes[i].projected_box;
+        count += job->boxes[i].projected && !job->is_small[i] && box[0] < tile->x1 && box[2] > tile->x0 &&
+                 box[1] < tile->y1 && box[3] > tile->y0;
+    }
+    return count > crowd_entities;
+}
+
+/* The entities whose areas are sampled again, into w->outline. In a crowd only those that the block's first samples or its
+ * present ones show: of what it hides the outline stays as the first samples have it, one a pixel, or every sample would
+ * ask for every hidden vehicle behind it. The error of that: tests/render/test_crowd_areas.c. */
+static int list_outlines(Worker *w, const Job *job, int listed, bool crowd)
+{
+    const PixelBlock *block = &w->block;
+    const Hits       *hits = &w->samples.hits;
+    int               shown[2 * hits_capacity], count = 0, kept = 0;
+    if (!crowd || job->request->samples > 1) {
+        memcpy(w->outline, w->list, (size_t)listed * sizeof *w->list);
+        return listed;
+    }
+    for (int i = 0; i < hits->count; i++)
+        if (hits->entity[i] && (i == 0 || hits->entity[i] != hits->entity[i - 1])) shown[count++] = (int)hits->entity[i] - 1;
+    for (int p = 0; p < block->pixels; p++) {
+        const uint32_t first = job->picture->entity[pixel_index(job, block->x[p], block->y[p])];
+        if (first) shown[count++] = (int)first - 1;
+    }
+    qsort(shown, (size_t)count, sizeof *shown, compare_indices);
+    for (int n = 0; n < count; n++)
+        if (n == 0 || shown[n] != shown[n - 1]) w->outline[kept++] = shown[n];
+    return kept;
 }
 
 /* Points a side at which the ground class of a sample of n x n is looked up: twice as fine as edges of parts are
@@ -78,14 +133,14 @@ static void add_variance(const Worker *w, const Job *job, double sum[picture_pla
 }
 
 /* Samples the block's pixels with n more samples a side. law: receives their squared errors; NULL: not needed. */
-static void refine_block(Worker *w, const Job *job, const Refinement *how, int listed, double *law)
+static void refine_block(Worker *w, const Job *job, const Refinement *how, int listed, bool crowd, double *law)
 {
     PixelBlock *block = &w->block;
     Samples    *s     = &w->samples;
     const bool  areas = job->picture->target && !(how->has & refine_sun), ground = how->has & refine_ground;
     const bool  sums  = job->picture->target || job->picture->profile, remembered = planes_remember(job);
     const double share = how->has & refine_plants ? (double)(how->n * how->n) / (1 + how->n * how->n) : 1; /* of them in all */
-    if (sums && remembered && !ground) take_back(w, job, how->bands, listed, areas, share);
+    if (sums && remembered && !ground) take_back(w, job, how->bands, share);
     block->n = how->n;
     if (ground) {
         double box_px[4];
@@ -98,10 +153,11 @@ static void refine_block(Worker *w, const Job *job, const Refinement *how, int l
         samples_sun(&w->shader, &job->scene, s);
         w->counters.rays_edges += (uint64_t)s->rays.count;
     }
+    const int  outlines = areas && !ground ? list_outlines(w, job, listed, crowd) : 0;
     const bool step = how->has & refine_step;
     if (step && areas) { /* of the samples as they were shot */
         samples_smoke(&job->scene, s);
-        block_add_areas(w, job, share, listed);
+        block_add_areas(w, job, share, w->outline, outlines);
     }
     if (ground) split_ground(w, job, ground_side(job, 1), ground_mix_most);
     else if (step && job->scene.world->landscape) split_ground(w, job, ground_side(job, block->n), step_kinds);
@@ -109,15 +165,29 @@ static void refine_block(Worker *w, const Job *job, const Refinement *how, int l
     if (law) add_variance(w, job, law);
     block_write(w, job, share);
     block_add(w, job, share);
-    if (areas && !step && !ground) block_add_areas(w, job, share, listed);
-    if (ground || !sums || remembered) return;
+    if (areas && !step && !ground) block_add_areas(w, job, share, w->outline, outlines);
+    if (ground || !sums) return;
+    if (remembered) {
+        restore_first(w, job);
+        if (areas) block_add_areas(w, job, -share, w->outline, outlines);
+        return;
+    }
     block->n = job->request->samples;
     block_trace(w, job, how->bands, listed);
     samples_sun(&w->shader, &job->scene, s);
     block_light(w, job);
     block_add(w, job, -share);
-    if (areas) block_add_areas(w, job, -share, listed);
+    if (areas) block_add_areas(w, job, -share, w->outline, outlines);
     w->counters.rays_edges += (uint64_t)s->rays.count;
+}
+
+/* The entities that the block may see: where there are many, those of its own pixels. */
+static int list_block(Worker *w, const Job *job, int listed)
+{
+    double box_px[4];
+    if (listed <= few_entities) return listed;
+    pixels_box(box_px, &w->block);
+    return list_entities(w, job, box_px, false);
 }
 
 void refine_tile(void *user, int worker, int task)
@@ -149,7 +219,8 @@ void refine_tile(void *user, int worker, int task)
             w->counters.pixels_refined += flags != 0;
         }
     if (!any) return;
-    const int listed = list_entities(w, job, box_px, false);
+    const int  listed = list_entities(w, job, box_px, false);
+    const bool crowd = is_crowd(job, &tile);
     for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
         const Refinement *how = &ways[k];
         if ((any & how->has) != how->has || how->bands == 0) continue;
@@ -163,9 +234,9 @@ void refine_tile(void *user, int worker, int task)
                 const int each = how->n * how->n * (how->has & refine_ground ? ground_mix_most
                                                     : how->has & refine_step ? step_kinds : 1);
                 if ((w->block.pixels + 1) * each <= hits_capacity) continue;
-                refine_block(w, job, how, listed, law);
+                refine_block(w, job, how, list_block(w, job, listed), crowd, law);
                 w->block.pixels = 0;
             }
-        if (w->block.pixels > 0) refine_block(w, job, how, listed, law);
+        if (w->block.pixels > 0) refine_block(w, job, how, list_block(w, job, listed), crowd, law);
     }
 }

@@ -27,7 +27,8 @@ static Status create_worker(Worker **out, const Job *job, Arena *arena)
     if (!w) return STATUS_NO_MEMORY;
     w->list   = arena_alloc(arena, (size_t)entities, sizeof *w->list);
     w->volume = arena_alloc(arena, (size_t)job->scene.effects.count + 1, sizeof *w->volume);
-    if (!w->list || !w->volume) return STATUS_NO_MEMORY;
+    w->outline = arena_alloc(arena, (size_t)entities, sizeof *w->outline);
+    if (!w->list || !w->outline || !w->volume) return STATUS_NO_MEMORY;
     const Status status = samples_create(&w->samples, hits_capacity, arena);
     return status == STATUS_OK ? target_sums_create(&w->sums, entities, job->request->profile_bins, arena) : status;
 }
@@ -75,7 +76,8 @@ static Status prepare_sky(Job *job, Pool *pool, Arena *arena)
     Status status = sky_visibility_create(&job->scene.sky, &scene, arena);
     for (int w = 0; w < pool_threads(pool) && status == STATUS_OK; w++)
         status = sky_worker_create(&job->worker[w]->shader.sky, job->scene.sky, arena);
-    if (status == STATUS_OK) pool_run(pool, sky_visibility_tasks(job->scene.sky), ask_sky, job);
+    if (status == STATUS_OK && !skips(request->skips_off, SKIP_LIGHT))
+        pool_run(pool, sky_visibility_tasks(job->scene.sky), ask_sky, job);
     return status;
 }
 
@@ -122,6 +124,7 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     choose_rules(job);
     if (request->truth || request->target_samples > 0 || looks_for_edges(request) || request->sky_visibility)
         pool_run(pool, scene->snapshot->count, project_target, job);
+    visibility_tighten(scene->visibility);
     status = prepare_sky(job, pool, arena);
     if (status == STATUS_OK && request->target_samples > 0) status = target_grids_plan(job, arena);
     job->rules.coverer = job->coverer;

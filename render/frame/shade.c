@@ -66,7 +66,8 @@ Status samples_create(Samples *out, int capacity, Arena *arena)
 void samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed)
 {
     const double t0 = wall_clock_s();
-    visibility_first_hit(&s->hits, scene->visibility, &s->rays, list, listed, scene->hidden_entity, &shader->counters);
+    visibility_first_hit_knowing(&s->hits, scene->visibility, &s->rays, list, listed, scene->hidden_entity, s->known,
+                                 &shader->counters);
     s->hits.several = false;
     shader->visibility_s += wall_clock_s() - t0;
 }

@@ -49,6 +49,7 @@ typedef struct Samples {
     const uint64_t *key;       /* a key a sample that seeds its random choices; with sky_samples only */
     const int *volume;         /* indices into effects.volume that these rays may meet, nearest first */
     int      volumes;
+    const EntityHits *known;   /* of the rays, where one entity was traced alone; NULL: none */
     /* results */
     Hits      hits;
     float    *sun;                      /* share of the direct sun that arrives, 0 .. 1; the same in all channels */

@@ -273,17 +273,20 @@ static void grow_amodal(void *user, const TargetGrid *f, int pixel, int x, int y
     grow_pixel_box(user, x, y);
 }
 
-/* Compacts the cells whose ray would meet the target if it were alone in the world: no other ray is traced. Without
- * SKIP_CELL all stay. Returns their number. */
+/* Compacts the cells whose ray would meet the target if it were alone in the world: no other ray is traced, and the target
+ * itself not again. Without SKIP_CELL all stay, and are. Returns their number. */
 static int keep_amodal(int *cell, TargetGrid *f, Worker *w, const Job *job, int first_cell)
 {
     Rays      *rays = &w->samples.rays;
     const int  count = rays->count;
     const bool leave_out = skips(job->request->skips_off, SKIP_CELL);
     int        kept = 0;
-    visibility_entity_only(w->meets, job->scene.visibility, rays, f->entity, &w->shader.counters);
+    if (leave_out) visibility_entity_hits(&w->known, job->scene.visibility, rays, f->entity, &w->shader.counters);
+    else visibility_entity_only(w->meets, job->scene.visibility, rays, f->entity, &w->shader.counters);
     for (int i = 0; i < count; i++) {
+        if (leave_out) w->meets[i] = w->known.range_m[i] < INFINITY;
         if (!w->meets[i] && leave_out) continue;
+        w->known.range_m[kept] = w->known.range_m[i], w->known.hit[kept] = w->known.hit[i];
         cell[kept]     = first_cell + i;
         w->meets[kept] = w->meets[i];
         for (int k = 0; k < 3; k++) {
@@ -439,7 +442,9 @@ static void sample_cells(TargetGrid *f, Worker *w, const Job *job, int first_cel
     w->counters.rays_small_targets += (uint64_t)count;
     keep_amodal(cell, f, w, job, first_cell);
     w->shader.visibility_s += wall_clock_s() - t0;
+    s->known = skips(job->request->skips_off, SKIP_CELL) ? &w->known : NULL;
     samples_trace(&w->shader, &job->scene, s, w->list, listed);
+    s->known = NULL;
     if (job->picture->target) count_hidden(f, w, job, cell);
     int       before[hits_capacity];
     const int kept = part_samples(f, w, job, cell, before);

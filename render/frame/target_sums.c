@@ -77,8 +77,25 @@ static int compare_pairs(const void *a, const void *b)
     return p->occluder < q->occluder ? -1 : p->occluder > q->occluder;
 }
 
+/* By target, counted, and each target's by occluder. False: no memory. */
+static bool sort_pairs(Occlusion **pair, size_t count, int entities, Arena *arena)
+{
+    size_t    *first = arena_alloc(arena, (size_t)entities + 1, sizeof *first);
+    Occlusion *sorted = arena_alloc(arena, count, sizeof *sorted);
+    if (!first || !sorted) return false;
+    for (size_t i = 0; i < count; i++) first[(*pair)[i].target + 1]++;
+    for (int k = 0; k < entities; k++) first[k + 1] += first[k];
+    for (size_t i = 0; i < count; i++) sorted[first[(*pair)[i].target]++] = (*pair)[i];
+    for (size_t i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && sorted[end].target == sorted[i].target;) end++;
+        qsort(sorted + i, end - i, sizeof *sorted, compare_pairs);
+    }
+    *pair = sorted;
+    return true;
+}
+
 /* The entity that hides most of each target; of equals, the lowest index. */
-static Status name_occluders(TargetPixels *target, const TargetSums *const *sums, int workers, Arena *arena)
+static Status name_occluders(TargetPixels *target, int entities, const TargetSums *const *sums, int workers, Arena *arena)
 {
     size_t most = 0, count = 0;
     for (int w = 0; w < workers; w++) {
@@ -91,7 +108,7 @@ static Status name_occluders(TargetPixels *target, const TargetSums *const *sums
     for (int w = 0; w < workers; w++)
         for (size_t i = 0; i < sums[w]->hidden.capacity; i++)
             if (sums[w]->hidden.pair[i].used) pair[count++] = sums[w]->hidden.pair[i];
-    qsort(pair, count, sizeof *pair, compare_pairs);
+    if (!sort_pairs(&pair, count, entities, arena)) return STATUS_NO_MEMORY;
     int64_t most_steps = 0;
     double  most_px = 0;
     for (size_t i = 0; i < count;) {
@@ -173,22 +190,21 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
         uint64_t       left_out = 0;
 
         some->count = some->columns = 0;
+        visibility_lie_beyond(sums->beyond, rules->visibility, index, &s->rays, s->hits.range_m);
         for (int i = 0; i < s->hits.count; i++) {
             if (s->hits.entity[i] == id) {
                 count_seen(sums, index, rules, s, block, share, i);
                 continue;
             }
-            const double o_enu[3] = {s->rays.o_enu[0][i], s->rays.o_enu[1][i], s->rays.o_enu[2][i]};
-            const double d_enu[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
-            if (!visibility_may_lie_beyond(rules->visibility, index, o_enu, d_enu, s->hits.range_m[i])) {
+            if (!sums->beyond[i]) {
                 left_out++;
                 continue;
             }
-            const int to      = some->count++;
+            const int to = some->count++;
             sums->some_index[to] = i;
             for (int k = 0; k < 3; k++) {
-                some->o_enu[k][to] = o_enu[k];
-                some->d_enu[k][to] = d_enu[k];
+                some->o_enu[k][to] = s->rays.o_enu[k][i];
+                some->d_enu[k][to] = s->rays.d_enu[k][i];
             }
             some->far_m[to] = INFINITY;
         }
@@ -297,7 +313,7 @@ Status target_sums_gather(Picture *picture, const SumRules *rules, const TargetS
     Status status = STATUS_OK;
     if (picture->target) {
         for (int i = 0; i < entities; i++) gather_target(&picture->target[i], rules, sums, workers, boxes, i);
-        status = name_occluders(picture->target, sums, workers, arena);
+        status = name_occluders(picture->target, entities, sums, workers, arena);
     }
     for (int i = 0; picture->profile && i < profile_bins * radar_bounces; i++) {
         int64_t sum = 0;

@@ -55,7 +55,7 @@ typedef struct TargetSums {
     Occlusions   hidden;
     Rays         some; /* rays that may meet a target behind their first hit */
     int          some_index[hits_capacity];
-    uint8_t      meets[hits_capacity];
+    uint8_t      beyond[hits_capacity], meets[hits_capacity];
     double       cosine3[hits_capacity]; /* of the block's pixels */
 } TargetSums;
 

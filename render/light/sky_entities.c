@@ -4,8 +4,10 @@
 
 #include "pitviper_simd.h"
 
+#include <sched.h>
+
 enum { grid_directions = 28 /* a point */, grid_least = 3, grid_most = 48 /* places over an entity's box, a side */ };
-enum { task_places = 32 };
+enum { task_places = 32 }; /* points that are traced together */
 static const double grid_px = 2.75;
 
 Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity *posed, const double box_px[4],
@@ -37,11 +39,15 @@ Status sky_entities_tasks(SkyVisibility *v, Arena *arena)
     v->task_entity = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_entity);
     v->task_first  = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_first);
     if (!v->task_entity || !v->task_first) return STATUS_NO_MEMORY;
-    for (int k = 0; k < v->on_image; k++)
-        for (int first = 0; first < v->entity[k].columns * v->entity[k].rows; first += task_places) {
+    for (int k = 0; k < v->on_image; k++) {
+        SkyEntity *e = &v->entity[k];
+        e->first_task = v->tasks;
+        for (int first = 0; first < e->columns * e->rows; first += task_places) {
             v->task_entity[v->tasks]  = k;
             v->task_first[v->tasks++] = first;
         }
+        e->tasks = v->tasks - e->first_task;
+    }
     return STATUS_OK;
 }
 
@@ -53,18 +59,41 @@ static uint64_t spot_key(int entity, int spot)
 
 int sky_visibility_tasks(const SkyVisibility *v) { return v->tasks; }
 
+/* Leaves out the rays that would miss the entity if it were alone, and ends the others just beyond it: the tree is not
+ * followed behind it. Returns their number. */
+static int keep_meeting(Rays *rays, int point[task_places], const Visibility *v, int index, bool ask_all)
+{
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    double              range_m[task_places];
+    PartHit             hit[task_places];
+    int                 all[task_places], kept = 0;
+    for (int i = 0; i < rays->count; i++) range_m[i] = INFINITY, all[i] = i;
+    parts_first_hits(range_m, hit, visibility_posed(v, index), o, d, rays->far_m, all, rays->count, ask_all);
+    for (int i = 0; i < rays->count; i++) {
+        if (!(range_m[i] < INFINITY)) continue;
+        for (int c = 0; c < 3; c++) {
+            rays->o_enu[c][kept] = rays->o_enu[c][i];
+            rays->d_enu[c][kept] = rays->d_enu[c][i];
+        }
+        rays->far_m[kept] = range_m[i] * (1 + 1e-9) + 1e-3;
+        point[kept++] = point[i];
+    }
+    return rays->count = kept;
+}
+
 /* Traces the visible surface of the entity at some points of its grid, and computes the light there. */
-void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
+static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
 {
     const SkyEntity    *e = &v->entity[v->task_entity[task]];
     const int           index = e->index, first = v->task_first[task];
     const View         *view = v->scene.view;
-    const int           all = e->columns * e->rows, count = all - first < task_places ? all - first : task_places;
+    const int           all = e->columns * e->rows;
     const HemisphereScene  *scene = &v->scene.gather;
     VisibilityCounters  unused = {0};
     Rays               *rays = &w->rays;
     Hits               *met = &w->met, *places = &w->places;
-    int                 of[task_places];
+    int                 of[task_places], point[task_places], count = all - first < task_places ? all - first : task_places;
     double              box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (int i = 0; i < count; i++) {
         double d_enu[3];
@@ -72,11 +101,15 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
                  e->y0_px + e->step_px[1] * ((first + i) / e->columns + 0.5));
         for (int c = 0; c < 3; c++) rays->o_enu[c][i] = view->p_enu[c], rays->d_enu[c][i] = d_enu[c];
         rays->far_m[i] = INFINITY;
+        point[i] = first + i;
     }
     rays->count = count, rays->columns = 0;
+    if (skips(v->scene.skips_off, SKIP_LIGHT)) count = keep_meeting(rays, point, scene->visibility, index,
+                                                                              !skips(v->scene.skips_off, SKIP_PART));
+    if (count == 0) return;
     /* those that the rows of these points may see: with many entities a fraction of all */
-    const double y_px = e->y0_px + e->step_px[1] * (first / e->columns),
-                 end_px = e->y0_px + e->step_px[1] * ((first + count - 1) / e->columns + 1);
+    const double y_px = e->y0_px + e->step_px[1] * (point[0] / e->columns),
+                 end_px = e->y0_px + e->step_px[1] * (point[count - 1] / e->columns + 1);
     const int    seen = visibility_block_entities(w->near, scene->visibility, view, e->x0_px, y_px,
                                                   e->x0_px + e->step_px[0] * e->columns, end_px, v->scene.hidden_entity,
                                                   &unused);
@@ -85,8 +118,8 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
     for (int i = 0; i < count; i++) {
         if (met->entity[i] != (uint32_t)index + 1) continue;
         const int to = places->count++;
-        of[to] = first + i;
-        w->key[to] = spot_key(index, first + i);
+        of[to] = point[i];
+        w->key[to] = spot_key(index, point[i]);
         places->entity[to] = met->entity[i], places->part[to] = met->part[i];
         for (int c = 0; c < 3; c++) {
             places->p_enu[c][to] = met->p_enu[c][i];
@@ -110,6 +143,39 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
         sky_answer(&found, v, n_enu, &w->change[k]);
         memcpy(e->spot.factor[of[k]], found.factor, sizeof found.factor);
         e->spot.value[SPOT_PART][of[k]] = places->part[k];
+    }
+}
+
+void sky_visibility_task(const SkyVisibility *v, SkyWorker *w, int task)
+{
+    SkyEntity *e = &v->entity[v->task_entity[task]];
+    ask_points(v, w, task);
+    atomic_fetch_add_explicit(&e->taken, 1, memory_order_relaxed);
+    atomic_fetch_add_explicit(&e->done, 1, memory_order_release);
+}
+
+/* Each thread takes tasks that none has taken, and waits for those of others: these wait for nobody. */
+static void complete(const SkyVisibility *v, SkyWorker *w, SkyEntity *e)
+{
+    if (atomic_load_explicit(&e->done, memory_order_acquire) == e->tasks) return;
+    for (;;) {
+        const int k = atomic_fetch_add_explicit(&e->taken, 1, memory_order_relaxed);
+        if (k >= e->tasks) break;
+        ask_points(v, w, e->first_task + k);
+        atomic_fetch_add_explicit(&e->done, 1, memory_order_release);
+    }
+    while (atomic_load_explicit(&e->done, memory_order_acquire) < e->tasks) sched_yield();
+}
+
+void sky_entities_complete(const SkyVisibility *v, SkyWorker *w, const Hits *hits)
+{
+    uint32_t before = 0;
+    for (int i = 0; i < hits->count; i++) {
+        const uint32_t entity = hits->entity[i];
+        if (entity == 0 || entity == before || !(hits->range_m[i] < INFINITY)) continue;
+        const int of = v->grid_of[entity - 1];
+        if (of > 0) complete(v, w, &v->entity[of - 1]);
+        before = entity;
     }
 }
 

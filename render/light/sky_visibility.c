@@ -355,6 +355,7 @@ bool sky_visibility_open(SkyOpen *out, const SkyVisibility *v, SkyWorker *w, con
     double near_box[2][3];
     int    undone[hits_capacity], left = 0;
     memcpy(near_box, box, sizeof box);
+    sky_entities_complete(v, w, hits);
     for (int i = 0; i < hits->count; i++)
         if (hits->range_m[i] < INFINITY) sky_box_grow(box, hits, i);
     int near_count = sky_list_near(w, v, box, 0, true);

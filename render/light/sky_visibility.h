@@ -9,8 +9,8 @@
  *   ground    points of a square lattice that is fixed to the ground, finer where their values differ and never finer
  *             than the picture's resolution; computed when a hit needs them, cached for the frame
  *   entities  the visible surface of each on a grid over its box on the image, 2.75 px apart, at least 3 x 3 and at
- *             most 48 x 48, computed before the tiles; a hit takes those about it that face its way. The grid moves
- *             with the entity
+ *             most 48 x 48, computed when a hit first needs one of them, by all threads that do; a hit takes those
+ *             about it that face its way. The grid moves with the entity
  *
  * The value of a point depends on the scene and the view only, so it is the same whichever thread computes it. The
  * ground is treated only within reach of an entity: beyond, it hides less than 2 % of a level plane's sky. Sky hidden
@@ -42,9 +42,10 @@ typedef struct SkyVisibilityScene {
 Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scene, Arena *arena);
 Status sky_worker_create(SkyWorker **out, const SkyVisibility *v, Arena *arena);
 
-/* Evaluates the points on entities, in so many tasks for a pool, all before the first sky_visibility_open. */
+/* Evaluates the points on every entity beforehand, in so many tasks for a pool; hits ask for those of entities that they
+ * show otherwise. The same bits. */
 int  sky_visibility_tasks(const SkyVisibility *v);
-void sky_visibility_task(SkyVisibility *v, SkyWorker *worker, int task);
+void sky_visibility_task(const SkyVisibility *v, SkyWorker *worker, int task);
 
 typedef struct SkyOpen {
     float factor[AIR_BAND_COUNT][hits_capacity]; /* factor on the light that the tilt alone gives; 1 where nothing

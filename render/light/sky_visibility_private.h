@@ -35,6 +35,8 @@ typedef struct SkyEntity {
     double   x0_px, y0_px, step_px[2];
     double   pitch_m;        /* of the grid at its distance */
     SkySpots spot;           /* [rows * columns], and eight more */
+    int      first_task, tasks;
+    atomic_int taken, done;  /* of its tasks */
 } SkyEntity;
 
 struct SkyVisibility {
@@ -108,6 +110,8 @@ int  sky_list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], doubl
 Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity *posed, const double box_px[4],
                          Arena *arena);
 Status sky_entities_tasks(SkyVisibility *v, Arena *arena);
+/* Asks for the points of every entity that the hits show. */
+void   sky_entities_complete(const SkyVisibility *v, SkyWorker *w, const Hits *hits);
 void   sky_entities_open(SkyOpen *out, int i, const SkyVisibility *v, const Hits *hits);
 
 #endif

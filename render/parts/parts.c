@@ -103,13 +103,33 @@ static void measure_facet(Facet *f, const Model *model, uint32_t triangle)
     }
 }
 
-/* Each once, in the order in which triangles come to them. */
+/* Brings to the front the vertices that lie outermost along the axes, edges and diagonals of a cube: few others lie
+ * outermost in an image. */
+static void outermost_first(NodeMesh *mesh)
+{
+    int front = 0;
+    for (int k = 0; k < 27; k++) {
+        const double d[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+        int          farthest = 0;
+        if (k == 13) continue;
+        for (int i = 1; i < mesh->corner_count; i++)
+            if (v3_dot(mesh->corner[i], d) > v3_dot(mesh->corner[farthest], d)) farthest = i;
+        if (farthest < front) continue;
+        double kept[3];
+        memcpy(kept, mesh->corner[farthest], sizeof kept);
+        memmove(mesh->corner + front + 1, mesh->corner + front, (size_t)(farthest - front) * sizeof *mesh->corner);
+        memcpy(mesh->corner[front++], kept, sizeof kept);
+    }
+}
+
+/* In the order in which triangles come to them, so that a block's lie close together. */
 static Status list_corners(NodeMesh *mesh)
 {
     const Model *model = mesh->model;
     uint8_t     *seen = calloc((size_t)model->vertex_count + 1, 1);
     mesh->corner = calloc(3 * (size_t)mesh->triangle_count, sizeof *mesh->corner);
-    if (!seen || !mesh->corner) {
+    mesh->block  = calloc(3 * (size_t)mesh->triangle_count / parts_block_corners + 1, sizeof *mesh->block);
+    if (!seen || !mesh->corner || !mesh->block) {
         free(seen);
         return STATUS_NO_MEMORY;
     }
@@ -120,6 +140,15 @@ static Status list_corners(NodeMesh *mesh)
             seen[v] = 1;
         }
     free(seen);
+    outermost_first(mesh);
+    for (int i = 0; i < mesh->corner_count; i++)
+        for (int c = 0; c < 3; c++) {
+            double(*box)[3] = mesh->block[i / parts_block_corners];
+            const double at = mesh->corner[i][c], room_m = 1e-7 * (1 + fabs(at));
+            const bool   first = i % parts_block_corners == 0;
+            box[0][c] = first || at - room_m < box[0][c] ? at - room_m : box[0][c];
+            box[1][c] = first || at + room_m > box[1][c] ? at + room_m : box[1][c];
+        }
     return STATUS_OK;
 }
 
@@ -197,6 +226,7 @@ static void close_model(ModelMeshes *meshes)
         free(meshes->mesh[k].facet);
         free(meshes->mesh[k].corner);
         free(meshes->mesh[k].thin);
+        free(meshes->mesh[k].block);
     }
     free(meshes->mesh);
     *meshes = (ModelMeshes){0};
@@ -287,6 +317,27 @@ const double (*parts_node_corners(const PosedNode *node, int *count))[3]
     return (const double (*)[3])node->mesh->corner;
 }
 
+void parts_node_box(double corner[8][3], const PosedNode *node)
+{
+    const NodeMesh *mesh = node->mesh;
+    for (int k = 0; k < 8; k++)
+        for (int c = 0; c < 3; c++) corner[k][c] = mesh->centre[c] + (k >> c & 1 ? mesh->half[c] : -mesh->half[c]);
+}
+
+void parts_block_box(double corner[8][3], const PosedNode *node, int block)
+{
+    for (int k = 0; k < 8; k++)
+        for (int c = 0; c < 3; c++) corner[k][c] = node->mesh->block[block][k >> c & 1][c];
+}
+
+int parts_largest_node(const PosedEntity *entity)
+{
+    int largest = 0;
+    for (int k = 1; k < entity->node_count; k++)
+        if (entity->node[k].mesh->radius_m > entity->node[largest].mesh->radius_m) largest = k;
+    return largest;
+}
+
 const double (*parts_node_triangle(const PosedNode *node, int k))[3]
 {
     return k < node->mesh->triangle_count ? (const double (*)[3])node->mesh->facet[k].corner : NULL;
@@ -351,6 +402,7 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
         v3_add(node->p_enu, p_enu, offset);
         m3_mul(node->r_enu_from_node, r_enu_from_body, p->r_body_from_node);
         mesh_centre(centre, node);
+        memcpy(node->centre_enu, centre, sizeof centre);
         for (int c = 0; c < 3; c++) {
             const double from = centre[c] - node->mesh->radius_m, to = centre[c] + node->mesh->radius_m;
             low[c]  = from < low[c] ? from : low[c];
@@ -366,8 +418,7 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
     for (int c = 0; c < 3; c++) out->centre_enu[c] = 0.5 * (low[c] + high[c]);
     for (int k = 0; k < out->node_count; k++) {
         double centre[3];
-        mesh_centre(centre, &out->node[k]);
-        v3_sub(centre, centre, out->centre_enu);
+        v3_sub(centre, out->node[k].centre_enu, out->centre_enu);
         const double reach_m = v3_length(centre) + out->node[k].mesh->radius_m;
         out->radius_m = reach_m > out->radius_m ? reach_m : out->radius_m;
     }

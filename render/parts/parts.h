@@ -26,6 +26,7 @@ typedef struct PosedNode {
     const NodeMesh *mesh;
     double p_enu[3];
     double r_enu_from_node[9];
+    double centre_enu[3];      /* of its sphere */
 } PosedNode;
 
 /* An entity in its present pose. Sphere and box hold all of its nodes as they are posed, independent of the model's
@@ -45,7 +46,8 @@ typedef struct PartHit {
     uint32_t triangle; /* of the model */
 } PartHit;
 
-/* All vertices of a posed node, each once, in its axes. */
+/* All vertices of a posed node, each once, in its axes; the outermost in some directions are the first block. */
+enum { parts_block_corners = 32 };
 const double (*parts_node_corners(const PosedNode *node, int *count))[3];
 
 /* A box in a node's axes about a piece of it (triangles that share corners) that is a rod or a plate: one of the two other
@@ -54,6 +56,11 @@ typedef struct ThinBox {
     double centre[3], axis[3][3], half[3]; /* unit axes; half a side along each, m */
 } ThinBox;
 const ThinBox *parts_node_thin(const PosedNode *node, int *count);
+/* The corners of a box that holds them, or those of a block alone (0: the first), in its axes. */
+void parts_node_box(double corner[8][3], const PosedNode *node);
+void parts_block_box(double corner[8][3], const PosedNode *node, int block);
+/* The node of the largest sphere; of equals, the first. */
+int parts_largest_node(const PosedEntity *entity);
 
 /* The three corners of its triangle number k, in its axes; NULL: k is out of range. */
 const double (*parts_node_triangle(const PosedNode *node, int k))[3];

@@ -21,7 +21,8 @@ struct NodeMesh {
     uint32_t    *triangle;      /* of the model, ascending */
     Facet       *facet;         /* in the same order, which is Embree's too */
     int          corner_count;
-    double     (*corner)[3];    /* every vertex of its triangles, once */
+    double     (*corner)[3];    /* every vertex of its triangles, once; the outermost first */
+    double     (*block)[2][3];  /* of every parts_block_corners of them: low and high, with margin */
     double       centre[3];     /* of a sphere and a box round its vertices, node axes */
     double       radius_m;      /* both with margin for the conversion to float */
     double       half[3];

@@ -153,17 +153,17 @@ static Bundle bundle_of(const Chunk *chunk)
     return b;
 }
 
-/* The sphere's centre may be no farther from the cone's side than this. */
-static bool bundle_may_meet(const Bundle *b, const PosedNode *node)
+/* The sphere's centre may be no farther from the cone's side than this: across * cosine - along * sine <= reach_m. */
+static inline bool bundle_may_meet(const Bundle *b, const PosedNode *node)
 {
-    double turned[3], v[3], across[3];
     if (!(b->cosine > 0)) return true;
-    m3_mul_v3(turned, node->r_enu_from_node, node->mesh->centre);
-    for (int c = 0; c < 3; c++) v[c] = node->p_enu[c] + turned[c] - b->origin[c];
-    const double along = v3_dot(v, b->axis);
-    v3_add_scaled(across, v, -along, b->axis);
-    const double away_m = v3_length(across) * b->cosine - along * b->sine;
-    return away_m <= (node->mesh->radius_m + b->radius_m) * (1 + 1e-9) + 1e-6 + 1e-9 * fabs(along);
+    const double x = node->centre_enu[0] - b->origin[0], y = node->centre_enu[1] - b->origin[1];
+    const double z = node->centre_enu[2] - b->origin[2];
+    const double along = x * b->axis[0] + y * b->axis[1] + z * b->axis[2];
+    const double ax = x - along * b->axis[0], ay = y - along * b->axis[1], az = z - along * b->axis[2];
+    const double reach_m = (node->mesh->radius_m + b->radius_m) * (1 + 1e-9) + 1e-6 + 1e-9 * fabs(along);
+    const double most = reach_m + along * b->sine;
+    return most >= 0 && (ax * ax + ay * ay + az * az) * (b->cosine * b->cosine) <= most * most;
 }
 
 /* ---- candidates and the exact test ------------------------------------------------------------ */
@@ -512,30 +512,52 @@ static uint64_t first_hits(double *range_m, PartHit *hit, const PosedEntity *ent
     return asked;
 }
 
+/* Leaves out the rays that have met something. */
+static void drop_met(Chunk *chunk, const uint8_t *met)
+{
+    int kept = 0;
+    for (int i = 0; i < chunk->count; i++) {
+        if (met[chunk->ray[i]]) continue;
+        for (int c = 0; c < 3; c++) {
+            chunk->o[c][kept] = chunk->o[c][i];
+            chunk->d[c][kept] = chunk->d[c][i];
+        }
+        chunk->best_m[kept] = chunk->best_m[i];
+        chunk->ray[kept++]  = chunk->ray[i];
+    }
+    chunk->count = kept;
+    if (kept > 0) fill_up(chunk);
+}
+
+/* The largest node is the first: most rays that meet anything meet that, and are asked no more. */
 static uint64_t any_hits(uint8_t *met, const PosedEntity *entity, const double *const o[3], const double *const d[3],
                      const double *far_m, const int *list, int count, bool ask_all, bool alone)
 {
-    Chunk    chunk;
-    NodeRays rays;
-    Packet   packet;
-    uint64_t asked = 0;
+    Chunk     chunk;
+    NodeRays  rays;
+    Packet    packet;
+    uint64_t  asked = 0;
+    const int largest = parts_largest_node(entity);
     for (int first = 0; first < count; first += chunk_rays) {
         take_chunk(&chunk, entity, o, d, far_m, list + first, count - first < chunk_rays ? count - first : chunk_rays,
                    ask_all);
+        if (!ask_all) drop_met(&chunk, met);
         if (chunk.count == 0) continue;
         const Bundle bundle = ask_all || entity->node_count == 1 ? (Bundle){.cosine = 0} : bundle_of(&chunk);
-        for (int k = 0; k < entity->node_count; k++) {
-            const PosedNode *node = &entity->node[k];
+        for (int n = 0; n < entity->node_count && chunk.count > 0; n++) {
+            const PosedNode *node = &entity->node[n == 0 ? largest : n <= largest ? n - 1 : n];
+            const uint64_t   before = asked;
             if (!bundle_may_meet(&bundle, node)) continue;
             to_node(&rays, &chunk, node, ask_all);
             packet_open(&packet, node->mesh);
             for (int i = 0; i < chunk.count; i++) {
-                if (!(rays.meets[i / 4] >> i % 4 & 1) || (met[chunk.ray[i]] && !ask_all)) continue;
+                if (!(rays.meets[i / 4] >> i % 4 & 1)) continue;
                 packet_add(&packet, &rays, i, chunk.best_m[i]);
                 asked++;
                 if (packet.count == lanes) packet_any_hits(met, &packet, &chunk, alone);
             }
             packet_any_hits(met, &packet, &chunk, alone);
+            if (!ask_all && asked > before) drop_met(&chunk, met);
         }
     }
     return asked;

@@ -19,10 +19,10 @@ typedef enum Skip {
     SKIP_SUN_STOPPED,   /* ground and plants, for sun rays that are stopped already */
     SKIP_SUN_CLEAR,     /* ground, for sun rays from where nothing towards the sun is high enough */
     SKIP_AMODAL,        /* the amodal test of an entity, for rays on which none of it is behind the hit */
-    SKIP_CELL,          /* rays over a small target's box that miss it */
+    SKIP_CELL,          /* rays over a small target's box that miss it, and meeting it a second time */
     SKIP_RETRACE,       /* a pixel's first ray, when more are traced: its planes still hold its hit */
     SKIP_SMOKE,         /* smoke and dust that a block of pixels cannot see */
-    SKIP_LIGHT,         /* light of sample points that a neighbouring hit has computed already in this frame */
+    SKIP_LIGHT,         /* light of sample points that a neighbouring hit has computed already in this frame, or none needs */
     SKIP_TREE,          /* entities that the tree of their spheres leaves out: blocks, rays, sun rays, places near */
     SKIP_COUNT
 } Skip;

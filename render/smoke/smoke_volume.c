@@ -150,10 +150,15 @@ static void light_crossing(Crossing *c, const double o[3], const double d[3], un
     }
 }
 
-static int compare_m(const void *a, const void *b)
+/* By insertion: volumes come in order of range, so few lie far from their place. */
+static void sort_m(double *at_m, int count)
 {
-    const double p = *(const double *)a, q = *(const double *)b;
-    return p < q ? -1 : p > q;
+    for (int i = 1; i < count; i++) {
+        const double here = at_m[i];
+        int          to = i;
+        for (; to > 0 && at_m[to - 1] > here; to--) at_m[to] = at_m[to - 1];
+        at_m[to] = here;
+    }
 }
 
 /* Sorted boundaries, merged to at most smoke_segments_max by dropping some of the inner ones. */
@@ -166,7 +171,7 @@ static int cuts_of(double cut_m[smoke_segments_max], const Crossing *crossing, i
         cut_m[0] = edge_m[0], cut_m[1] = edge_m[1];
         return 2;
     }
-    qsort(edge_m, (size_t)edges, sizeof *edge_m, compare_m);
+    sort_m(edge_m, edges);
     const int cuts = edges < smoke_segments_max ? edges : smoke_segments_max;
     for (int i = 0; i < cuts; i++) cut_m[i] = edge_m[(int64_t)i * (edges - 1) / (cuts - 1)];
     return cuts;
@@ -299,61 +304,115 @@ static void compose(Passed *passed, const Crossing *crossing, int count, unsigne
     }
 }
 
+/* A ball about the volume. */
+static inline double reach_m(const SmokeVolume *v) { return v->along_m > v->across_m ? v->along_m : v->across_m; }
+
+enum { cone_rays = 16, cone_most = 512 };
+
+/* The volumes that rays first .. first + many may meet, if those begin in one point: of others the balls lie off a cone
+ * about the rays. -1: not so, or too many. */
+static int list_of_cone(int near[cone_most], const SmokeVolume *volume, const int *list, int count, const Rays *rays,
+                        int first, int many)
+{
+    const double o[3] = {rays->o_enu[0][first], rays->o_enu[1][first], rays->o_enu[2][first]};
+    double       axis[3] = {0, 0, 0}, cosine = 1;
+    int          listed = 0;
+    for (int r = first; r < first + many; r++)
+        for (int c = 0; c < 3; c++) {
+            if (rays->o_enu[c][r] != o[c]) return -1;
+            axis[c] += rays->d_enu[c][r];
+        }
+    if (!v3_normalize(axis, axis)) return -1;
+    for (int r = first; r < first + many; r++) {
+        const double d[3] = {rays->d_enu[0][r], rays->d_enu[1][r], rays->d_enu[2][r]}, along = v3_dot(axis, d);
+        cosine = along < cosine ? along : cosine;
+    }
+    if (!(cosine > 0)) return -1;
+    cosine -= 1e-12; /* a rounding of 1 - cosine is 1e-6 rad */
+    const double sine = sqrt(1 - cosine * cosine);
+    for (int n = 0; n < count; n++) {
+        const SmokeVolume *v = &volume[list[n]];
+        const double       reach = reach_m(v) * 1.001 + 1e-6;
+        double             off[3];
+        v3_sub(off, v->p_enu, o);
+        const double along = v3_dot(off, axis), square = v3_dot(off, off) - along * along;
+        const double widest = (reach + along * sine) / cosine;
+        if (!(along > -reach) || !(square <= widest * widest * (1 + 1e-9) + 1e-9 * (1 + along * along))) continue;
+        if (listed == cone_most) return -1;
+        near[listed++] = list[n];
+    }
+    return listed;
+}
+
+/* One ray: what it passes, front to back; the number of volumes crossed. */
+static int trace_ray(Passed *passed, Crossing crossing[veil_together], const SmokeVolume *volume, const int *list, int count,
+                     const double o_enu[3], const double d_enu[3], double far_m, unsigned bands)
+{
+    int crossed = 0, composed = 0;
+    for (int b = 0; b < smoke_bands; b++) passed->through[b] = 1, passed->added[b] = 0;
+    passed->goes_on = true, passed->in_gas = false;
+    for (int n = 0; n < count && passed->goes_on; n++) {
+        const SmokeVolume *v = &volume[list[n]];
+        Crossing          *c = &crossing[crossed];
+        double             off[3], o[3], d[3];
+        v3_sub(off, o_enu, v->p_enu);
+        /* bounding ball first: most volumes of a block miss most rays */
+        const double along = v3_dot(off, d_enu), reach = reach_m(v);
+        if (v3_dot(off, off) - along * along > reach * reach * 1.001) continue;
+        to_ball(o, v, off);
+        to_ball(d, v, d_enu);
+        if (!chord_of(&c->chord, o, d)) continue;
+        c->volume = v;
+        c->from_m = fmax(c->chord.middle_m - c->chord.half_m, 0);
+        c->to_m = fmin(c->chord.middle_m + c->chord.half_m, far_m);
+        if (!(c->to_m > c->from_m)) continue;
+        c->factor = 1;
+        if (v->billow > 0) {
+            double nearest[3];
+            v3_add_scaled(nearest, o, c->chord.middle_m, d);
+            const double stretch = pattern_stretch(&c->factor, v, nearest, c->chord.q2);
+            v3_scale(o, stretch, o);
+            v3_scale(d, stretch, d);
+            if (!(c->factor > 0) || !chord_of(&c->chord, o, d)) continue;
+            c->from_m = fmax(c->chord.middle_m - c->chord.half_m, 0);
+            c->to_m = fmin(c->chord.middle_m + c->chord.half_m, far_m);
+            if (!(c->to_m > c->from_m)) continue;
+        }
+        light_crossing(c, o, d, bands);
+        if (++crossed < veil_together) continue;
+        compose(passed, crossing, crossed, bands);
+        composed += crossed, crossed = 0;
+    }
+    if (crossed > 0) compose(passed, crossing, crossed, bands);
+    return composed + crossed;
+}
+
 void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list, int count, const Rays *rays,
                const double *far_m, unsigned bands)
 {
     Crossing crossing[veil_together];
+    int      near[cone_most], nears = -1;
 
     out->any = false;
     for (int r = 0; count > 0 && r < rays->count; r++) {
+        if (r % cone_rays == 0) {
+            const int left = rays->count - r;
+            nears = list_of_cone(near, volume, list, count, rays, r, left < cone_rays ? left : cone_rays);
+        }
         const double o_enu[3] = {rays->o_enu[0][r], rays->o_enu[1][r], rays->o_enu[2][r]};
         const double d_enu[3] = {rays->d_enu[0][r], rays->d_enu[1][r], rays->d_enu[2][r]};
-        Passed passed;
-        int    crossed = 0, composed = 0;
-        for (int b = 0; b < smoke_bands; b++) passed.through[b] = 1, passed.added[b] = 0;
-        passed.goes_on = true, passed.in_gas = false;
-        for (int n = 0; n < count && passed.goes_on; n++) {
-            const SmokeVolume *v = &volume[list[n]];
-            Crossing         *c = &crossing[crossed];
-            double            off[3], o[3], d[3];
-            v3_sub(off, o_enu, v->p_enu);
-            /* bounding ball first: most volumes of a block miss most rays */
-            const double along = v3_dot(off, d_enu), reach = fmax(v->along_m, v->across_m);
-            if (v3_dot(off, off) - along * along > reach * reach * 1.001) continue;
-            to_ball(o, v, off);
-            to_ball(d, v, d_enu);
-            if (!chord_of(&c->chord, o, d)) continue;
-            c->volume = v;
-            c->from_m = fmax(c->chord.middle_m - c->chord.half_m, 0);
-            c->to_m = fmin(c->chord.middle_m + c->chord.half_m, far_m[r]);
-            if (!(c->to_m > c->from_m)) continue;
-            c->factor = 1;
-            if (v->billow > 0) {
-                double nearest[3];
-                v3_add_scaled(nearest, o, c->chord.middle_m, d);
-                const double stretch = pattern_stretch(&c->factor, v, nearest, c->chord.q2);
-                v3_scale(o, stretch, o);
-                v3_scale(d, stretch, d);
-                if (!(c->factor > 0) || !chord_of(&c->chord, o, d)) continue;
-                c->from_m = fmax(c->chord.middle_m - c->chord.half_m, 0);
-                c->to_m = fmin(c->chord.middle_m + c->chord.half_m, far_m[r]);
-                if (!(c->to_m > c->from_m)) continue;
-            }
-            light_crossing(c, o, d, bands);
-            if (++crossed < veil_together) continue;
-            compose(&passed, crossing, crossed, bands);
-            composed += crossed, crossed = 0;
-        }
-        if (crossed > 0) compose(&passed, crossing, crossed, bands);
-        if (composed + crossed > 0) {
-            if (!out->any)
-                for (int b = 0; b < smoke_bands; b++)
-                    for (int i = 0; i < rays->count; i++) out->transmittance[b][i] = 1, out->added[b][i] = 0;
-            out->any = true;
-            for (int b = 0; b < smoke_bands; b++) {
-                out->transmittance[b][r] = (float)passed.through[b];
-                out->added[b][r] = (float)passed.added[b];
-            }
+        Passed       passed;
+        if (nears == 0) continue;
+        if (trace_ray(&passed, crossing, volume, nears < 0 ? list : near, nears < 0 ? count : nears, o_enu, d_enu, far_m[r],
+                      bands) == 0)
+            continue;
+        if (!out->any)
+            for (int b = 0; b < smoke_bands; b++)
+                for (int i = 0; i < rays->count; i++) out->transmittance[b][i] = 1, out->added[b][i] = 0;
+        out->any = true;
+        for (int b = 0; b < smoke_bands; b++) {
+            out->transmittance[b][r] = (float)passed.through[b];
+            out->added[b][r] = (float)passed.added[b];
         }
     }
 }

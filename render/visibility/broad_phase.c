@@ -16,6 +16,7 @@ struct BroadPhase {
     Box     *node;            /* [2 leaves], from 1: the root */
     int     *item;            /* [count], in the order of the leaves */
     double (*sphere)[4];      /* [count], likewise: centre and radius */
+    Box     *ray_node, *box;  /* [2 leaves], [count]: those that rays are tested with; within node and sphere */
 };
 
 /* ---- building ----------------------------------------------------------------------------------- */
@@ -75,6 +76,13 @@ static void grow(Box *box, const double s[4])
 
 static const Box empty_box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 
+static Box box_of_sphere(const double s[4])
+{
+    Box box = empty_box;
+    grow(&box, s);
+    return box;
+}
+
 static void join(Box *box, const Box *a, const Box *b)
 {
     for (int c = 0; c < 3; c++) {
@@ -114,19 +122,43 @@ Status broad_phase_create(BroadPhase **out, const int *item, const double (*sphe
     tree->node   = arena_alloc(arena, 2 * (size_t)tree->leaves, sizeof *tree->node);
     tree->item   = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->item);
     tree->sphere = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->sphere);
-    if (!tree->node || !tree->item || !tree->sphere) return STATUS_NO_MEMORY;
+    tree->box    = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->box);
+    tree->ray_node = arena_alloc(arena, 2 * (size_t)tree->leaves, sizeof *tree->ray_node);
+    if (!tree->node || !tree->item || !tree->sphere || !tree->box || !tree->ray_node) return STATUS_NO_MEMORY;
     for (int k = 0; k < kept; k++) {
         tree->item[k] = item[order[k].of];
         memcpy(tree->sphere[k], sphere[order[k].of], sizeof tree->sphere[k]);
+        tree->box[k] = box_of_sphere(tree->sphere[k]);
     }
     for (int leaf = 0; leaf < tree->leaves; leaf++) {
         Box *box = &tree->node[tree->leaves + leaf];
         *box = empty_box;
-        for (int k = leaf * leaf_items; k < (leaf + 1) * leaf_items && k < kept; k++) grow(box, tree->sphere[k]);
+        for (int k = leaf * leaf_items; k < (leaf + 1) * leaf_items && k < kept; k++) join(box, box, &tree->box[k]);
     }
     for (int n = tree->leaves - 1; n > 0; n--) join(&tree->node[n], &tree->node[2 * n], &tree->node[2 * n + 1]);
+    memcpy(tree->ray_node, tree->node, 2 * (size_t)tree->leaves * sizeof *tree->node);
     *out = tree;
     return STATUS_OK;
+}
+
+void broad_phase_tighten(BroadPhase *tree, BroadBox *box_of, void *user)
+{
+    for (int k = 0; k < tree->count; k++) {
+        Box *box = &tree->box[k], tight;
+        if (!box_of(user, tree->item[k], tight.low, tight.high)) continue;
+        for (int c = 0; c < 3; c++) {
+            const double room_m = 1e-6 + 1e-10 * (fabs(tight.low[c]) + fabs(tight.high[c]));
+            box->low[c]  = tight.low[c] - room_m > box->low[c] ? tight.low[c] - room_m : box->low[c];
+            box->high[c] = tight.high[c] + room_m < box->high[c] ? tight.high[c] + room_m : box->high[c];
+        }
+    }
+    for (int leaf = 0; leaf < tree->leaves; leaf++) {
+        Box *box = &tree->ray_node[tree->leaves + leaf];
+        *box = empty_box;
+        for (int k = leaf * leaf_items; k < (leaf + 1) * leaf_items && k < tree->count; k++) join(box, box, &tree->box[k]);
+    }
+    for (int n = tree->leaves - 1; n > 0; n--)
+        join(&tree->ray_node[n], &tree->ray_node[2 * n], &tree->ray_node[2 * n + 1]);
 }
 
 int broad_phase_count(const BroadPhase *tree) { return tree->count; }
@@ -175,13 +207,6 @@ static bool box_beyond(const Box *box, const double plane[4])
     double farthest = 0;
     for (int c = 0; c < 3; c++) farthest += plane[c] * (plane[c] > 0 ? box->high[c] : box->low[c]);
     return farthest < plane[3];
-}
-
-static Box box_of_sphere(const double s[4])
-{
-    Box box = empty_box;
-    grow(&box, s);
-    return box;
 }
 
 int broad_phase_in_planes(int *list, const BroadPhase *tree, const double (*plane)[4], int planes)
@@ -354,8 +379,7 @@ static void visit_leaf(const BroadPhase *tree, int leaf, const Slabs *slabs, Bro
     int       count = 0;
     const int first = leaf * leaf_items;
     for (int k = first; k < first + leaf_items && k < tree->count; k++) {
-        const Box    box = box_of_sphere(tree->sphere[k]);
-        const double at_m = entry_m(slabs, rays, box.low, box.high);
+        const double at_m = entry_m(slabs, rays, tree->box[k].low, tree->box[k].high);
         if (!(at_m < INFINITY)) continue;
         int to = count++;
         for (; to > 0 && met[to - 1].entry_m > at_m; to--) met[to] = met[to - 1];
@@ -372,7 +396,7 @@ void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit
     int   depth = 0;
     if (tree->count == 0) return;
     slabs_of(&slabs, rays);
-    stack[depth].entry_m = entry_m(&slabs, rays, tree->node[1].low, tree->node[1].high);
+    stack[depth].entry_m = entry_m(&slabs, rays, tree->ray_node[1].low, tree->ray_node[1].high);
     stack[depth++].node  = 1;
     while (depth > 0) {
         const double at_m = stack[--depth].entry_m;
@@ -384,7 +408,7 @@ void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit
         }
         double side_m[2];
         for (int k = 0; k < 2; k++) {
-            const Box *box = &tree->node[2 * n + k];
+            const Box *box = &tree->ray_node[2 * n + k];
             side_m[k] = entry_m(&slabs, rays, box->low, box->high);
         }
         const int first = side_m[1] < side_m[0];

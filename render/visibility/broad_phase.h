@@ -20,6 +20,11 @@ typedef struct BroadPhase BroadPhase;
 Status broad_phase_create(BroadPhase **out, const int *item, const double (*sphere)[4], int count, Arena *arena);
 int    broad_phase_count(const BroadPhase *tree); /* of those that may be listed */
 
+/* Closer boxes for rays, which pass many spheres that they do not meet anything in: box_of, for each item, its own box
+ * (what rays may meet of it lies in both), or false: as it was. Before any ray. */
+typedef bool BroadBox(void *user, int item, double low[3], double high[3]);
+void broad_phase_tighten(BroadPhase *tree, BroadBox *box_of, void *user);
+
 /* Items of which some point of the sphere may lie within all planes (n, d): dot(n, p) >= d, n unit; ascending. list:
  * room for all. Returns how many. */
 int broad_phase_in_planes(int *list, const BroadPhase *tree, const double (*plane)[4], int planes);

@@ -166,7 +166,7 @@ static bool ground_lies_below(const Visibility *v, const uint32_t *entity, int c
 }
 
 static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
-                      bool ground, VisibilityCounters *counters)
+                      const EntityHits *known, bool ground, VisibilityCounters *counters)
 {
     const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
     const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
@@ -189,7 +189,7 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
     if (crowd) {
         CrowdCounts counts = {0};
         order_rays(order, count, rays->columns);
-        crowd_first_hits(limit_m, hits->entity, part_hit, &counts, v, count, o, d, order, list, list_count, hidden);
+        crowd_first_hits(limit_m, hits->entity, part_hit, &counts, v, count, o, d, order, list, list_count, hidden, known);
         asked = counts.asked;
         counters->skipped[SKIP_PART] += counts.nodes - counts.asked_nodes;
         counters->skipped[SKIP_TREE] += (uint64_t)count * (list_count < 0 ? drawable : (uint64_t)list_count) - asked;
@@ -200,6 +200,15 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
         if (index == hidden || !v->loose[index]) continue;
         const PosedEntity *entity = visibility_posed(v, index);
         if (entity->model < 0) continue;
+        if (known && known->entity == index) {
+            for (int i = 0; i < count; i++) {
+                if (!(known->range_m[i] < limit_m[i])) continue;
+                limit_m[i]      = known->range_m[i];
+                part_hit[i]     = known->hit[i];
+                hits->entity[i] = (uint32_t)index + 1;
+            }
+            continue;
+        }
         if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
         else memset(ask, 1, sizeof ask);
         if (!ordered) order_rays(order, count, rays->columns);
@@ -260,13 +269,19 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
                           VisibilityCounters *counters)
 {
-    first_hit(hits, v, rays, list, list_count, hidden, true, counters);
+    first_hit(hits, v, rays, list, list_count, hidden, NULL, true, counters);
+}
+
+void visibility_first_hit_knowing(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                                  int hidden, const EntityHits *known, VisibilityCounters *counters)
+{
+    first_hit(hits, v, rays, list, list_count, hidden, known, true, counters);
 }
 
 void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                            VisibilityCounters *counters)
 {
-    first_hit(hits, v, rays, list, list_count, -1, false, counters);
+    first_hit(hits, v, rays, list, list_count, -1, NULL, false, counters);
 }
 
 /* ---- shadows ------------------------------------------------------------------------------ */
@@ -453,16 +468,44 @@ void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *ray
                                                    !skips(v->skips_off, SKIP_PART));
 }
 
-bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m)
+void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters)
+{
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    const PosedEntity  *entity = visibility_posed(v, index);
+    uint8_t             meets[hits_capacity];
+    int                 order[hits_capacity], list[hits_capacity];
+    out->entity = index;
+    for (int i = 0; i < rays->count; i++) out->range_m[i] = INFINITY;
+    if (entity->model < 0) return;
+    if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    else memset(meets, 1, sizeof meets);
+    order_rays(order, rays->count, rays->columns);
+    const int listed = list_asked(list, order, meets, rays->count);
+    counters->skipped[SKIP_SPHERE] += (uint64_t)(rays->count - listed);
+    counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
+                                    parts_first_hits(out->range_m, out->hit, entity, o, d, rays->far_m, list, listed,
+                                                     !skips(v->skips_off, SKIP_PART));
+}
+
+/* As rays_meet_sphere: plain arrays, no branches. */
+void visibility_lie_beyond(uint8_t *may, const Visibility *v, int index, const Rays *rays, const double *range_m)
 {
     const PosedEntity *entity = visibility_posed(v, index);
-    double             m[3], across[3];
-    if (!skips(v->skips_off, SKIP_AMODAL)) return true;
-    if (entity->model < 0) return false;
-    v3_sub(m, entity->centre_enu, o_enu);
-    const double along = v3_dot(m, d_enu), past_m = range_m - along;
-    if (!(past_m < entity->radius_m)) return false;
-    v3_add_scaled(across, m, -along, d_enu);
-    const double left = entity->radius_m * entity->radius_m - v3_dot(across, across);
-    return left > 0 && (past_m <= 0 || past_m * past_m < left);
+    const double      *ox = rays->o_enu[0], *oy = rays->o_enu[1], *oz = rays->o_enu[2];
+    const double      *dx = rays->d_enu[0], *dy = rays->d_enu[1], *dz = rays->d_enu[2];
+    const double       x = entity->centre_enu[0], y = entity->centre_enu[1], z = entity->centre_enu[2];
+    const double       radius_m = entity->radius_m;
+    const bool         all = !skips(v->skips_off, SKIP_AMODAL);
+    if (all || entity->model < 0) {
+        memset(may, all, (size_t)rays->count);
+        return;
+    }
+    for (int i = 0; i < rays->count; i++) {
+        const double mx = x - ox[i], my = y - oy[i], mz = z - oz[i];
+        const double along = mx * dx[i] + my * dy[i] + mz * dz[i], past_m = range_m[i] - along;
+        const double cx = mx - along * dx[i], cy = my - along * dy[i], cz = mz - along * dz[i];
+        const double left = radius_m * radius_m - (cx * cx + cy * cy + cz * cz);
+        may[i] = (past_m < radius_m) & (left > 0) & ((past_m <= 0) | (past_m * past_m < left));
+    }
 }

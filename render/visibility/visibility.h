@@ -12,6 +12,7 @@
 #include "entities/table/snapshot.h"
 #include "render/forest/forest.h"
 #include "render/materials/materials.h"
+#include "render/parts/parts.h"
 #include "render/parts/tracer.h"
 #include "render/scene/hits.h"
 #include "render/scene/skip.h"
@@ -43,6 +44,10 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
 struct PosedEntity;
 int visibility_count(const Visibility *v);
 const struct PosedEntity *visibility_posed(const Visibility *v, int index);
+
+/* Where there are many entities: rays are tested with the boxes of those that are posed by now, and no longer with their
+ * spheres. No bit depends on it. One thread, before the rays. */
+void visibility_tighten(const Visibility *v);
 
 /* The table that Hits.material indexes: set before anything is traced. Without: all 0. It must outlive the frame. */
 void visibility_materials(Visibility *v, const Materials *materials);
@@ -79,6 +84,17 @@ int visibility_block_entities(int *list, const Visibility *v, const View *view, 
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                           int hidden, VisibilityCounters *counters);
 
+/* What rays meet of one entity with nothing else in the world; INFINITY: nothing. */
+typedef struct EntityHits {
+    int     entity; /* snapshot index */
+    double  range_m[hits_capacity];
+    PartHit hit[hits_capacity];
+} EntityHits;
+void visibility_entity_hits(EntityHits *out, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters);
+/* As visibility_first_hit, for rays of which that is known: the entity is not traced again. */
+void visibility_first_hit_knowing(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                                  int hidden, const EntityHits *known, VisibilityCounters *counters);
+
 /* The same as if there were neither ground nor plants. */
 void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                            VisibilityCounters *counters);
@@ -92,9 +108,9 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
 /* Whether each ray would meet entity `index` with nothing else in the world (amodal truth). */
 void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters);
 
-/* Whether any part of entity `index` may lie farther along a ray than the first hit, at range_m, of a search that
- * included it; otherwise the ray misses it. True without SKIP_AMODAL. */
-bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m);
+/* Whether any part of entity `index` may lie farther along each ray than its first hit, at range_m, of a search that
+ * included it; otherwise the ray misses it. All 1 without SKIP_AMODAL. */
+void visibility_lie_beyond(uint8_t *may, const Visibility *v, int index, const Rays *rays, const double *range_m);
 
 /* Bounding box of an entity on the image (of its vertices; through a lens, which bows them, of its edges), clipped to
  * nothing: x0, y0, x1, y1 in px. False when any of its box is behind the eye. */

@@ -11,6 +11,8 @@ typedef struct Walk {
     /* first hits */
     const int        *list;
     int               list_count, hidden;
+    const EntityHits *known;       /* of rays of the block: */
+    const int        *index;       /* [count] */
     uint32_t          entity[broad_packet];
     PartHit           hit[broad_packet];
     /* any hits */
@@ -54,6 +56,16 @@ static int list_rays(int list[broad_packet], const uint8_t *ask, int count)
     return listed;
 }
 
+/* The next number after one that is finite and not below 0. */
+static double next_up(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits++;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
 static void visit_first(void *user, int item)
 {
     Walk   *w = user;
@@ -64,8 +76,20 @@ static void visit_first(void *user, int item)
     const PosedEntity *entity = visibility_posed(w->v, item);
     if (entity->model < 0) return;
     /* at equal range the lower index has priority */
-    for (int k = 0; k < w->count; k++)
-        until_m[k] = w->entity[k] > (uint32_t)item + 1 ? nextafter(w->rays.limit_m[k], INFINITY) : w->rays.limit_m[k];
+    for (int k = 0; k < w->count; k++) {
+        until_m[k] = w->rays.limit_m[k];
+        if (w->entity[k] > (uint32_t)item + 1) until_m[k] = next_up(until_m[k]);
+    }
+    if (w->known && w->known->entity == item) {
+        for (int k = 0; k < w->count; k++) {
+            const double range_m = w->known->range_m[w->index[k]];
+            if (!(range_m < until_m[k])) continue;
+            w->rays.limit_m[k] = range_m;
+            w->hit[k]          = w->known->hit[w->index[k]];
+            w->entity[k]       = (uint32_t)item + 1;
+        }
+        return;
+    }
     rays_meet_sphere(ask, w->count, w->o, w->d, until_m, entity->centre_enu, entity->radius_m);
     const int listed = list_rays(list, ask, w->count);
     if (listed == 0) return;
@@ -84,11 +108,12 @@ static void visit_first(void *user, int item)
 
 void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v, int count,
                       const double *const o[3], const double *const d[3], const int *order, const int *list,
-                      int list_count, int hidden)
+                      int list_count, int hidden, const EntityHits *known)
 {
-    Walk walk = {.v = v, .counts = counts, .list = list, .list_count = list_count, .hidden = hidden};
+    Walk walk = {.v = v, .counts = counts, .list = list, .list_count = list_count, .hidden = hidden, .known = known};
     for (int first = 0; first < count; first += broad_packet) {
         take_rays(&walk, o, d, order + first, count - first < broad_packet ? count - first : broad_packet);
+        walk.index = order + first;
         for (int k = 0; k < walk.count; k++) {
             const int i = order[first + k];
             walk.rays.limit_m[k] = limit_m[i];

@@ -144,29 +144,65 @@ static void grow_by_bowed_edges(double box_px[4], const PosedEntity *entity, con
     }
 }
 
+/* Widens the box by the projections of count points of a node; false: one is not in front of the eye. */
+static bool grow_by_points(double box_px[4], const View *view, const double r_cam_from_node[9], const double p_cam[3],
+                           const double (*point)[3], int count)
+{
+    for (int c = 0; c < count; c++) {
+        double at[3], image_px[2];
+        m3_mul_v3(at, r_cam_from_node, point[c]);
+        v3_add(at, at, p_cam);
+        if (!(at[2] > 0)) return false;
+        view_project(image_px, view, at);
+        grow_image_box(box_px, image_px);
+    }
+    return true;
+}
+
+/* Whether all of a box lies within box_px: its corners, in the node's axes. */
+static bool lies_within(const double box_px[4], const View *view, const double r_cam_from_node[9], const double p_cam[3],
+                        const double corner[8][3])
+{
+    double around[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    return grow_by_points(around, view, r_cam_from_node, p_cam, corner, 8) && around[0] > box_px[0] &&
+           around[1] > box_px[1] && around[2] < box_px[2] && around[3] < box_px[3];
+}
+
+/* The vertices of a node but for blocks of them whose boxes lie within box_px already; through a lens, where straight
+ * lines are not, all. */
+static bool grow_by_node(double box_px[4], const View *view, const PosedNode *node, bool first)
+{
+    const bool     lens = view_has_lens(view);
+    int            count;
+    const double (*corner)[3] = parts_node_corners(node, &count);
+    double         r_cam_from_node[9], from_eye[3], p_cam[3], box[8][3];
+    m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
+    v3_sub(from_eye, node->p_enu, view->p_enu);
+    m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
+    if (!first && !lens && count > 8) {
+        parts_node_box(box, node);
+        if (lies_within(box_px, view, r_cam_from_node, p_cam, (const double (*)[3])box)) return true;
+    }
+    for (int from = 0; from < count; from += parts_block_corners) {
+        const int many = count - from < parts_block_corners ? count - from : parts_block_corners;
+        if (from > 0 && !lens && many > 8) {
+            parts_block_box(box, node, from / parts_block_corners);
+            if (lies_within(box_px, view, r_cam_from_node, p_cam, (const double (*)[3])box)) continue;
+        }
+        if (!grow_by_points(box_px, view, r_cam_from_node, p_cam, corner + from, many)) return false;
+    }
+    return true;
+}
+
+/* The largest node is the first: most others lie within its box. */
 bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index)
 {
     const PosedEntity *entity = visibility_posed(v, index);
     double             box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     if (entity->model < 0) return false;
-    for (int k = 0; k < entity->node_count; k++) {
-        const PosedNode *node = &entity->node[k];
-        int              count;
-        const double   (*corner)[3] = parts_node_corners(node, &count);
-        double           r_cam_from_node[9], from_eye[3], p_cam[3];
-        m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
-        v3_sub(from_eye, node->p_enu, view->p_enu);
-        m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
-        for (int c = 0; c < count; c++) {
-            double at[3];
-            m3_mul_v3(at, r_cam_from_node, corner[c]);
-            v3_add(at, at, p_cam);
-            if (!(at[2] > 0)) return false;
-            double image_px[2];
-            view_project(image_px, view, at);
-            grow_image_box(box, image_px);
-        }
-    }
+    const int largest = parts_largest_node(entity);
+    for (int n = 0; n < entity->node_count; n++)
+        if (!grow_by_node(box, view, &entity->node[n == 0 ? largest : n <= largest ? n - 1 : n], n == 0)) return false;
     if (view_has_lens(view)) grow_by_bowed_edges(box, entity, view);
     memcpy(box_px, box, sizeof box);
     return true;

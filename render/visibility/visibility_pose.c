@@ -143,3 +143,26 @@ int visibility_near(int *list, const Visibility *v, const double low[3], const d
         if (v->loose[k]) list[count++] = k;
     return count;
 }
+
+/* The box of an entity that is posed already. */
+static bool posed_box(void *user, int item, double low[3], double high[3])
+{
+    static const double near_miss_m = 1e-3; /* ample: 20 um */
+    const Visibility   *v = *(const Visibility *const *)user;
+    const PosedEntity  *e = atomic_load_explicit(&v->posed[item], memory_order_acquire);
+    if (!e || e->model < 0) return false;
+    for (int r = 0; r < 3; r++) {
+        double middle = e->p_enu[r], half = near_miss_m;
+        for (int c = 0; c < 3; c++) {
+            middle += e->r_enu_from_body[3 * r + c] * 0.5 * (e->box_low[c] + e->box_high[c]);
+            half += fabs(e->r_enu_from_body[3 * r + c]) * 0.5 * (e->box_high[c] - e->box_low[c]);
+        }
+        low[r] = middle - half, high[r] = middle + half;
+    }
+    return true;
+}
+
+void visibility_tighten(const Visibility *v)
+{
+    if (v->drawable > crowd_least && skips(v->skips_off, SKIP_TREE)) broad_phase_tighten(v->tree, posed_box, &v);
+}

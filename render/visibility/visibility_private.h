@@ -55,13 +55,13 @@ void plants_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const
 void visibility_store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3]);
 
 /* visibility_crowd.c. First hits by the tree; limit_m, entity (index + 1) and hit are as if all of the list had been
- * tested one after the other. list: ascending; list_count -1: all but hidden. */
+ * tested one after the other. list: ascending; list_count -1: all but hidden. known: NULL, or of these rays. */
 typedef struct CrowdCounts {
     uint64_t asked, asked_nodes, nodes; /* ray-entity pairs, ray-node pairs; of the pairs' entities all nodes */
 } CrowdCounts;
 void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v, int count,
                       const double *const o[3], const double *const d[3], const int *order, const int *list,
-                      int list_count, int hidden);
+                      int list_count, int hidden, const EntityHits *known);
 /* dark becomes 1 where anything is met. */
 void crowd_any_hits(uint8_t *dark, CrowdCounts *counts, const Visibility *v, int count, const double *const o[3],
                     const double *const d[3]);

@@ -178,6 +178,74 @@ static void rays_lose_nothing(void **state)
     }
 }
 
+/* The inner ball of a sphere: a third of it, off its middle. */
+static double inner(double centre[3], int i)
+{
+    for (int c = 0; c < 3; c++) centre[c] = sphere[i][c] + (c - 1) * 0.4 * sphere[i][3];
+    return sphere[i][3] / 3;
+}
+
+typedef struct Items {
+    int count, odd; /* odd: only these have boxes of their own */
+} Items;
+
+static bool box_of_inner(void *user, int at, double low[3], double high[3])
+{
+    const Items *items = user;
+    double       centre[3];
+    int          i = 0;
+    while (i < items->count && item[i] != at) i++;
+    if (i == items->count || i % 2 != items->odd) return false;
+    const double r = inner(centre, i);
+    for (int c = 0; c < 3; c++) low[c] = centre[c] - r, high[c] = centre[c] + r;
+    return true;
+}
+
+/* With boxes of their own: rays that meet an inner ball still come to its item, and many others no more. */
+static void closer_boxes_lose_nothing_in_them(void **state)
+{
+    (void)state;
+    uint64_t visited[2] = {0}, met = 0;
+    for (int scene = 0; scene < scenes; scene++) {
+        const int   count = strew(scene);
+        BroadPhase *tree = plant(count);
+        Items       items = {count, scene % 2};
+        for (int tight = 0; tight < 2; tight++) {
+            if (tight) broad_phase_tighten(tree, box_of_inner, &items);
+            for (int n = 0; n < 40; n++) {
+                BroadRays rays;
+                Visits    visits = {.rays = &rays};
+                hand_draw = (uint64_t)(100 * n + 1); /* the same rays again: close together, past one of the spheres */
+                const double *at = sphere[n * 37 % count];
+                double        o[3], d[3];
+                for (int c = 0; c < 3; c++) o[c] = between(-1500, 1500), d[c] = at[c] + between(-8, 8) - o[c];
+                if (!v3_normalize(d, d)) continue;
+                for (int k = 0; k < broad_packet; k++) {
+                    for (int c = 0; c < 3; c++) rays.o[c][k] = o[c] + 0.01 * k, rays.d[c][k] = d[c];
+                    rays.limit_m[k] = INFINITY;
+                }
+                broad_phase_rays(tree, &rays, note_visit, &visits);
+                if (scene != 3 && scene != 5) visited[tight] += (uint64_t)visits.count; /* those have giants, which all meet */
+                for (int i = 0; i < count; i++)
+                    for (int k = 0; k < broad_packet && is_sphere(i); k++) {
+                        const double from[3] = {rays.o[0][k], rays.o[1][k], rays.o[2][k]};
+                        double       centre[3], m[3], across[3];
+                        const double r = inner(centre, i);
+                        v3_sub(m, centre, from);
+                        const double along = v3_dot(m, d);
+                        v3_add_scaled(across, m, -along, d);
+                        if (!(along >= 0 && v3_dot(across, across) <= r * r && r < 1e100)) continue;
+                        met++;
+                        CHECK(has(visits.count, item[i]));
+                    }
+            }
+        }
+    }
+    print_message("closer boxes: %llu visits instead of %llu\n", (unsigned long long)visited[1], (unsigned long long)visited[0]);
+    CHECK(met > 100);
+    CHECK(visited[1] < visited[0] - visited[0] / 8); /* half of the items have boxes of a ninth of the area */
+}
+
 static void nothing_and_one(void **state)
 {
     (void)state;
@@ -208,6 +276,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(volumes_lose_nothing),
         cmocka_unit_test(rays_lose_nothing),
+        cmocka_unit_test(closer_boxes_lose_nothing_in_them),
         cmocka_unit_test(nothing_and_one),
     };
     return cmocka_run_group_tests(tests, open_arena, close_arena);

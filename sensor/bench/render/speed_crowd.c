@@ -218,6 +218,8 @@ Status bench_speed_crowd(Bench *bench)
         status = time_stack(&all, 200, 150, 0.5, "crowd: 200 tanks in 60 m, from 150 m, 160 x 108");
     if (status == STATUS_OK && !bench_quick(bench))
         status = time_stack(&all, 1000, 150, 0.5, "crowd: 1000 tanks in 60 m, from 150 m, 160 x 108");
+    if (status == STATUS_OK && !bench_quick(bench))
+        status = time_stack(&all, 2000, 150, 0.5, "crowd: 2000 tanks in 60 m, from 150 m, 160 x 108");
     if (all.landscape.cover) landscape_destroy(&all.landscape);
     pool_destroy(all.pool);
     arena_destroy(all.arena);
