@@ -84,7 +84,7 @@ void mark_boxes(Job *job)
         const double  about[4] = {box[0] - about_px, box[1] - about_px, box[2] + about_px, box[3] + about_px};
         if (i != job->request->hidden_entity && !target_grid_hidden(job, i)) mark_box(job, about, refine_leaves);
         if (!(fmax(box[2] - box[0], box[3] - box[1]) <= middling_px)) {
-            mark_thin_lines(job, i);
+            mark_thin_lines(job, i, refine_all);
             continue;
         }
         if (!job->is_small[i]) mark_box(job, box, refine_all);

@@ -1,7 +1,6 @@
 /* render/frame/thin_lines.c: antennas, wires and edge-on plates on the image, by boxes about them. */
 #include "render/frame/thin_lines.h"
 
-#include "render/frame/edges.h"
 #include "render/parts/parts.h"
 
 /* Pieces narrower than a pixel have boxes narrower than this: about a square bar the box may stand on its edge. */
@@ -41,7 +40,7 @@ static bool line_of_box(ThinLine *out, const View *view, const PosedNode *node, 
 }
 
 /* Marks the pixels that come within half the line's width of it. */
-static void mark_line(Job *job, const ThinLine *line)
+static void mark_line(Job *job, const ThinLine *line, uint8_t flag)
 {
     const View  *view = &job->request->view;
     const double dx = line->end_px[1][0] - line->end_px[0][0], dy = line->end_px[1][1] - line->end_px[0][1];
@@ -56,11 +55,11 @@ static void mark_line(Job *job, const ThinLine *line)
         const double on = line->end_px[0][!axis] + (k + 0.5 - line->end_px[0][axis]) * slope;
         const int    from = (int)clamp(floor(on - reach), 0, size[!axis]), to = (int)clamp(ceil(on + reach), 0, size[!axis]);
         for (int l = from; l < to; l++)
-            job->refine[axis ? pixel_index(job, l, k) : pixel_index(job, k, l)] |= refine_all;
+            job->refine[axis ? pixel_index(job, l, k) : pixel_index(job, k, l)] |= flag;
     }
 }
 
-void mark_thin_lines(Job *job, int index)
+void mark_thin_lines(Job *job, int index, uint8_t flag)
 {
     const PosedEntity *entity = visibility_posed(job->scene.visibility, index);
     for (int n = 0; entity->model >= 0 && n < entity->node_count; n++) {
@@ -68,7 +67,7 @@ void mark_thin_lines(Job *job, int index)
         const ThinBox *box = parts_node_thin(&entity->node[n], &count);
         for (int k = 0; k < count; k++) {
             ThinLine line;
-            if (line_of_box(&line, &job->request->view, &entity->node[n], &box[k]) && line.width_px < thin_box_px) mark_line(job, &line);
+            if (line_of_box(&line, &job->request->view, &entity->node[n], &box[k]) && line.width_px < thin_box_px) mark_line(job, &line, flag);
         }
     }
 }

@@ -4,8 +4,8 @@
 
 #include "render/frame/passes.h"
 
-/* Marks the pixels on thin pieces of an entity that lies in front of the eye: some of their rays meet such a piece and
+/* Sets a flag of Job.refine at the pixels on thin pieces of an entity that lies in front of the eye: some of their rays meet such a piece and
  * others do not, and one ray a pixel shows it as dashes. */
-void mark_thin_lines(Job *job, int index);
+void mark_thin_lines(Job *job, int index, uint8_t flag);
 
 #endif
