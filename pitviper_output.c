@@ -7,7 +7,23 @@
 #include <stdlib.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
+
+/* ---- locks ------------------------------------------------------------------------------------------ */
+
+enum { lock_tries = 500 }; /* a millisecond apart */
+
+/* False: another process writes it. A program that another thread is starting has copies of this process's descriptors,
+ * and with them the locks of what was closed meanwhile, for the moment until it is loaded. */
+static bool lock_file(int file)
+{
+    for (int k = 0; flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; k++) { /* else: a file system without locks */
+        if (k == lock_tries) return false;
+        nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    }
+    return true;
+}
 
 /* ---- folders that are held ------------------------------------------------------------------------ */
 
@@ -61,7 +77,7 @@ Status output_hold(const char *module, const char *folder)
     h->path[length] = 0;
     h->folder       = open(h->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     const int error = h->folder < 0 ? errno : 0;
-    if (!error && (flock(h->folder, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)) { /* else: a file system without locks */
+    if (!error && lock_file(h->folder)) {
         held = h;
         return STATUS_OK;
     }
@@ -196,7 +212,7 @@ static int open_at(const Place *at, unsigned how)
             fcntl(file, F_SETFL, fcntl(file, F_GETFL) & ~O_NONBLOCK);
             return file;
         }
-        if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return fail(file, EBUSY);
+        if (!lock_file(file)) return fail(file, EBUSY);
         const bool found = fstatat(at->folder, at->name, &there, AT_SYMLINK_NOFOLLOW) == 0 && same_file(&about, &there);
         if (found) return how & OUTPUT_KEEP || ftruncate(file, 0) == 0 ? file : fail(file, errno);
         close(file); /* renamed or removed before it was locked: what has the name now */

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 
 static char root[temp_path_size];
 
@@ -99,6 +100,25 @@ static void below_a_held_folder_no_folder_is_a_link(void **state)
     CHECK(output_remove(in("other/000000.png")) == 0 && output_remove(in("other")) == 0 && output_remove(in("out")) == 0);
 }
 
+/* A file that was closed is written again while a process that was started meanwhile still has a copy of its descriptor. */
+static void a_program_being_started_is_no_writer(void **state)
+{
+    (void)state;
+    const int first = output_open(in("file"), 0);
+    CHECK(first >= 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        usleep(20000);
+        _exit(0);
+    }
+    CHECK(child > 0 && close(first) == 0);
+    const int probe = open(in("file"), O_WRONLY);
+    CHECK(flock(probe, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK && close(probe) == 0); /* the copy has the lock */
+    const int second = output_open(in("file"), 0);
+    CHECK(second >= 0 && close(second) == 0);
+    CHECK(waitpid(child, NULL, 0) == child && output_remove(in("file")) == 0);
+}
+
 static void a_second_writer_is_refused(void **state)
 {
     (void)state;
@@ -177,6 +197,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(links_are_not_followed),
         cmocka_unit_test(below_a_held_folder_no_folder_is_a_link),
+        cmocka_unit_test(a_program_being_started_is_no_writer),
         cmocka_unit_test(a_second_writer_is_refused),
         cmocka_unit_test(a_file_is_whole_or_absent),
         cmocka_unit_test(pipes_and_devices_where_they_make_sense),
