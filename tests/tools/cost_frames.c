@@ -134,7 +134,7 @@ static Status place_vehicle(const TrialScene *scene, int k, double at_east_m, do
 static Status populate(TrialScene *scene, Place place)
 {
     const uint32_t running = 1u << 22, smoking = 3u << 5;
-    const int      vehicles = place == BARE ? 0 : place == VEHICLES ? 20 : place == CROWD ? 400 : 5;
+    const int      vehicles = place == BARE ? 0 : place == VEHICLES ? 20 : place == CROWD ? 250 : 5;
     Status         status = STATUS_OK;
     for (int later = 0; later < (place == SMOKE ? 3 : 1) && status == STATUS_OK; later++) {
         for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
