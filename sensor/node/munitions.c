@@ -117,10 +117,10 @@ static void burst_by_place(Munitions *m, const DisDetonation *burst, const Entit
     for (int k = 0; k < 2; k++)
         for (int i = 0; (uint64_t)i < kind[k]->count && i < munitions_kept; i++) {
             if (kind[k]->spent[i] || counts_s - kind[k]->heard_s[i] > munition_silent_s) continue;
-            const Aimed *shot = shot_with(m, kind[k]->id[i]);
-            if (shot && contradicts(shot->firing, burst->firing)) continue;
             const double off_m = miss_m(table, kind[k]->id[i], burst->p_ecef, t_s);
             if (!(off_m <= least_m)) continue;
+            const Aimed *shot = shot_with(m, kind[k]->id[i]);
+            if (shot && contradicts(shot->firing, burst->firing)) continue;
             least_m = off_m;
             ring    = kind[k];
             nearest = i;
