@@ -38,12 +38,12 @@ static void targets_that_are_not_refined_count(void **state)
         TrialScene scene;
         open_scene(&scene, &lab.ground, &far[k]);
         RenderRequest request = request_of(&scene, &far[k]);
-        request.view = trial_view(&scene, far[k].back_m, far[k].above_m, far[k].hfov_deg * rad_per_deg, 192, 144);
+        request.view = trial_view(&scene, far[k].back_m, far[k].above_m, far[k].hfov_deg * rad_per_deg, 160, 120);
         request.edge_samples = request.target_samples = 0;
         TrialFrame       frame = frame_of(&scene, &request, 0);
         const FrameError error = error_of(&frame);
         request.budget  = false;
-        request.samples = 12;
+        request.samples = 8;
         const TrialFrame better = frame_of(&scene, &request, 1);
         for (int b = 0; b < radiance_bands; b++)
             judge(&rays, far[k].name, "sampling", (Band)b, error.share[b][ERROR_SAMPLING],
