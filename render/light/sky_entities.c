@@ -154,7 +154,7 @@ void sky_visibility_task(const SkyVisibility *v, SkyWorker *w, int task)
     atomic_fetch_add_explicit(&e->done, 1, memory_order_release);
 }
 
-/* Each thread takes tasks that none has taken, and waits for those of others: these wait for nobody. */
+/* Each thread takes tasks that no other has taken, then waits for those that others are at. A task itself waits for nothing. */
 static void complete(const SkyVisibility *v, SkyWorker *w, SkyEntity *e)
 {
     if (atomic_load_explicit(&e->done, memory_order_acquire) == e->tasks) return;

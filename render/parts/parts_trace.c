@@ -440,6 +440,17 @@ static void fill_up(Chunk *chunk)
     }
 }
 
+/* Ray `from` of a chunk becomes its ray `to`, not behind it. */
+static void keep_ray(Chunk *chunk, int to, int from)
+{
+    for (int c = 0; c < 3; c++) {
+        chunk->o[c][to] = chunk->o[c][from];
+        chunk->d[c][to] = chunk->d[c][from];
+    }
+    chunk->best_m[to] = chunk->best_m[from];
+    chunk->ray[to]    = chunk->ray[from];
+}
+
 /* The rays of the list that may meet the entity's box ahead: one test that saves most rays a test of every node. */
 static void take_chunk(Chunk *chunk, const PosedEntity *entity, const double *const o[3], const double *const d[3],
                        const double *far_m, const int *list, int count, bool ask_all)
@@ -471,12 +482,7 @@ static void take_chunk(Chunk *chunk, const PosedEntity *entity, const double *co
             f64x4_bits(f64x4_and(f64x4_at_most(in, out), f64x4_less(in, f64x4_load(chunk->best_m + i))));
         for (int j = i; j < i + 4 && j < count && meets; j++) {
             if (!(meets >> (j - i) & 1)) continue;
-            for (int c = 0; c < 3; c++) {
-                chunk->o[c][kept] = chunk->o[c][j];
-                chunk->d[c][kept] = chunk->d[c][j];
-            }
-            chunk->best_m[kept] = chunk->best_m[j];
-            chunk->ray[kept++]  = chunk->ray[j];
+            keep_ray(chunk, kept++, j);
         }
     }
     chunk->count = kept;
@@ -518,12 +524,7 @@ static void drop_met(Chunk *chunk, const uint8_t *met)
     int kept = 0;
     for (int i = 0; i < chunk->count; i++) {
         if (met[chunk->ray[i]]) continue;
-        for (int c = 0; c < 3; c++) {
-            chunk->o[c][kept] = chunk->o[c][i];
-            chunk->d[c][kept] = chunk->d[c][i];
-        }
-        chunk->best_m[kept] = chunk->best_m[i];
-        chunk->ray[kept++]  = chunk->ray[i];
+        keep_ray(chunk, kept++, i);
     }
     chunk->count = kept;
     if (kept > 0) fill_up(chunk);

@@ -38,9 +38,9 @@ void munitions_fire(Munitions *m, const DisFire *fire);
 /* counts_s: time from which the report counts. */
 void munitions_report(Munitions *m, const DisEntityState *state, double counts_s);
 /* A Detonation ends the munition that it names. One without a munition id ends that of the latest Fire of its event and
- * firing entity; if that Fire named none, nobody's: a round without an entity. Without such a Fire it ends the munition in
- * the table whose path, extrapolated to t_s and 0.1 s either way, leads nearest to it, within 10 m, unless a Fire gives
- * that one another firing entity; a munition that reports more than 50 m away later flies on. */
+ * firing entity; if that Fire named none, it ends no munition: it is of a round without an entity. Without such a Fire it
+ * ends the munition in the table whose path, extrapolated to t_s and 0.1 s either way, leads nearest to it, within 10 m,
+ * unless a Fire gives that one another firing entity; a munition that reports more than 50 m away later flies on. */
 void munitions_burst(Munitions *m, const DisDetonation *burst, const EntityTable *table, double t_s, double counts_s);
 
 /* As those of player.h. */

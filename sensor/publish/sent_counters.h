@@ -4,7 +4,8 @@
 
 #include "pitviper.h"
 
-/* Datagrams of all streams: taken by the kernel; for which nobody listened; without a route; for which its buffer was full. */
+/* Datagrams of all streams: taken by the kernel; refused because no program listens there; without a route; dropped because the
+ * kernel's buffer was full. */
 typedef struct StreamCounters {
     uint64_t sent, refused, no_route, lost;
 } StreamCounters;

@@ -1,4 +1,5 @@
-/* tests/entities/test_entity_pause.c: Stop/Freeze and Start/Resume: what stands still, what is no silence, who is meant. */
+/* tests/entities/test_entity_pause.c: Stop/Freeze and Start/Resume: which entities stop, what does not count as silence, to whom a
+ * PDU applies. */
 #include "tests/entities/entity_fixture.h"
 #include "dis/datagram.h"
 

@@ -92,18 +92,24 @@ static DisLog make_log(Kind kind, double heartbeat_s, bool beside)
     return (DisLog){.count = count, .datagram = datagram};
 }
 
+/* A player of the log, and a table for it. */
+static void start(Player **player, EntityTable **table, const DisLog *log, bool causal)
+{
+    const EntityTableConfig config = entity_table_default_config();
+    assert_int_equal(entity_table_create(table, &config, catalog), STATUS_OK);
+    assert_int_equal(player_create(player, -1, causal), STATUS_OK);
+    assert_int_equal(player_add_log(*player, log), STATUS_OK);
+}
+
 /* Worst distance of the mover from its line over the frames from its sender's second report on, m; frames after the
  * last report left out. */
 static double worst_m(Kind kind, double heartbeat_s, bool beside, bool causal)
 {
     const DisLog      log = make_log(kind, heartbeat_s, beside);
-    EntityTableConfig config = entity_table_default_config();
     EntityTable      *table  = NULL;
     Player           *player = NULL;
     double            worst = 0;
-    assert_int_equal(entity_table_create(&table, &config, catalog), STATUS_OK);
-    assert_int_equal(player_create(&player, -1, causal), STATUS_OK);
-    assert_int_equal(player_add_log(player, &log), STATUS_OK);
+    start(&player, &table, &log, causal);
     for (int f = 0; f * frame_s < span_s; f++) {
         const double   passed_s = 0.5 * heartbeat_s + 0.06 + f * frame_s;
         const double   t_s = player_time_s(player, unix0_s + passed_s);
@@ -206,14 +212,11 @@ typedef struct Missed {
 static Missed follow_jittery(const Jitter *j, uint32_t seed, bool causal, double from_s)
 {
     const DisLog      log = make_jittery(j, seed);
-    EntityTableConfig config = entity_table_default_config();
     EntityTable      *table  = NULL;
     Player           *player = NULL;
     Missed            missed = {0};
     double            before[2] = {NAN, NAN};
-    assert_int_equal(entity_table_create(&table, &config, catalog), STATUS_OK);
-    assert_int_equal(player_create(&player, -1, causal), STATUS_OK);
-    assert_int_equal(player_add_log(player, &log), STATUS_OK);
+    start(&player, &table, &log, causal);
     for (double t_s = sim0_s + 0.01; t_s < sim0_s + span_s - 5; t_s += frame_s) {
         player_feed(player, table, t_s);
         for (int s = 0; s < 2; s++) {
@@ -298,13 +301,10 @@ static void an_offset_is_known_as_well_as_the_least_delays(void **state)
     for (uint32_t seed = 1; seed <= seeds; seed++) {
         const Jitter      j = {.jitter_s = 1, .offset_s = 777.7, .copies = 1, .first_late = true};
         const DisLog      log = make_jittery(&j, seed);
-        EntityTableConfig config = entity_table_default_config();
         EntityTable      *table  = NULL;
         Player           *player = NULL;
         int               next = 0;
-        assert_int_equal(entity_table_create(&table, &config, catalog), STATUS_OK);
-        assert_int_equal(player_create(&player, -1, true), STATUS_OK);
-        assert_int_equal(player_add_log(player, &log), STATUS_OK);
+        start(&player, &table, &log, true);
         const double zero_s = player_time_s(player, sent[0].capture_s);
         for (double t_s = zero_s; next < times; t_s += frame_s) {
             const double passed_s = t_s - zero_s;

@@ -13,7 +13,7 @@ typedef struct Memory {
     Consumer    consumer;
     MemoryRing *ring;
     char        name[memory_name_size];
-    uint64_t   *unnamed, own_unnamed; /* frames; own: where nobody asked for them */
+    uint64_t   *unnamed, own_unnamed; /* frames; own: counts where the caller gave no place for it */
     bool        counts;
     int         room;   /* for targets; 0: kind sensor */
     int         plane_count;
