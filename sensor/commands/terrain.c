@@ -4,6 +4,7 @@
 
 #include "sensor/commands/terrain_again.h"
 #include "sensor/commands/terrain_info.h"
+#include "sensor/commands/terrain_report.h"
 #include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 #include "sensor/settings/next_option.h"
@@ -21,8 +22,9 @@ static const char help[] =
     "import: a terrain store, one file that is mapped (terrain.store), from any files that GDAL reads. SOURCE: terrain\n"
     "models, that is bare ground; files, or folders of them. Sheets may overlap, have different postings and coordinate\n"
     "systems, and holes: the finest wins, of equals the one given first; a large hole is filled from coarser files, a\n"
-    "small one from its surroundings. FILE@geoid and FILE@ellipsoid state what one file's heights are above; FILE:BAND\n"
-    "names a band.\n"
+    "small one from its surroundings. What was read of each file is said before it is used; where a guess is wrong, say what\n"
+    "is right: for all files by the options below, for one after its name: FILE:BAND, FILE@geoid, FILE@ellipsoid,\n"
+    "FILE@us-ft (a unit), FILE@down (depths), FILE@nodata=-9999, FILE@nodata=none, FILE@srs=EPSG:32633.\n"
     "\n"
     "sources\n"
     "  --surface FILES        surface models, roofs and crowns included: taken apart into bare ground, buildings and\n"
@@ -33,6 +35,9 @@ static const char help[] =
     "  --canopy-height FILE   height of the trees, m; of whole numbers above 80 tenths of a metre, as LANDFIRE's\n"
     "  --canopy-cover FILE    share of the ground under trees, percent\n"
     "  --vertical WHAT        heights are above: auto (by each file's coordinate system), geoid, ellipsoid (auto)\n"
+    "  --unit UNIT            of the heights: m, dm, cm, ft, us-ft (as each file says)\n"
+    "  --srs EPSG:N           coordinate system (as each file says)\n"
+    "  --nodata N             a number that is no height; none: voids are those that a file declares, no others\n"
     "  --geoid FILE           geoid grid in PROJ's .gtx form (EGM96 of proj-data)\n"
     "terrain\n"
     "  --origin LAT,LON       middle of the terrain, degrees (middle of the finest file)\n"
@@ -43,7 +48,8 @@ static const char help[] =
     "  -o, --out STORE        the store; made again from the same sources when one of them changes and\n"
     "                         all lie in its folder; `terrain again STORE` makes it from any\n"
     "  --overwrite            replace an existing STORE; without it that is an error\n"
-    "  --threads N            1 .. 256 (all processors)\n";
+    "  --threads N            1 .. 256 (all processors)\n"
+    "  --json                 what was read and made as one JSON object on standard output\n";
 
 static int refuse(const char *option, const char *what)
 {
@@ -53,18 +59,19 @@ static int refuse(const char *option, const char *what)
 typedef struct Wanted {
     TerrainOptions terrain;
     const char    *out;
-    bool           overwrite;
+    bool           overwrite, json;
     long long      threads;
 } Wanted;
 
 /* 0: go on; else the exit code. */
 static int parse(Wanted *w, int argc, char **argv)
 {
-    enum { OUT = 'o', HELP = 'h', OVERWRITE = 256, THREADS, VALUE };
+    enum { OUT = 'o', HELP = 'h', OVERWRITE = 256, THREADS, JSON, VALUE };
     static const struct option options[] = {
         {"out", 1, NULL, OUT},
         {"overwrite", 0, NULL, OVERWRITE},
         {"threads", 1, NULL, THREADS},
+        {"json", 0, NULL, JSON},
         {"help", 0, NULL, HELP},
         /* those of terrain/import/options.h */
         {"surface", 1, NULL, VALUE},
@@ -74,13 +81,16 @@ static int parse(Wanted *w, int argc, char **argv)
         {"canopy-height", 1, NULL, VALUE + 4},
         {"canopy-cover", 1, NULL, VALUE + 5},
         {"vertical", 1, NULL, VALUE + 6},
-        {"geoid", 1, NULL, VALUE + 7},
-        {"origin", 1, NULL, VALUE + 8},
-        {"size", 1, NULL, VALUE + 9},
-        {"spacing", 1, NULL, VALUE + 10},
-        {"horizon", 1, NULL, VALUE + 11},
+        {"unit", 1, NULL, VALUE + 7},
+        {"srs", 1, NULL, VALUE + 8},
+        {"nodata", 1, NULL, VALUE + 9},
+        {"geoid", 1, NULL, VALUE + 10},
+        {"origin", 1, NULL, VALUE + 11},
+        {"size", 1, NULL, VALUE + 12},
+        {"spacing", 1, NULL, VALUE + 13},
+        {"horizon", 1, NULL, VALUE + 14},
         {NULL, 0, NULL, 0}};
-    enum { own_options = 4 };
+    enum { own_options = 5 };
     const char *why = NULL;
     char        text[256], name[64];
     terrain_options_default(&w->terrain);
@@ -91,6 +101,7 @@ static int parse(Wanted *w, int argc, char **argv)
         switch (option) {
         case OUT: w->out = optarg; break;
         case OVERWRITE: w->overwrite = true; break;
+        case JSON: w->json = true; break;
         case THREADS:
             if (!text_to_long(&w->threads, optarg) || w->threads < 1 || w->threads > 256)
                 return refuse("--threads", "needs a whole number in 1 .. 256");
@@ -111,11 +122,16 @@ static int parse(Wanted *w, int argc, char **argv)
     return 0;
 }
 
-/* ---- progress and summary -------------------------------------------------------------------- */
+/* ---- progress -------------------------------------------------------------------- */
+
+typedef struct Watching {
+    double      begun_s;
+    SourceLines sources;
+} Watching;
 
 static bool show(void *user, const char *stage, double share)
 {
-    const double begun_s = *(const double *)user;
+    const double begun_s = ((const Watching *)user)->begun_s;
     char         text[120];
     if (stop_asked()) return false;
     if (wall_clock_s() - begun_s < 1) return true;
@@ -124,51 +140,7 @@ static bool show(void *user, const char *stage, double share)
     return true;
 }
 
-static void print_classes(const CoverReport *cover)
-{
-    bool shown[SURFACE_COUNT] = {false};
-    for (int n = 0; n < 5; n++) { /* the five that cover most */
-        int best = 0;
-        for (int s = 1; s < SURFACE_COUNT; s++)
-            if (!shown[s] && cover->share[s] > (best ? cover->share[best] : 0)) best = s;
-        if (!best) break;
-        shown[best] = true;
-        log_print("%s%s %.0f %%", n ? ", " : "classes: ", surface_name((SurfaceClass)best), 100 * cover->share[best]);
-    }
-    if (cover->posting_m > 0)
-        log_print(" (pixels %.3g m apart, table %s, %ld cells with codes it lacks)", cover->posting_m, cover->table,
-                  cover->unknown);
-    log_print("\n");
-}
-
-static void print_summary(const Wanted *w, const TerrainReport *r, double seconds)
-{
-    const ElevationReport *e = &r->elevation;
-    log_print("%s: %.1f M posts, %.3g m apart over %.2f x %.2f km, from %d file%s of posts %.3g m apart\n", w->out,
-              1e-6 * r->nx * r->ny, e->spacing_m, 1e-3 * e->width_m[0], 1e-3 * e->width_m[1], e->sheets,
-              e->sheets == 1 ? "" : "s", e->posting_m);
-    if (e->ellipsoidal) log_print("heights: above the ellipsoid\n");
-    else log_print("heights: above the geoid, which lies %+.2f m from the ellipsoid here; converted at each post\n",
-                   e->geoid_m);
-    if (r->apart)
-        log_print("surface model taken apart%s: bare ground %.1f %%, buildings %.1f %% (%llu), trees %.1f %% (%llu "
-                  "crowns)\n",
-                  r->beside ? " with the terrain model beside it" : " by its own shape", 100 * r->kind_share[0],
-                  100 * r->kind_share[1], (unsigned long long)r->store.buildings, 100 * r->kind_share[2],
-                  (unsigned long long)r->store.crowns);
-    if (e->places > 0)
-        log_print("resampling: %.3f m rms, p99 %.3f, at most %.3f against the files\n", e->error_rms_m, e->error_p99_m,
-                  e->error_max_m);
-    if (e->voids > 0) log_print("voids: %ld posts filled from their surroundings\n", e->voids);
-    if (e->voids_coarser > 0) log_print("voids: %ld posts filled from coarser files\n", e->voids_coarser);
-    log_print("quantisation: steps of %.3g mm, at most %.3g mm off\n", 1e3 * r->store.step_m[0],
-              1e3 * r->store.worst_m[0]);
-    if (r->apart || r->cover.posting_m > 0) print_classes(&r->cover);
-    if (r->photo_posting_m > 0) log_print("photograph: pixels %.3g m apart\n", r->photo_posting_m);
-    if (r->canopy_scale_m > 0) log_print("canopy height: numbers of %.2g m\n", r->canopy_scale_m);
-    log_print("%.1f MB in %.1f s (levels around %.1f, posts %.1f, cover and photograph %.1f, writing %.1f)\n",
-              1e-6 * (double)r->store.octets, seconds, r->seconds[0], r->seconds[1], r->seconds[2], r->seconds[3]);
-}
+static void heard(void *user, const ElevationSurvey *survey) { source_lines_add(&((Watching *)user)->sources, survey); }
 
 static int import_command(int argc, char **argv)
 {
@@ -187,11 +159,13 @@ static int import_command(int argc, char **argv)
         status = STATUS_IO;
     }
     if (status == STATUS_OK) status = pool_create(&pool, (int)w->threads);
-    double begun_s = wall_clock_s();
+    Watching           watching = {.begun_s = wall_clock_s(), .sources = {.json = w->json}};
+    const TerrainWatch watch = {show, heard, &watching};
     stop_by_signals();
-    if (status == STATUS_OK) status = terrain_import(&r, &w->terrain, w->out, pool, show, &begun_s);
+    if (status == STATUS_OK) status = terrain_import(&r, &w->terrain, w->out, pool, &watch);
     log_status(NULL);
-    if (status == STATUS_OK) print_summary(w, &r, wall_clock_s() - begun_s);
+    if (status == STATUS_OK) status = terrain_report(w->out, &r, wall_clock_s() - watching.begun_s, &watching.sources);
+    source_lines_free(&watching.sources);
     if (status == STATUS_NO_MEMORY) log_error("terrain import: out of memory; --size takes a part");
     if (r.stopped) log_warn("terrain import: stopped: %s is as it was", w->out);
     code = r.stopped ? stop_exit_code() : status == STATUS_OK ? 0 : 1;

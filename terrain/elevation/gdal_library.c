@@ -1,15 +1,17 @@
-/* terrain/elevation/gdal_library.c: the functions of GDAL that raster.c calls. */
+/* terrain/elevation/gdal_library.c: the functions of GDAL that raster.c and raster_stated.c call. */
 #include "terrain/elevation/gdal_library.h"
 
 #define GDAL(X)                                                                                                       \
     X(CPLErrorReset) X(CPLGetLastErrorMsg) X(CPLPopErrorHandler) X(CPLPushErrorHandler) X(CPLQuietErrorHandler)       \
-    X(CPLSetConfigOption) X(CSLDestroy) X(GDALGetFileList)                                                            \
-    X(GDALAllRegister) X(GDALClose) X(GDALDataTypeIsInteger) X(GDALDatasetRasterIO) X(GDALGetBlockSize)               \
-    X(GDALGetCacheMax64) X(GDALGetGeoTransform) X(GDALGetMaskBand) X(GDALGetMaskFlags) X(GDALGetRasterBand)           \
-    X(GDALGetRasterCount) X(GDALGetRasterDataType) X(GDALGetRasterOffset) X(GDALGetRasterScale)                       \
-    X(GDALGetRasterUnitType) X(GDALGetRasterXSize) X(GDALGetRasterYSize) X(GDALGetSpatialRef) X(GDALIdentifyDriver)   \
-    X(GDALInvGeoTransform) X(GDALOpen) X(GDALRasterIO) X(GDALSetCacheMax64) X(OCTDestroyCoordinateTransformation)     \
+    X(CPLSetConfigOption) X(CSLDestroy) X(GDALAllRegister) X(GDALClose) X(GDALDataTypeIsInteger)                      \
+    X(GDALDatasetRasterIO) X(GDALGetBlockSize) X(GDALGetCacheMax64) X(GDALGetDataTypeName) X(GDALGetFileList)         \
+    X(GDALGetGeoTransform) X(GDALGetMaskBand) X(GDALGetMaskFlags) X(GDALGetMetadata) X(GDALGetMetadataItem)           \
+    X(GDALGetRasterBand) X(GDALGetRasterColorInterpretation) X(GDALGetRasterCount) X(GDALGetRasterDataType)           \
+    X(GDALGetRasterNoDataValue) X(GDALGetRasterOffset) X(GDALGetRasterScale) X(GDALGetRasterUnitType)                 \
+    X(GDALGetRasterXSize) X(GDALGetRasterYSize) X(GDALGetSpatialRef) X(GDALIdentifyDriver) X(GDALInvGeoTransform)     \
+    X(GDALOpen) X(GDALRasterIO) X(GDALSetCacheMax64) X(OCTDestroyCoordinateTransformation)                            \
     X(OCTNewCoordinateTransformation) X(OCTTransform) X(OSRClone) X(OSRDemoteTo2D) X(OSRDestroySpatialReference)      \
-    X(OSRGetAngularUnits) X(OSRGetAxesCount) X(OSRImportFromEPSG) X(OSRIsCompound) X(OSRIsGeographic) X(OSRIsSame)    \
-    X(OSRNewSpatialReference) X(OSRSetAxisMappingStrategy) X(OSRStripVertical)
+    X(OSRGetAngularUnits) X(OSRGetAttrValue) X(OSRGetAxesCount) X(OSRGetAxis) X(OSRGetLinearUnits) X(OSRGetName)      \
+    X(OSRGetTargetLinearUnits) X(OSRImportFromEPSG) X(OSRIsCompound) X(OSRIsGeographic) X(OSRIsProjected)             \
+    X(OSRIsSame) X(OSRNewSpatialReference) X(OSRSetAxisMappingStrategy) X(OSRSetFromUserInput) X(OSRStripVertical)
 LIBRARY(gdal_library, GDAL, "GDAL", PITVIPER_GDAL_FILE, "libgdal32");

@@ -4,6 +4,7 @@
 
 #include "terrain/elevation/gdal_library.h"
 #include "terrain/elevation/raster_source.h"
+#include "terrain/elevation/raster_stated.h"
 
 #include <strings.h>
 #include <cpl_conv.h>
@@ -66,49 +67,65 @@ typedef struct Opened {
     int    width, height, bands;
     bool   ellipsoidal, bytes, whole;
     double metres_per_unit;
-    int    row_block, band;
-    RasterVertical vertical;
+    int    row_block;
+    RasterStated stated;
+    RasterChoice choice;
     OGRSpatialReferenceH crs;
 } Opened;
 
-/* As GDAL reports them from files; 0: an unknown unit of length. */
-static double metres_of_unit(const char *unit)
+/* The coordinate system that the user names, else the file's; NULL, logged: none. */
+static OGRSpatialReferenceH crs_of(const RasterChoice *choice, GDALDatasetH file, const char *path, const char *key)
 {
-    static const struct {
-        const char *name;
-        double      metres;
-    } units[] = {{"", 1},
-                 {"m", 1},
-                 {"metre", 1},
-                 {"metres", 1},
-                 {"meter", 1},
-                 {"meters", 1},
-                 {"dm", 0.1},
-                 {"decimetre", 0.1},
-                 {"decimeter", 0.1},
-                 {"cm", 0.01},
-                 {"centimetre", 0.01},
-                 {"centimeter", 0.01},
-                 {"km", 1000},
-                 {"kilometre", 1000},
-                 {"kilometer", 1000},
-                 {"ft", 0.3048},
-                 {"foot", 0.3048},
-                 {"feet", 0.3048},
-                 {"us-ft", 1200.0 / 3937},
-                 {"ftUS", 1200.0 / 3937},
-                 {"US survey foot", 1200.0 / 3937}};
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-        if (strcasecmp(unit, units[i].name) == 0) return units[i].metres;
-    return 0;
+    const OGRSpatialReferenceH stated = GDALGetSpatialRef(file);
+    if (!*choice->srs) {
+        if (!stated)
+            log_error("%s: %s does not say its coordinate system; %s@srs=EPSG:nnnn does (or gdal_edit.py -a_srs EPSG:nnnn)", key,
+                      path, path);
+        return stated ? OSRClone(stated) : NULL;
+    }
+    OGRSpatialReferenceH named = OSRNewSpatialReference(NULL);
+    if (named && OSRSetFromUserInput(named, choice->srs) == OGRERR_NONE) return named;
+    log_error("%s: %s: '%s' is no coordinate system that PROJ knows: %s; EPSG:32633 is one", key, path, choice->srs,
+              reason("unknown"));
+    if (named) OSRDestroySpatialReference(named);
+    return NULL;
 }
 
-static Status describe(Opened *out, GDALDatasetH file, const char *path, const char *key)
+/* Corner 0, 0 and pixels of 1 are what GDAL gives a file that says nothing. */
+static bool is_placed(double transform[6], GDALDatasetH file)
 {
-    Opened o = {
-        .width = GDALGetRasterXSize(file), .height = GDALGetRasterYSize(file), .bands = GDALGetRasterCount(file)};
-    const OGRSpatialReferenceH crs = GDALGetSpatialRef(file);
-    double inverse[6];
+    static const double nothing[6] = {0, 1, 0, 0, 0, 1};
+    double inverse[6], mirrored[6];
+    if (GDALGetGeoTransform(file, transform) != CE_None || !GDALInvGeoTransform(transform, inverse)) return false;
+    memcpy(mirrored, transform, sizeof mirrored);
+    mirrored[5] = fabs(mirrored[5]);
+    return memcmp(mirrored, nothing, sizeof nothing) != 0;
+}
+
+/* Of a file without a band of its own: where its numbers are. */
+static void say_parts(GDALDatasetH file, const char *path, const char *key)
+{
+    char **part = GDALGetMetadata(file, "SUBDATASETS");
+    char   names[400] = "";
+    int    count = 0;
+    for (int k = 0; part && part[k]; k++) {
+        const char *name = strstr(part[k], "_NAME=");
+        if (!name) continue;
+        const size_t used = strlen(names);
+        if (count++ < 4) snprintf(names + used, sizeof names - used, "%s%s", used ? " or " : "", name + 6);
+    }
+    log_error("%s: %s holds %d grids, none of them chosen; name one as gdalinfo lists it: %s%s", key, path, count, names,
+              count > 4 ? " ..." : "");
+}
+
+static Status describe(Opened *out, GDALDatasetH file, const RasterChoice *choice, const char *path, const char *key)
+{
+    Opened o = {.width = GDALGetRasterXSize(file), .height = GDALGetRasterYSize(file),
+                .bands = GDALGetRasterCount(file), .choice = *choice};
+    if (o.bands < 1 && GDALGetMetadata(file, "SUBDATASETS")) {
+        say_parts(file, path, key);
+        return STATUS_BAD_VALUE;
+    }
     if (o.bands < 1 || o.width < 2 || o.height < 2) {
         log_error("%s: %s holds %d bands of %d x %d pixels; a sheet needs a band and 2 x 2", key, path, o.bands,
                   o.width, o.height);
@@ -119,29 +136,29 @@ static Status describe(Opened *out, GDALDatasetH file, const char *path, const c
                   path, o.width, o.height, (int)most_side);
         return STATUS_BAD_VALUE;
     }
-    if (!crs) {
-        log_error("%s: %s does not say its coordinate system; gdal_edit.py -a_srs EPSG:nnnn %s", key, path, path);
+    if (choice->band > o.bands) {
+        log_error("%s: %s has %d bands, not %d; gdalinfo %s lists them", key, path, o.bands, choice->band, path);
         return STATUS_BAD_VALUE;
     }
-    if (GDALGetGeoTransform(file, o.transform) != CE_None || !GDALInvGeoTransform(o.transform, inverse)) {
+    if (!is_placed(o.transform, file)) {
         log_error("%s: %s does not say where its corners are; gdal_translate -a_ullr W N E S %s OUT.tif", key, path,
                   path);
         return STATUS_BAD_VALUE;
     }
-    o.crs             = OSRClone(crs);
-    o.ellipsoidal     = !OSRIsCompound(crs) && OSRGetAxesCount(crs) == 3;
-    o.bytes           = GDALGetRasterDataType(GDALGetRasterBand(file, 1)) == GDT_Byte;
-    o.whole           = GDALDataTypeIsInteger(GDALGetRasterDataType(GDALGetRasterBand(file, 1)));
+    o.crs = crs_of(choice, file, path, key);
+    if (!o.crs) return STATUS_BAD_VALUE;
+    const int             number = choice->band ? choice->band : 1;
+    const GDALRasterBandH band = GDALGetRasterBand(file, number);
+    raster_state(&o.stated, file, number, o.crs);
+    o.ellipsoidal     = !OSRIsCompound(o.crs) && OSRGetAxesCount(o.crs) == 3;
+    o.bytes           = GDALGetRasterDataType(band) == GDT_Byte;
+    o.whole           = GDALDataTypeIsInteger(GDALGetRasterDataType(band));
     int block_x = 0, block_y = 0;
-    GDALGetBlockSize(GDALGetRasterBand(file, 1), &block_x, &block_y);
+    GDALGetBlockSize(band, &block_x, &block_y);
     for (o.row_block = 64; o.row_block < block_y && o.row_block < 1024;) o.row_block *= 2;
-    o.metres_per_unit = metres_of_unit(GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
-    if (o.metres_per_unit == 0) {
-        if (!o.bytes) /* codes and photographs have no length */
-            log_warn("%s: %s: its unit is '%s', which is not a length that is known here; taken as metres", key, path,
-                     GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
-        o.metres_per_unit = 1;
-    }
+    const double unit_m = raster_unit_m(*choice->unit ? choice->unit : o.stated.unit);
+    const bool   down = choice->sense ? choice->sense < 0 : o.stated.down;
+    o.metres_per_unit = (unit_m > 0 ? unit_m : 1) * (down ? -1 : 1);
     OSRStripVertical(o.crs);
     OSRDemoteTo2D(o.crs, NULL);
     OSRSetAxisMappingStrategy(o.crs, OAMS_TRADITIONAL_GIS_ORDER);
@@ -151,11 +168,21 @@ static Status describe(Opened *out, GDALDatasetH file, const char *path, const c
 
 /* ---- grids ---------------------------------------------------------------------------------- */
 
+/* But for the band, which each sheet has for itself. */
+static bool same_choice(const RasterChoice *a, const RasterChoice *b)
+{
+    return a->vertical == b->vertical && strcmp(a->unit, b->unit) == 0 && a->sense == b->sense &&
+           a->has_void == b->has_void && a->no_void == b->no_void && a->void_value == b->void_value &&
+           (a->band != 0) == (b->band != 0);
+}
+
 static bool same_grid(const Raster *raster, const Opened *o, double at_px[2])
 {
     const double *a = raster->crs_from_px, *b = o->transform;
     if (!OSRIsSame(raster->crs, o->crs) || raster->ellipsoidal != o->ellipsoidal || raster->bytes != o->bytes ||
-        raster->bands != o->bands || raster->metres_per_unit != o->metres_per_unit || raster->vertical != o->vertical)
+        raster->bands != o->bands || raster->metres_per_unit != o->metres_per_unit ||
+        strcmp(raster->stated.unit, o->stated.unit) != 0 || raster->stated.coloured != o->stated.coloured ||
+        raster->stated.grey != o->stated.grey || !same_choice(&raster->choice, &o->choice))
         return false;
     static const int terms[4] = {1, 2, 4, 5};
     for (int k = 0; k < 4; k++)
@@ -179,7 +206,10 @@ static Status start_raster(Raster *raster, Opened *o)
     raster->metres_per_unit = o->metres_per_unit;
     raster->bytes           = o->bytes;
     raster->whole           = o->whole;
-    raster->vertical        = o->vertical;
+    raster->stated          = o->stated;
+    raster->choice          = o->choice;
+    raster->low             = -INFINITY;
+    raster->high            = INFINITY;
     raster->row_block       = o->row_block;
     raster->crs             = o->crs;
     o->crs                  = NULL;
@@ -200,24 +230,6 @@ static Status start_raster(Raster *raster, Opened *o)
     return status;
 }
 
-/* Takes `@geoid`, `@ellipsoid` and `:N` off the end of a name; a file that is called so stays as it is. */
-static void take_suffixes(Opened *o, char *path)
-{
-    struct stat about;
-    if (stat(path, &about) == 0) return;
-    char *at = strrchr(path, '@');
-    if (at && (strcmp(at, "@geoid") == 0 || strcmp(at, "@ellipsoid") == 0)) {
-        o->vertical = at[1] == 'g' ? RASTER_VERTICAL_GEOID : RASTER_VERTICAL_ELLIPSOID;
-        *at = 0;
-    }
-    char     *colon = strrchr(path, ':');
-    long long band;
-    if (stat(path, &about) == 0 || !colon || !text_to_long(&band, colon + 1) || band < 1 || band > 65535) return;
-    *colon = 0;
-    if (stat(path, &about) == 0) o->band = (int)band;
-    else *colon = ':';
-}
-
 /* Of a file that names others, such as a VRT, those too; what those name where it matters. */
 static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char *key, int depth)
 {
@@ -234,33 +246,32 @@ static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char 
     return good;
 }
 
-static Status add_sheet(RasterSet *set, const char *name, const char *key)
+/* gzip and zip files are read through GDAL's own names for what is in them. */
+static const char *remedy(char out[path_size + 80], const char *path)
+{
+    const char *ending = strrchr(path, '.');
+    const bool  gzip = ending && strcasecmp(ending, ".gz") == 0, zip = ending && strcasecmp(ending, ".zip") == 0;
+    if (gzip) snprintf(out, path_size + 80, "name it /vsigzip/%s, or gunzip it", path);
+    else if (zip) snprintf(out, path_size + 80, "name what is in it, /vsizip/%s/NAME.tif, or unzip it", path);
+    else snprintf(out, path_size + 80, "gdalinfo %s says what it is", path);
+    return out;
+}
+
+static Status add_sheet(RasterSet *set, const char *path, const RasterChoice *choice, const char *key)
 {
     Opened o = {0};
     Status status = STATUS_IO;
     double at_px[2] = {0, 0};
-    char   path[path_size];
-    snprintf(path, sizeof path, "%s", name);
-    take_suffixes(&o, path);
-    const RasterVertical vertical = o.vertical;
-    const int            chosen_band = o.band;
+    char   next[path_size + 80];
     if (!raster_file_allowed(path, key)) return STATUS_IO;
     GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
     if (!file) {
-        log_error("%s: cannot read %s: %s; gdalinfo %s says what it is", key, path, reason("not a raster GDAL knows"),
-                  path);
+        log_error("%s: cannot read %s: %s; %s", key, path, reason("not a raster GDAL knows"), remedy(next, path));
         return STATUS_IO;
     }
-    status = parts_may_be_opened(file, path, key, 0) ? describe(&o, file, path, key) : STATUS_IO;
+    status = parts_may_be_opened(file, path, key, 0) ? describe(&o, file, choice, path, key) : STATUS_IO;
     GDALClose(file);
     if (status != STATUS_OK) return status;
-    o.vertical = vertical;
-    o.band     = chosen_band;
-    if (o.band > o.bands) {
-        log_error("%s: %s has %d bands, not %d; gdalinfo %s lists them", key, path, o.bands, o.band, path);
-        status = STATUS_BAD_VALUE;
-        goto done;
-    }
 
     Raster *raster = NULL;
     for (int k = 0; !raster && k < set->count; k++)
@@ -289,7 +300,7 @@ static Status add_sheet(RasterSet *set, const char *name, const char *key)
     }
     raster->sheet = sheets;
     sheets[raster->sheet_count] =
-        (RasterSheet){strdup(path), (int)lrint(at_px[0]), (int)lrint(at_px[1]), o.width, o.height, o.band, NULL};
+        (RasterSheet){strdup(path), (int)lrint(at_px[0]), (int)lrint(at_px[1]), o.width, o.height, o.choice.band, NULL};
     if (o.row_block > raster->row_block) raster->row_block = o.row_block;
     if (sheets[raster->sheet_count].path) raster->sheet_count++;
     else status = STATUS_NO_MEMORY;
@@ -340,7 +351,7 @@ static Status finish_raster(Raster *raster)
 
 static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
 
-static Status add_folder(RasterSet *set, const char *path, const char *key)
+static Status add_folder(RasterSet *set, const char *path, const RasterChoice *choice, const char *key)
 {
     char  **name = NULL, full[path_size];
     int     names = 0, used = 0;
@@ -367,7 +378,7 @@ static Status add_folder(RasterSet *set, const char *path, const char *key)
     closedir(folder);
     if (names > 0) qsort(name, (size_t)names, sizeof *name, by_name);
     for (int k = 0; k < names; k++) {
-        if (status == STATUS_OK) status = add_sheet(set, name[k], key);
+        if (status == STATUS_OK) status = add_sheet(set, name[k], choice, key);
         used++;
         free(name[k]);
     }
@@ -419,7 +430,9 @@ Status raster_set_open(RasterSet *out, const char *paths, const char *key)
     if (status != STATUS_OK) return status;
     quiet();
     for (const char *at = paths; status == STATUS_OK && *at;) {
-        char         path[path_size];
+        char         path[path_size], name[path_size];
+        RasterChoice choice;
+        const char  *why = NULL;
         struct stat  about;
         const size_t length = strcspn(at, ",");
         size_t       skip = strspn(at, " "), end = length;
@@ -428,9 +441,13 @@ Status raster_set_open(RasterSet *out, const char *paths, const char *key)
         const int n = snprintf(path, sizeof path, "%.*s", (int)(end - skip), at + skip);
         at += length + (at[length] == ',');
         if (n == 0) continue;
+        memcpy(name, path, sizeof name);
         if (n < 0 || n >= (int)sizeof path) status = STATUS_BAD_VALUE;
-        else if (stat(path, &about) == 0 && S_ISDIR(about.st_mode)) status = add_folder(&set, path, key);
-        else status = add_sheet(&set, path, key);
+        else if (!raster_choice_take(&choice, &why, path)) {
+            log_error("%s: %s: %s", key, name, why);
+            status = STATUS_BAD_VALUE;
+        } else if (stat(path, &about) == 0 && S_ISDIR(about.st_mode)) status = add_folder(&set, path, &choice, key);
+        else status = add_sheet(&set, path, &choice, key);
     }
     for (int k = 0; status == STATUS_OK && k < set.count; k++) {
         status = finish_raster(&set.raster[k]);
@@ -653,7 +670,9 @@ static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s,
     double     scale = GDALGetRasterScale(band, &has_scale), offset = GDALGetRasterOffset(band, &has_offset);
     if (!has_scale || !(scale != 0) || !isfinite(scale)) scale = 1;
     if (!has_offset || !isfinite(offset)) offset = 0;
-    if (first && !masked && scale == 1 && offset == 0) { /* nothing else is there: without a copy */
+    const bool  more = masked || raster->choice.has_void || isfinite(raster->low) || isfinite(raster->high);
+    const float hole = raster->choice.has_void ? (float)raster->choice.void_value : NAN;
+    if (first && !more && scale == 1 && offset == 0) { /* nothing else is there: without a copy */
         float *to = out + (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
         status = GDALRasterIO(band, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, to, w, h, GDT_Float32, 0,
                               width * (int)sizeof *to) == CE_None ? STATUS_OK : damaged(s, key);
@@ -676,11 +695,13 @@ static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s,
             float *to = out + (size_t)(y + r - y0) * (size_t)width + (size_t)(part[0] - x0);
             const float         *from = value + (size_t)r * (size_t)w;
             const unsigned char *valid = mask + (size_t)r * (size_t)w;
-            if (masked)
-                for (int i = 0; i < w; i++)
-                    to[i] = isnan(to[i]) && valid[i] ? (float)(from[i] * scale + offset) : to[i];
-            else
+            if (!more)
                 for (int i = 0; i < w; i++) to[i] = isnan(to[i]) ? (float)(from[i] * scale + offset) : to[i];
+            for (int i = 0; more && i < w; i++) {
+                const float z = (float)(from[i] * scale + offset);
+                const bool  good = (!masked || valid[i]) && from[i] != hole && z >= raster->low && z <= raster->high;
+                to[i] = isnan(to[i]) && good ? z : to[i];
+            }
         }
     }
     status = STATUS_OK;

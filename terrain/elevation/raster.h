@@ -8,6 +8,8 @@
 #define TERRAIN_ELEVATION_RASTER_H
 
 #include "terrain/earth/local_frame.h"
+#include "terrain/elevation/raster_choice.h"
+#include "terrain/elevation/raster_stated.h"
 
 typedef struct RasterSheet {
     char *path;
@@ -16,16 +18,16 @@ typedef struct RasterSheet {
     struct RasterOpen *open;     /* private: handles kept between reads; NULL: the file is opened for each */
 } RasterSheet;
 
-typedef enum RasterVertical { RASTER_VERTICAL_BY_CRS, RASTER_VERTICAL_GEOID, RASTER_VERTICAL_ELLIPSOID } RasterVertical;
-
 typedef struct Raster {
     int     width, height, bands;
     double  posting_m[2];        /* along a row and along a column, at the middle */
     bool    ellipsoidal;         /* the CRS is three-dimensional: heights above the ellipsoid */
-    RasterVertical vertical;     /* as the list of files has it: `FILE@geoid`, `FILE@ellipsoid` */
+    RasterStated stated;         /* by its first sheet */
+    RasterChoice choice;         /* by the list of files */
+    double  low, high;           /* numbers outside count as void where sheets overlap; infinite unless the owner knows */
     int     order;               /* in the list of files, of its first sheet */
     int     row_block;           /* rows that are read together at the least cost; a power of two */
-    double  metres_per_unit;     /* of band 1 */
+    double  metres_per_unit;     /* of the band; negative: its numbers grow downwards. Of an unknown unit 1 */
     bool    bytes;               /* its samples are octets: of a picture, or a class */
     bool    whole;               /* they are whole numbers: no elevation in float */
     int     sheet_count;
@@ -42,8 +44,8 @@ typedef struct RasterSet {
     Raster *raster;              /* finest posting first; equals in the order given */
 } RasterSet;
 
-/* paths: files and folders, separated by commas; of a folder, all that GDAL reads. After a name `@geoid` or `@ellipsoid`
- * says what its heights are above, and `:N` which band to read. key: the setting, for messages. An unusable file is one
+/* paths: files and folders, separated by commas; of a folder, all that GDAL reads. After a
+ * name stands what the user says of it: raster_choice.h. key: the setting, for messages. An unusable file is one
  * logged line with a remedy, and STATUS_IO or STATUS_BAD_VALUE. */
 Status raster_set_open(RasterSet *out, const char *paths, const char *key);
 void   raster_set_close(RasterSet *set); /* accepts zeroes */

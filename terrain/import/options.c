@@ -1,10 +1,12 @@
 /* terrain/import/options.c: the options of an import, by name; as a text, and back. */
 #include "terrain/import/options.h"
 
+#include "terrain/elevation/raster_choice.h"
+
 #include <sys/stat.h>
 #include <unistd.h>
 
-typedef enum Kind { LIST, NUMBER, PAIR, SIZE, CHOICE } Kind;
+typedef enum Kind { LIST, NUMBER, PAIR, SIZE, CHOICE, SAYS } Kind; /* SAYS: what raster_choice.h reads after a name */
 
 #define TEXT_AT(member) offsetof(TerrainOptions, member), sizeof(((TerrainOptions *)0)->member)
 
@@ -24,6 +26,9 @@ static const struct Row {
     {"cover-table", LIST, TEXT_AT(cover_table), 0, 0, 0, "worldcover, nlcd, fbfm40, or a CSV"},
     {"geoid", LIST, TEXT_AT(geoid), 0, 0, 0, "a file in PROJ's .gtx form"},
     {"vertical", CHOICE, TEXT_AT(vertical), 0, 0, ELEVATION_BY_FILE, "auto, geoid or ellipsoid"},
+    {"unit", SAYS, TEXT_AT(unit), 0, 0, 0, "a unit of length: m, dm, cm, ft, us-ft"},
+    {"srs", SAYS, TEXT_AT(srs), 0, 0, 0, "a coordinate system by its number: EPSG:32633, or EPSG:32633+5773"},
+    {"nodata", SAYS, TEXT_AT(nodata), 0, 0, 0, "a number, or none"},
     {"spacing", NUMBER, TEXT_AT(spacing_m), 0.06, 1000, 0, "metres in 0.06 .. 1000"},
     {"origin", PAIR, TEXT_AT(origin_deg), -360, 360, NAN, "LAT,LON: degrees in -90 .. 90 and -360 .. 360"},
     {"size", SIZE, TEXT_AT(size_km), 0.01, 1000, 0, "KMxKM, east by north, each in 0.01 .. 1000"},
@@ -75,6 +80,16 @@ bool terrain_options_set(TerrainOptions *o, const char **why, const char *name, 
                     return true;
                 }
             return false;
+        case SAYS: {
+            RasterChoice c = {0};
+            char         text[160];
+            const bool   bare = strcmp(name, "unit") == 0;
+            if (snprintf(text, sizeof text, "%s%s%s", bare ? "" : name, bare ? "" : "=", value) >= (int)sizeof text ||
+                strlen(value) >= row->size || (bare && !(raster_unit_m(value) > 0)) || !raster_choice_add(&c, text))
+                return false;
+            strcpy(at, value);
+            return true;
+        }
         case NUMBER:
             if (!text_to_double(number, value) || !(number[0] >= row->low && number[0] <= row->high)) return false;
             memcpy(at, number, sizeof *number);
@@ -103,38 +118,65 @@ const char *terrain_options_fault(const TerrainOptions *o)
 
 /* ---- as a text ------------------------------------------------------------------------------- */
 
-/* A list with each name absolute that is a file here, with or without a suffix; others are GDAL's own. */
+/* The next name of a list, without the spaces around it. False: none is left, or it is too long (*at is not at the end). */
+static bool next_name(char name[terrain_path_size], const char **at)
+{
+    for (; **at;) {
+        const size_t length = strcspn(*at, ",");
+        size_t       skip = strspn(*at, " "), end = length;
+        if (skip > length) skip = length;
+        while (end > skip && (*at)[end - 1] == ' ') end--;
+        if (end - skip >= terrain_path_size) return false;
+        memcpy(name, *at + skip, end - skip);
+        name[end - skip] = 0;
+        *at += length + ((*at)[length] == ',');
+        if (*name) return true;
+    }
+    return false;
+}
+
+/* A list with each name absolute that is a file here, whatever is said after it; others are GDAL's own. */
 static bool absolute_list(char *out, size_t size, const char *list)
 {
-    char   folder[terrain_path_size], name[terrain_path_size], bare[terrain_path_size];
-    size_t used = 0;
+    char        folder[terrain_path_size], name[terrain_path_size], bare[terrain_path_size];
+    size_t      used = 0;
+    const char *at = list;
     if (!getcwd(folder, sizeof folder)) return false;
     *out = 0;
-    for (const char *at = list; *at;) {
-        const size_t length = strcspn(at, ",");
-        size_t       skip = strspn(at, " "), end = length;
-        if (skip > length) skip = length;
-        while (end > skip && at[end - 1] == ' ') end--;
-        if (end - skip >= sizeof name) return false;
-        memcpy(name, at + skip, end - skip);
-        name[end - skip] = 0;
-        at += length + (at[length] == ',');
-        if (!*name) continue;
-        struct stat about;
+    while (next_name(name, &at)) {
+        struct stat  about;
+        RasterChoice choice;
+        const char  *why;
         memcpy(bare, name, sizeof bare);
-        bool here = stat(bare, &about) == 0;
-        for (int n = 0; n < 2 && !here; n++) {
-            char *suffix = strpbrk(bare, n ? ":" : "@") ? strrchr(bare, n ? ':' : '@') : NULL;
-            if (suffix) *suffix = 0;
-            here = stat(bare, &about) == 0;
-        }
-        const bool relative = here && *name != '/';
+        (void)raster_choice_take(&choice, &why, bare);
+        const bool relative = stat(bare, &about) == 0 && *name != '/';
         const int  n = snprintf(out + used, size - used, "%s%s%s%s", used ? "," : "", relative ? folder : "",
                                 relative ? "/" : "", name);
         if (n < 0 || (size_t)n >= size - used) return false;
         used += (size_t)n;
     }
-    return true;
+    return *at == 0;
+}
+
+bool terrain_options_sources(char *out, size_t out_size, const TerrainOptions *o, const char *list)
+{
+    char         name[terrain_path_size], text[160];
+    size_t       used = 0;
+    RasterChoice all = {0};
+    const char  *at = list;
+    if (*o->unit) raster_choice_add(&all, o->unit);
+    if (*o->srs && snprintf(text, sizeof text, "srs=%s", o->srs) > 0) raster_choice_add(&all, text);
+    if (*o->nodata && snprintf(text, sizeof text, "nodata=%s", o->nodata) > 0) raster_choice_add(&all, text);
+    *out = 0;
+    while (next_name(name, &at)) {
+        if (used > 0) {
+            if (used + 1 >= out_size) return false;
+            out[used++] = ',';
+        }
+        if (!raster_choice_write(out + used, out_size - used, name, &all)) return false;
+        used += strlen(out + used);
+    }
+    return *at == 0;
 }
 
 bool terrain_options_text(char *out, size_t out_size, const TerrainOptions *o)
@@ -154,6 +196,7 @@ bool terrain_options_text(char *out, size_t out_size, const TerrainOptions *o)
         case CHOICE:
             if (o->vertical != ELEVATION_BY_FILE) snprintf(value, sizeof value, "%s", verticals[o->vertical]);
             break;
+        case SAYS: snprintf(value, sizeof value, "%s", at); break;
         case NUMBER:
             memcpy(number, at, sizeof *number);
             if (number[0] != row->initial) snprintf(value, sizeof value, "%.17g", number[0]);

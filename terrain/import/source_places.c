@@ -1,6 +1,8 @@
 /* terrain/import/source_places.c: where the sources of a terrain store lie. */
 #include "terrain/import/source_places.h"
 
+#include "terrain/elevation/raster_choice.h"
+
 #include <stdlib.h>
 
 bool source_folder(char out[PATH_MAX], const char *store)
@@ -17,16 +19,15 @@ static bool begins_with_folder(const char *path, const char *folder)
     return strncmp(path, folder, length) == 0 && (path[length] == '/' || strcmp(folder, "/") == 0);
 }
 
-/* One name of a list; it may end in `@geoid`, `@ellipsoid` or `:N`. */
+/* One name of a list, whatever is said after it. */
 static bool lies_within(char *name, const char *folder)
 {
-    char whole[PATH_MAX], bare[terrain_path_size];
+    char         whole[PATH_MAX], bare[terrain_path_size];
+    RasterChoice choice;
+    const char  *why;
     snprintf(bare, sizeof bare, "%s", name);
-    for (int n = 0; n < 3; n++) {
-        if (realpath(bare, whole)) return begins_with_folder(whole, folder);
-        char *suffix = strrchr(bare, n ? ':' : '@');
-        if (suffix) *suffix = 0;
-    }
+    (void)raster_choice_take(&choice, &why, bare);
+    if (realpath(bare, whole)) return begins_with_folder(whole, folder);
     return begins_with_folder(name, folder) && !strstr(name, "/..") && strncmp(name, "/vsi", 4) != 0;
 }
 

@@ -16,8 +16,7 @@ static const char module[] = "terrain import";
 typedef struct Making {
     const TerrainOptions *o;
     Pool            *pool;
-    TerrainProgress *progress;
-    void            *user;
+    TerrainWatch     watch;
     double           told_s;
     LocalFrame       frame;
     ElevationFiles   files[2];        /* terrain model, surface model */
@@ -27,6 +26,7 @@ typedef struct Making {
     int              cover_band;
     StorePlan        plan;
     StoreSource     *source;
+    char            *list[2];         /* terrain model, surface model: with what the options say of them */
     char            *options, notes[2048], datum[256], folder[terrain_path_size];
     StoreWriter     *writer;
     StreamLevel      level;
@@ -41,9 +41,9 @@ typedef struct Making {
 static bool go_on(Making *m, const char *stage, double share, bool now)
 {
     const double s = wall_clock_s();
-    if (!m->progress || (!now && s - m->told_s < 0.1)) return true;
+    if (!m->watch.progress || (!now && s - m->told_s < 0.1)) return true;
     m->told_s = s;
-    if (m->progress(m->user, stage, share)) return true;
+    if (m->watch.progress(m->watch.user, stage, share)) return true;
     m->r.stopped = true;
     return false;
 }
@@ -67,15 +67,23 @@ static Status open_sources(Making *m)
     const TerrainOptions *o = m->o;
     Geodetic origin = {o->origin_deg[0] * rad_per_deg, o->origin_deg[1] * rad_per_deg, 0};
     Status   status = STATUS_OK;
-    if (isnan(o->origin_deg[0])) status = elevation_middle(&origin, *o->surface ? o->surface : o->elevation);
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        m->list[k] = malloc(options_size);
+        if (!m->list[k]) return STATUS_NO_MEMORY;
+        if (terrain_options_sources(m->list[k], options_size, o, k ? o->surface : o->elevation)) continue;
+        log_error("%s: the names of the files are too long; name their folder instead", module);
+        return STATUS_BAD_VALUE;
+    }
+    if (isnan(o->origin_deg[0])) status = elevation_middle(&origin, m->list[*o->surface != 0]);
     if (status == STATUS_OK) status = local_frame_at(&m->frame, &origin);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < 2; k++)
-        m->files[k] = (ElevationFiles){.paths = k ? o->surface : o->elevation, .geoid_path = o->geoid,
+        m->files[k] = (ElevationFiles){.paths = m->list[k], .geoid_path = o->geoid,
                                        .vertical = o->vertical,
                                        .spacing_m = o->spacing_m, .horizon_m = 1000 * o->horizon_km,
                                        .size_m = {1000 * o->size_km[0], 1000 * o->size_km[1]},
-                                       .keep_folder = m->folder};
+                                       .keep_folder = m->folder,
+                                       .heard = m->watch.heard, .heard_user = m->watch.user};
     if (*o->surface && status == STATUS_OK)
         status = elevation_stream_open(&m->surface, &m->files[1], &m->frame, NULL, m->pool);
     if (!go_on(m, "levels around", *o->surface ? 0.5 : 0, true)) return STATUS_IO;
@@ -342,7 +350,7 @@ static Status make_albedo(Making *m, int row0, int rows)
 
 /* ---- canopy ---------------------------------------------------------------------------------- */
 
-/* Whole numbers above 80 are no metres: LANDFIRE's are tenths of them. */
+/* In the unit that the file states. Without one whole numbers above 80 are no metres: LANDFIRE's are tenths of them. */
 static Status look_at_canopy(Making *m)
 {
     const RasterSet *set = &m->canopy_height;
@@ -350,6 +358,14 @@ static Status look_at_canopy(Making *m)
     if (set->count == 0) return STATUS_OK;
     const Raster *raster = &set->raster[0];
     const int     band = raster->sheet[0].band ? raster->sheet[0].band : 1;
+    const char   *unit = *raster->choice.unit ? raster->choice.unit : raster->stated.unit;
+    if (*unit) {
+        m->r.canopy_scale_m = raster_unit_m(unit);
+        if (m->r.canopy_scale_m > 0) return STATUS_OK;
+        log_error("terrain import: --canopy-height: %s: its unit is '%s', which is no length that is known here; say it: "
+                  "%s@m, or %s@dm", raster->sheet[0].path, unit, raster->sheet[0].path, raster->sheet[0].path);
+        return STATUS_BAD_VALUE;
+    }
     float        *some = malloc((size_t)raster->width * sizeof *some), most = 0;
     Status        status = some ? STATUS_OK : STATUS_NO_MEMORY;
     for (int r = 0; r < rows && status == STATUS_OK; r++) {
@@ -523,14 +539,13 @@ static Status finish(Making *m, const char *path)
 }
 
 Status terrain_import(TerrainReport *out, const TerrainOptions *options, const char *path, Pool *pool,
-                      TerrainProgress *progress, void *user)
+                      const TerrainWatch *watch)
 {
     Making *m = calloc(1, sizeof *m);
     if (!m) return STATUS_NO_MEMORY;
     m->o        = options;
     m->pool     = pool;
-    m->progress = progress;
-    m->user     = user;
+    if (watch) m->watch = *watch;
     const char *slash = strrchr(path, '/');
     snprintf(m->folder, sizeof m->folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
     const double begun_s = wall_clock_s();
@@ -553,6 +568,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     raster_set_close(&m->canopy_height);
     raster_set_close(&m->canopy_cover);
     free(m->source);
+    for (int k = 0; k < 2; k++) free(m->list[k]);
     free(m->options);
     building_count_free(&m->buildings);
     free(m);

@@ -11,6 +11,12 @@
 /* Called some times a second at most, by the thread of the import. False: stop, and leave nothing behind. */
 typedef bool TerrainProgress(void *user, const char *stage, double share);
 
+typedef struct TerrainWatch {
+    TerrainProgress *progress;                                   /* NULL: never stopped */
+    void (*heard)(void *user, const ElevationSurvey *survey);    /* of each grid of heights, before it is used; NULL: nobody */
+    void *user;
+} TerrainWatch;
+
 typedef struct TerrainReport {
     ElevationReport elevation;
     StoreReport     store;
@@ -24,10 +30,10 @@ typedef struct TerrainReport {
     bool            stopped;            /* by the progress function */
 } TerrainReport;
 
-/* pool NULL: one thread. progress may be NULL. Failures are logged with the file and the next step; PATH is replaced
+/* pool NULL: one thread. watch may be NULL. Failures are logged with the file and the next step; PATH is replaced
  * only by a whole store. */
 Status terrain_import(TerrainReport *out, const TerrainOptions *options, const char *path, Pool *pool,
-                      TerrainProgress *progress, void *user);
+                      const TerrainWatch *watch);
 /* Makes a store again with the options that it has, on all processors. options: as TerrainStore or store_recall has
  * them. A store may come from a stranger: only what lies in its own folder is read, also of what those files name;
  * anywhere: whatever it names. A requested stop ends it, and leaves the store as it was. */

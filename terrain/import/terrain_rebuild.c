@@ -55,7 +55,7 @@ Status terrain_store_rebuild(const char *path, const char *options, bool anywher
     if (status == STATUS_OK) status = pool_create(&pool, thread_processors());
     if (status == STATUS_OK) {
         raster_stay_within(anywhere ? NULL : folder); /* also what those files name */
-        status = terrain_import(&r, o, path, pool, tell, &begun_s);
+        status = terrain_import(&r, o, path, pool, &(TerrainWatch){.progress = tell, .user = &begun_s});
         raster_stay_within(NULL);
     }
     log_status(NULL);

@@ -7,6 +7,7 @@
 #ifndef TERRAIN_LANDSCAPE_ELEVATION_IMPORT_H
 #define TERRAIN_LANDSCAPE_ELEVATION_IMPORT_H
 
+#include "terrain/landscape/elevation_survey.h"
 #include "terrain/landscape/landscape.h"
 
 typedef enum ElevationVertical {
@@ -23,6 +24,8 @@ typedef struct ElevationFiles {
     double            horizon_m;  /* half width of the outermost level */
     double            size_m[2];  /* width of level 0, about the origin, x and y; 0: all data */
     const char       *keep_folder; /* large files are decoded once into a nameless file here; NULL: as often as needed */
+    void            (*heard)(void *user, const ElevationSurvey *survey); /* of each grid, before its use; NULL: nobody */
+    void             *heard_user;
 } ElevationFiles;
 
 typedef struct ElevationReport {

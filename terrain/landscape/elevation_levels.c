@@ -3,13 +3,12 @@
 #include "terrain/landscape/elevation_import_private.h"
 
 static const char key[] = "terrain.elevation";
-static const double lowest_m = -12500, highest_m = 9500; /* below the deepest trench or above Everest: a void */
 
 PatchSource elevation_import_source(const Import *m, int grid)
 {
     const Raster *raster = m->grid[grid].raster;
-    return (PatchSource){.raster = raster, .band = 1, .low = lowest_m / raster->metres_per_unit,
-                         .high = highest_m / raster->metres_per_unit, .key = key, .pool = m->pool};
+    const double  a = elevation_lowest_m / raster->metres_per_unit, b = elevation_highest_m / raster->metres_per_unit;
+    return (PatchSource){.raster = raster, .band = 1, .low = fmin(a, b), .high = fmax(a, b), .key = key, .pool = m->pool};
 }
 
 /* Mean and spread of each grid's outline: for the blending from it, and the height beyond the coarsest. */

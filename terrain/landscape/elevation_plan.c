@@ -16,15 +16,21 @@ Status elevation_import_open(Import *m)
     bool wants_geoid = false;
     m->grids = m->set.count;
     for (int k = 0; k < m->grids; k++) {
-        const Raster *raster = &m->set.raster[k];
-        Grid         *g = &m->grid[k];
+        Raster         *raster = &m->set.raster[k];
+        Grid           *g = &m->grid[k];
+        ElevationSurvey survey;
+        status = elevation_survey(&survey, raster, key, m->pool);
+        if (status != STATUS_OK) return status;
         g->raster      = raster;
         g->units[0]    = raster->posting_m[0];
         g->units[1]    = raster->posting_m[1];
-        g->ellipsoidal = raster->vertical != RASTER_VERTICAL_BY_CRS ? raster->vertical == RASTER_VERTICAL_ELLIPSOID
+        g->ellipsoidal = raster->choice.vertical != RASTER_VERTICAL_BY_CRS
+                             ? raster->choice.vertical == RASTER_VERTICAL_ELLIPSOID
                          : m->files->vertical == ELEVATION_BY_FILE  ? raster->ellipsoidal
                                                                     : m->files->vertical == ELEVATION_ELLIPSOID;
         wants_geoid |= !g->ellipsoidal;
+        survey.ellipsoidal = g->ellipsoidal;
+        if (m->files->heard) m->files->heard(m->files->heard_user, &survey);
         /* into the coarser grid around: some of its posts */
         g->short_m =
             k + 1 < m->grids ? 8 * fmax(m->set.raster[k + 1].posting_m[0], m->set.raster[k + 1].posting_m[1]) : 0;

@@ -36,6 +36,7 @@ BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_file.h', 'pitvipe
 # Libraries that one file, or one folder, knows: header, places.
 LIBRARIES = (
     ('GeographicLib/*', 'terrain/*.cpp'), ('gdal*', 'terrain/elevation/raster.c'),
+    ('gdal*', 'terrain/elevation/raster_stated.c'), ('ogr_*', 'terrain/elevation/raster_stated.c'),
     ('cpl_*', 'terrain/elevation/raster.c'), ('ogr_*', 'terrain/elevation/raster.c'), ('erfa.h', 'terrain/*'),
     ('OpenImageIO/*', 'sensor/publish/image_module.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
     ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),

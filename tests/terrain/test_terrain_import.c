@@ -148,7 +148,7 @@ static void the_store_has_the_posts_of_the_path_in_memory(void **state)
     path_of(out, "ground.store");
     const TerrainOptions o = options_of(path);
     const ElevationFiles files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_ELLIPSOID, .horizon_m = 1000};
-    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     assert_int_equal(elevation_import(&memory, &report, &files, &store.frame, NULL, 0), STATUS_OK);
     CHECK(memory.level_count == store.elevation.level_count);
@@ -203,7 +203,7 @@ static void first_given_wins_and_each_has_its_datum(void **state)
         if (k == 2) snprintf(list, sizeof list, "%s@geoid,%s@ellipsoid", one, two);
         else snprintf(list, sizeof list, "%s,%s", k ? two : one, k ? one : two);
         const TerrainOptions o = coarse_options_of(list);
-        assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+        assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
         CHECK(r.elevation.grids == 2 && r.elevation.sheets == 2);
         assert_int_equal(store_open(&store, out), STATUS_OK);
         h_m[k] = stored_h_m(&store, 46.0012, 11.0012);
@@ -224,7 +224,7 @@ static void holes_are_filled_and_counted(void **state)
     write_grid(path, &g);
     path_of(out, "holes.store");
     const TerrainOptions o = options_of(path);
-    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
     /* a quarter of 260 x 250 pixels of a hundred-thousandth of a degree */
     const double pixel_m2 = 1.1117 * 1.1134 * cos(46 * rad_per_deg), post_m2 = r.elevation.spacing_m * r.elevation.spacing_m;
     CHECK_NEAR((double)r.elevation.voids * post_m2 / pixel_m2, 0.25 * 260 * 250, 0.02 * 260 * 250);
@@ -250,7 +250,7 @@ static void holes_are_filled_from_coarser_files_first(void **state)
     snprintf(list, sizeof list, "%s,%s", fine, coarse);
     path_of(out, "coarser.store");
     const TerrainOptions o = options_of(list);
-    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     double last_m = 0, worst_m = 0, deep_m = 0, steep_m = 0;
     for (int i = 5; i < 250; i++) { /* along row 135: holes are pixels 0 .. 39 and 160 .. 199 */
@@ -289,7 +289,7 @@ static void classes_are_where_the_file_has_them(void **state)
     path_of(out, "cover.store");
     TerrainOptions o = options_of(path);
     CHECK(terrain_options_set(&o, &why, "cover", code) && terrain_options_set(&o, &why, "cover-table", "worldcover"));
-    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     CHECK(cover_grid_at(store.surface, 5, 20) == SURFACE_FOREST_BROADLEAF);
     CHECK(cover_grid_at(store.surface, 5, -20) == SURFACE_BARE_SOIL);
@@ -334,7 +334,7 @@ static void houses_and_trees_are_taken_off_a_surface_model(void **state)
     terrain_options_default(&o);
     CHECK(terrain_options_set(&o, &why, "surface", path) && terrain_options_set(&o, &why, "horizon", "1") &&
           terrain_options_set(&o, &why, "vertical", "ellipsoid") && terrain_options_set(&o, &why, "spacing", "1"));
-    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     CHECK(r.apart && !r.beside);
     print_message("%d buildings, %d crowns\n", (int)store.building_count, (int)store.crown_count);
@@ -425,19 +425,19 @@ static void stopped_or_refused_it_leaves_nothing(void **state)
     path_of(out, "stopped.store");
     snprintf(part, sizeof part, "%s.tmp", out);
     TerrainOptions o = options_of(path);
-    CHECK(terrain_import(&r, &o, out, NULL, stop_soon, &calls) != STATUS_OK && r.stopped);
+    CHECK(terrain_import(&r, &o, out, NULL, &(TerrainWatch){.progress = stop_soon, .user = &calls}) != STATUS_OK && r.stopped);
     CHECK(stat(out, &about) != 0 && stat(part, &about) != 0);
     log_set_sink(check_listen, NULL);
     o = options_of("/nowhere.tif");
-    CHECK(terrain_import(&r, &o, out, NULL, NULL, NULL) != STATUS_OK && strstr(check_said, "/nowhere.tif"));
+    CHECK(terrain_import(&r, &o, out, NULL, NULL) != STATUS_OK && strstr(check_said, "/nowhere.tif"));
     CHECK(stat(out, &about) != 0 && stat(part, &about) != 0);
     const char *why;
     o = options_of(path);
     CHECK(terrain_options_set(&o, &why, "cover", path)); /* heights are no classes */
-    CHECK(terrain_import(&r, &o, out, NULL, NULL, NULL) != STATUS_OK && strstr(check_said, "is it elevation"));
+    CHECK(terrain_import(&r, &o, out, NULL, NULL) != STATUS_OK && strstr(check_said, "is it elevation"));
     o = options_of(path);
     CHECK(terrain_options_set(&o, &why, "origin", "10,10"));
-    CHECK(terrain_import(&r, &o, out, NULL, NULL, NULL) != STATUS_OK && strstr(check_said, "nearest"));
+    CHECK(terrain_import(&r, &o, out, NULL, NULL) != STATUS_OK && strstr(check_said, "nearest"));
     log_set_sink(NULL, NULL);
     CHECK(stat(out, &about) != 0 && stat(part, &about) != 0);
 }
@@ -454,7 +454,7 @@ static void a_store_is_made_again_from_its_header(void **state)
     write_grid(path, &first);
     path_of(out, "again.store");
     const TerrainOptions o = coarse_options_of(path);
-    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
     assert_int_equal(store_open(&store, out), STATUS_OK);
     const uint64_t was = store.content;
     CHECK(store_sources(&store, which, sizeof which) == STORE_FRESH);
@@ -511,7 +511,7 @@ static void a_store_is_made_again_of_its_own_folder_alone(void **state)
     write_grid(path, &first);
     path_of(out, "own.store");
     const TerrainOptions o = coarse_options_of(path);
-    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL, NULL), STATUS_OK);
+    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
 
     assert_true(temp_folder(other));
     memcpy(own, folder, sizeof own);

@@ -158,7 +158,7 @@ static double import_case(Status *status, const char *folder, const Case *c)
     snprintf(text, sizeof text, "%.9g,%.9g", c->lat_deg, c->lon_deg);
     ok = ok && terrain_options_set(o, &why, "origin", text);
     log_suppress(true);
-    if (ok && terrain_import(&report, o, out, NULL, NULL, NULL) == STATUS_OK && store_open(&store, out) == STATUS_OK) {
+    if (ok && terrain_import(&report, o, out, NULL, NULL) == STATUS_OK && store_open(&store, out) == STATUS_OK) {
         worst_m = worst_of(c, &store, &compared);
         store_close(&store);
     }
