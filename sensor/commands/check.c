@@ -12,7 +12,7 @@
 #include "terrain/weather/weather_course.h"
 #include "terrain/earth/geoid.h"
 #include "terrain/landscape/ground_image.h"
-#include "terrain/elevation/raster.h"
+#include "terrain/landscape/elevation_survey.h"
 #include "terrain/store/store.h"
 #include "sensor/settings/next_option.h"
 
@@ -83,14 +83,18 @@ static Status read_effects(const char *path)
     return status;
 }
 
-/* Opens every sheet with GDAL and reads a small window of each. */
-static bool sheets_are_valid(const Check *c, const char *paths, const char *key)
+/* Opens every sheet with GDAL and reads a small window of each; of heights as much as before they are used. */
+static bool sheets_are_valid(const Check *c, const char *paths, const char *key, bool heights)
 {
     enum { side = 16 };
     static float piece[side * side];
     RasterSet    set = {0};
     if (!*paths) return true;
     Status status = raster_set_open(&set, paths, key);
+    for (int i = 0; heights && i < set.count && status == STATUS_OK; i++) {
+        ElevationSurvey survey;
+        status = elevation_survey(&survey, &set.raster[i], key, NULL);
+    }
     for (int i = 0; i < set.count && status == STATUS_OK; i++)
         for (int k = 0; k < set.raster[i].sheet_count && status == STATUS_OK; k++) {
             const RasterSheet *sheet = &set.raster[i].sheet[k];
@@ -117,10 +121,10 @@ static bool terrain_is_valid(const Check *c)
 {
     const Config *config = c->config;
     const char   *table = config->terrain.cover_table;
-    bool          good = sheets_are_valid(c, config->terrain.elevation, "terrain.elevation");
+    bool          good = sheets_are_valid(c, config->terrain.elevation, "terrain.elevation", true);
     good &= store_is_valid(c);
-    good &= sheets_are_valid(c, config->terrain.cover, "terrain.cover");
-    good &= sheets_are_valid(c, config->terrain.orthophoto, "terrain.orthophoto");
+    good &= sheets_are_valid(c, config->terrain.cover, "terrain.cover", false);
+    good &= sheets_are_valid(c, config->terrain.orthophoto, "terrain.orthophoto", false);
     if (strpbrk(table, "/.")) {
         if (cover_table_check(table) != STATUS_OK)
             good = report(c, "terrain.cover_table", "etc/cover_worldcover.csv is an example");

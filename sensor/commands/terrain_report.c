@@ -22,9 +22,12 @@ static void print_source(const ElevationSurvey *s)
     const Raster *r = s->raster;
     const char   *unit, *unit_from, *datum, *datum_from;
     elevation_survey_words(&unit, &unit_from, &datum, &datum_from, s);
-    log_print("%s%s: %d x %d posts %.3g m apart, %s, %.1f kB; %s (--srs)\n", r->sheet[0].path,
-              r->sheet_count > 1 ? " and others" : "", r->width, r->height, fmin(r->posting_m[0], r->posting_m[1]),
-              r->stated.type, 1e-3 * octets_of(r), r->stated.crs);
+    log_print("%s", r->sheet[0].path);
+    if (r->sheet_count > 1) log_print(" and %d more", r->sheet_count - 1);
+    log_print(": %d x %d posts %.3g m apart, %s, ", r->width, r->height, fmin(r->posting_m[0], r->posting_m[1]),
+              r->stated.type);
+    if (octets_of(r) > 0) log_print("%.1f kB; ", 1e-3 * octets_of(r)); /* none of a file in an archive */
+    log_print("%s (--srs)\n", r->stated.crs);
     log_print("  heights %.1f .. %.1f m%s; unit %s, %s (--unit); above %s, %s (--vertical)%s\n", s->low_m, s->high_m,
               s->whole ? "" : " where it was looked at", unit, unit_from, datum, datum_from,
               r->metres_per_unit < 0 ? "; depths, turned round (FILE@up)" : "");

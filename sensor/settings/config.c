@@ -276,7 +276,7 @@ static const Setting keys[] = {
     {"terrain.cover", SETTING_PATHS, AT(terrain.cover), 0, 0, NULL, "",
      "land cover files or folders; empty: derived from slope and height"},
     {"terrain.cover_table", SETTING_NAME_OR_PATH, AT(terrain.cover_table), 0, 0, NULL, "",
-     "worldcover, nlcd, fbfm40 or a CSV of code, surface; empty: detected from the codes"},
+     "worldcover, nlcd, fbfm40, dynamicworld, corine or a CSV of code, surface; empty: detected from the codes"},
     {"terrain.cover_band", SETTING_INT, AT(terrain.cover_band), 0, 1000, NULL, "",
      "band of the cover files; 0: 4 for LANDFIRE landscape files (8 bands), else 1"},
     {"terrain.orthophoto", SETTING_PATHS, AT(terrain.orthophoto), 0, 0, NULL, "", "orthophoto files or folders"},

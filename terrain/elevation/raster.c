@@ -102,30 +102,41 @@ static bool is_placed(double transform[6], GDALDatasetH file)
     return memcmp(mirrored, nothing, sizeof nothing) != 0;
 }
 
-/* Of a file without a band of its own: where its numbers are. */
-static void say_parts(GDALDatasetH file, const char *path, const char *key)
+/* GDAL's name of a grid in a file, `NETCDF:"a.nc":height`, and its own, `height`; NULL: this line of the list names none. */
+static const char *part_of(const char **own, const char *line)
 {
-    char **part = GDALGetMetadata(file, "SUBDATASETS");
-    char   names[400] = "";
-    int    count = 0;
+    const char *name = strstr(line, "_NAME=");
+    if (!name) return NULL;
+    const char *colon = strrchr(name, ':');
+    *own = colon ? colon + 1 : name + 6;
+    return name + 6;
+}
+
+/* The grid that is asked for, in path; false, logged: there is none, or none was asked for. */
+static bool choose_part(char path[path_size], GDALDatasetH file, const char *asked, const char *key)
+{
+    char      **part = GDALGetMetadata(file, "SUBDATASETS");
+    char        names[400] = "";
+    const char *own;
     for (int k = 0; part && part[k]; k++) {
-        const char *name = strstr(part[k], "_NAME=");
+        const char *name = part_of(&own, part[k]);
         if (!name) continue;
+        if (strcmp(own, asked) == 0 && strlen(name) < path_size) {
+            strcpy(path, name);
+            return true;
+        }
         const size_t used = strlen(names);
-        if (count++ < 4) snprintf(names + used, sizeof names - used, "%s%s", used ? " or " : "", name + 6);
+        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", own);
     }
-    log_error("%s: %s holds %d grids, none of them chosen; name one as gdalinfo lists it: %s%s", key, path, count, names,
-              count > 4 ? " ..." : "");
+    log_error("%s: %s holds several grids, %s: %s; choose one: %s@part=NAME", key, path,
+              *asked ? "but none that is called so" : "and none is chosen", *names ? names : "none that can be named", path);
+    return false;
 }
 
 static Status describe(Opened *out, GDALDatasetH file, const RasterChoice *choice, const char *path, const char *key)
 {
     Opened o = {.width = GDALGetRasterXSize(file), .height = GDALGetRasterYSize(file),
                 .bands = GDALGetRasterCount(file), .choice = *choice};
-    if (o.bands < 1 && GDALGetMetadata(file, "SUBDATASETS")) {
-        say_parts(file, path, key);
-        return STATUS_BAD_VALUE;
-    }
     if (o.bands < 1 || o.width < 2 || o.height < 2) {
         log_error("%s: %s holds %d bands of %d x %d pixels; a sheet needs a band and 2 x 2", key, path, o.bands,
                   o.width, o.height);
@@ -257,17 +268,28 @@ static const char *remedy(char out[path_size + 80], const char *path)
     return out;
 }
 
-static Status add_sheet(RasterSet *set, const char *path, const RasterChoice *choice, const char *key)
+static Status add_sheet(RasterSet *set, const char *name, const RasterChoice *choice, const char *key)
 {
     Opened o = {0};
     Status status = STATUS_IO;
     double at_px[2] = {0, 0};
-    char   next[path_size + 80];
+    char   path[path_size], next[path_size + 80];
+    snprintf(path, sizeof path, "%s", name);
     if (!raster_file_allowed(path, key)) return STATUS_IO;
     GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
     if (!file) {
         log_error("%s: cannot read %s: %s; %s", key, path, reason("not a raster GDAL knows"), remedy(next, path));
         return STATUS_IO;
+    }
+    if (*choice->part || (GDALGetRasterCount(file) < 1 && GDALGetMetadata(file, "SUBDATASETS"))) {
+        const bool chosen = parts_may_be_opened(file, path, key, 0) && choose_part(path, file, choice->part, key);
+        GDALClose(file);
+        if (!chosen) return STATUS_BAD_VALUE;
+        file = GDALOpen(path, GA_ReadOnly);
+        if (!file) {
+            log_error("%s: cannot read %s: %s", key, path, reason("not a raster GDAL knows"));
+            return STATUS_IO;
+        }
     }
     status = parts_may_be_opened(file, path, key, 0) ? describe(&o, file, choice, path, key) : STATUS_IO;
     GDALClose(file);

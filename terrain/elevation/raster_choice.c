@@ -75,9 +75,12 @@ static bool take_one(RasterChoice *c, const char **why, const char *text)
     } else if (strncmp(text, "srs=", 4) == 0) {
         *why = "srs= needs a coordinate system by its number: EPSG:32633, or EPSG:32633+5773 with heights";
         return is_srs(text + 4) && snprintf(c->srs, sizeof c->srs, "%s", text + 4) < (int)sizeof c->srs;
+    } else if (strncmp(text, "part=", 5) == 0) {
+        *why = "part= needs the name of a grid in the file, of at most 63 octets";
+        return text[5] && snprintf(c->part, sizeof c->part, "%s", text + 5) < (int)sizeof c->part;
     } else if (strlen(text) < sizeof c->unit && raster_unit_m(text) > 0) strcpy(c->unit, text);
     else {
-        *why = "after @ there is geoid, ellipsoid, a unit (m, dm, cm, ft, us-ft), up, down, nodata=N, nodata=none or srs=EPSG:N";
+        *why = "after @ there is geoid, ellipsoid, a unit (m, dm, cm, ft, us-ft), up, down, nodata=N, nodata=none, srs=EPSG:N or part=NAME";
         return false;
     }
     return true;

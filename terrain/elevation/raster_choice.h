@@ -6,6 +6,7 @@
  *     FILE@down             its numbers grow downwards: depths;  @up
  *     FILE@nodata=-9999     that number is no height;  @nodata=none: every number is one, however far below the others
  *     FILE@srs=EPSG:6529    its coordinate system
+ *     FILE@part=elevation   which of the grids in it, as in a NetCDF file of several variables
  *
  * Any of them, in any order, the band first: `dem.tif:1@ellipsoid@ft`. A file that is called so stays as it is. */
 #ifndef TERRAIN_ELEVATION_RASTER_CHOICE_H
@@ -23,6 +24,7 @@ typedef struct RasterChoice {
     bool   has_void, no_void; /* `nodata=N`; `nodata=none` */
     double void_value;        /* where has_void, before scale and offset */
     char   srs[128];          /* empty: as the file says */
+    char   part[64];          /* empty: the file itself */
 } RasterChoice;
 
 /* Takes the choices off the end of a name. False: *why says what the last of them lacks, in static storage. */

@@ -1,6 +1,7 @@
 /* terrain/import/ground_rows.c: samples rasters at rows of cells of ENU, on all threads. */
 #include "terrain/import/ground_rows.h"
 
+#include "terrain/landscape/cover_table.h"
 #include "terrain/landscape/photo.h"
 
 #include <stdlib.h>
@@ -112,13 +113,16 @@ static void read_rows(void *user, int worker, int task)
                                         job->view->key);
 }
 
+typedef enum Samples { AS_BYTES, AS_NUMBERS, AS_THEY_ARE } Samples;
+
 /* One raster after the other: its box read, then the rows of cells sampled. */
-static Status each_raster(void *out, const RasterSet *set, int band, int most_bands, bool numbers,
+static Status each_raster(void *out, const RasterSet *set, int band, int most_bands, Samples samples,
                           const CellRows *cells, const GroundView *view, PoolTask *sample)
 {
     Status status = STATUS_OK;
     for (int k = 0; k < set->count && status == STATUS_OK; k++) {
         const Raster *raster = &set->raster[k];
+        const bool    numbers = samples == AS_NUMBERS || (samples == AS_THEY_ARE && !raster->bytes);
         Job job = {.raster = raster, .cells = cells, .view = view, .band = band > 0 ? band : 1, .out = out};
         job.bands = raster->bands >= most_bands ? most_bands : 1;
         if (!nodes_create(&job.nodes, &status, raster, cells, view)) continue;
@@ -161,11 +165,13 @@ static void sample_codes(void *user, int worker, int task)
     for (int j = task * rows_a_task; j < (task + 1) * rows_a_task && j < job->cells->rows; j++)
         for (int i0 = 0; i0 < job->cells->nx; i0 += node_cells) {
             const int count = job->cells->nx - i0 < node_cells ? job->cells->nx - i0 : node_cells;
-            uint8_t  *to = (uint8_t *)job->out + (size_t)j * (size_t)job->cells->nx + (size_t)i0;
+            uint16_t *to = (uint16_t *)job->out + (size_t)j * (size_t)job->cells->nx + (size_t)i0;
             places(x, y, &job->nodes, i0, j, count);
             for (int i = 0; i < count; i++) {
                 const int64_t at = pixel_of(job, x[i], y[i]);
-                if (at >= 0 && to[i] == 0 && job->valid[at]) to[i] = job->bytes[at];
+                if (at < 0 || to[i] > 1) continue; /* 1: code 0, which most files have where they know nothing */
+                const float code = !job->bytes ? job->number[at] : job->valid[at] ? (float)job->bytes[at] : NAN;
+                if (code >= 0 && code < cover_codes_most && (code > 0 || to[i] == 0)) to[i] = (uint16_t)(code + 1);
             }
         }
 }
@@ -246,18 +252,18 @@ static void sample_colours(void *user, int worker, int task)
         }
 }
 
-Status ground_rows_codes(uint8_t *code, const RasterSet *set, int band, const CellRows *cells, const GroundView *view)
+Status ground_rows_codes(uint16_t *code, const RasterSet *set, int band, const CellRows *cells, const GroundView *view)
 {
-    return each_raster(code, set, band, 1, false, cells, view, sample_codes);
+    return each_raster(code, set, band, 1, AS_THEY_ARE, cells, view, sample_codes);
 }
 
 Status ground_rows_numbers(float *value, const RasterSet *set, int band, const CellRows *cells, const GroundView *view)
 {
-    return each_raster(value, set, band, 1, true, cells, view, sample_numbers);
+    return each_raster(value, set, band, 1, AS_NUMBERS, cells, view, sample_numbers);
 }
 
 Status ground_rows_colours(uint8_t *rgba, const RasterSet *set, const CellRows *cells, const GroundView *view)
 {
     codes_fill();
-    return each_raster(rgba, set, 1, 3, false, cells, view, sample_colours);
+    return each_raster(rgba, set, 1, 3, AS_BYTES, cells, view, sample_colours);
 }

@@ -22,9 +22,9 @@ typedef struct GroundView {
     const char       *key;   /* for messages */
 } GroundView;
 
-/* Where a cell has no value yet (code 0, coverage 0, NaN) it gets that of the first raster of the set that has one.
- * Codes above 255 count as 255. band 0: the sheets' own, else the first. */
-Status ground_rows_codes(uint8_t *code, const RasterSet *set, int band, const CellRows *cells, const GroundView *view);
+/* Where a cell has no value yet (coverage 0, NaN) it gets that of the first raster of the set that has one. code: 0: none;
+ * else one more than the file's, of which a 0 gives way to others'; codes from cover_codes_most on are none. band 0: the sheets' own, else the first. */
+Status ground_rows_codes(uint16_t *code, const RasterSet *set, int band, const CellRows *cells, const GroundView *view);
 /* [rows][nx][4]: sRGB and coverage, bilinear in linear light; averaged where pixels are finer than cells. */
 Status ground_rows_colours(uint8_t *rgba, const RasterSet *set, const CellRows *cells, const GroundView *view);
 Status ground_rows_numbers(float *value, const RasterSet *set, int band, const CellRows *cells, const GroundView *view);

@@ -23,7 +23,7 @@ static const struct Row {
     {"photo", LIST, TEXT_AT(photo), 0, 0, 0, "a list of files within 16 383 octets"},
     {"canopy-height", LIST, TEXT_AT(canopy_height), 0, 0, 0, "a file, or FILE:BAND"},
     {"canopy-cover", LIST, TEXT_AT(canopy_cover), 0, 0, 0, "a file, or FILE:BAND"},
-    {"cover-table", LIST, TEXT_AT(cover_table), 0, 0, 0, "worldcover, nlcd, fbfm40, or a CSV"},
+    {"cover-table", LIST, TEXT_AT(cover_table), 0, 0, 0, "worldcover, nlcd, fbfm40, dynamicworld, corine, or a CSV"},
     {"geoid", LIST, TEXT_AT(geoid), 0, 0, 0, "a file in PROJ's .gtx form"},
     {"vertical", CHOICE, TEXT_AT(vertical), 0, 0, ELEVATION_BY_FILE, "auto, geoid or ellipsoid"},
     {"unit", SAYS, TEXT_AT(unit), 0, 0, 0, "a unit of length: m, dm, cm, ft, us-ft"},

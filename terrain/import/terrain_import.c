@@ -276,26 +276,29 @@ static Status make_wide(Making *m)
     const CellRows   cells = {g->nx, g->ny, g->x0_m, g->y0_m, g->cell_m};
     const GroundView view = view_of(m, "terrain import: --cover");
     const size_t     count = (size_t)g->nx * (size_t)g->ny;
-    uint8_t         *code = calloc(count, 1);
+    uint16_t        *code = calloc(count, sizeof *code);
+    uint8_t         *surface = malloc(count);
     long             histogram[cover_codes_most] = {0};
     m->cover_band = raster->sheet[0].band ? 0 : raster->bands >= 8 ? 4 : 1;
-    Status status = code ? ground_rows_codes(code, &m->cover, m->cover_band, &cells, &view) : STATUS_NO_MEMORY;
-    for (size_t n = 0; status == STATUS_OK && n < count; n++) histogram[code[n]]++;
+    Status status = code && surface ? ground_rows_codes(code, &m->cover, m->cover_band, &cells, &view) : STATUS_NO_MEMORY;
+    for (size_t n = 0; status == STATUS_OK && n < count; n++)
+        if (code[n]) histogram[code[n] - 1]++;
     if (status == STATUS_OK) status = cover_table_choose(&m->table, &m->r.cover.table, m->o->cover_table, histogram);
     long known = 0;
     for (size_t n = 0; status == STATUS_OK && n < count; n++) {
-        code[n] = m->table.surface[code[n]];
-        known += code[n] != SURFACE_NONE;
+        surface[n] = code[n] ? m->table.surface[code[n] - 1] : SURFACE_NONE;
+        known += surface[n] != SURFACE_NONE;
     }
     if (status == STATUS_OK && known == 0) {
         log_error("terrain import: --cover: none of the codes of %s is in the table %s; give --cover-table",
                   raster->sheet[0].path, m->r.cover.table);
         status = STATUS_BAD_VALUE;
     }
-    if (status == STATUS_OK) status = store_write_surface(m->writer, 1, g->ny, code);
+    if (status == STATUS_OK) status = store_write_surface(m->writer, 1, g->ny, surface);
     m->r.cover.posting_m = finest_m(&m->cover);
     m->r.cover.band      = raster->sheet[0].band ? raster->sheet[0].band : m->cover_band;
     free(code);
+    free(surface);
     return status;
 }
 
@@ -306,16 +309,18 @@ static Status make_surface(Making *m, int row0, int rows, const SurfaceStrip *st
     int      first;
     if (!rows_of(&cells, &first, &m->plan.surface[0], m, row0, rows)) return STATUS_OK;
     const size_t count = (size_t)cells.nx * (size_t)cells.rows;
+    uint16_t    *of_file = m->cover.count ? calloc(count, sizeof *of_file) : NULL;
     uint8_t     *code = calloc(count, 1);
-    Status       status = code ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK && m->cover.count) {
+    Status       status = code && (of_file || !m->cover.count) ? STATUS_OK : STATUS_NO_MEMORY;
+    if (status == STATUS_OK && of_file) {
         const GroundView view = view_of(m, "terrain import: --cover");
-        status = ground_rows_codes(code, &m->cover, m->cover_band, &cells, &view);
+        status = ground_rows_codes(of_file, &m->cover, m->cover_band, &cells, &view);
         for (size_t n = 0; n < count; n++) {
-            m->r.cover.unknown += code[n] && !m->table.known[code[n]];
-            code[n] = m->table.surface[code[n]];
+            m->r.cover.unknown += of_file[n] > 1 && !m->table.known[of_file[n] - 1];
+            code[n] = of_file[n] ? m->table.surface[of_file[n] - 1] : SURFACE_NONE;
         }
     }
+    free(of_file);
     for (size_t n = 0; strip && status == STATUS_OK && n < count; n++) { /* cells and posts are one to one */
         if (strip->kind[n] == CELL_BUILDING) code[n] = SURFACE_BUILT;
         else if (strip->kind[n] == CELL_TREE && code[n] == SURFACE_NONE) code[n] = SURFACE_GRASS;

@@ -16,7 +16,7 @@ Status cover_table_read(CoverTable *out, const char *path)
     for (int row = 0; row < table.rows; row++) {
         double      code;
         const char *name = table_text(&table, row, surface_column);
-        if (table_number(&code, &table, row, code_column, 1, cover_codes_most - 1) != STATUS_OK) goto done;
+        if (table_number(&code, &table, row, code_column, 0, cover_codes_most - 1) != STATUS_OK) goto done;
         const SurfaceClass surface = surface_find(name);
         if (code != floor(code) || t.known[(int)code] || (surface == SURFACE_NONE && strcmp(name, "none") != 0)) {
             log_error(
@@ -35,7 +35,7 @@ done:
     return status;
 }
 
-static const char *const built_in[] = {"worldcover", "nlcd", "fbfm40"};
+static const char *const built_in[] = {"worldcover", "nlcd", "fbfm40", "dynamicworld", "corine"};
 
 /* The table with most of the pixels' codes; of equals the first. */
 Status cover_table_choose(CoverTable *out, const char **name, const char *asked, const long histogram[cover_codes_most])

@@ -97,7 +97,7 @@ void elevation_import_plan(Import *m, int most_side)
     enum { least_ring = 2 * level_ratio, margin = 32 };
     const Raster *raster = m->grid[m->main].raster;
     double        s = m->files->spacing_m > 0 ? m->files->spacing_m : fmin(raster->posting_m[0], raster->posting_m[1]);
-    s = fmax(rint(s * 64) / 64, 0x1p-6); /* dyadic, so that every post's place is exact */
+    s = fmax(rint(s * 64) / 64, 0x1p-4); /* dyadic, so that every post's place is exact; near a pole pixels are narrower */
 
     double low[2], high[2];
     int    first[2], last[2];

@@ -197,9 +197,9 @@ static void warn_of_voids(const ElevationSurvey *s, const char *key)
         snprintf(numbers + used, sizeof numbers - used, "%s%.7g", k ? ", " : "", s->suspect[k]);
     }
     log_warn("%s: %s: %s%.0f posts of %s%s lie %.0f m below all others: taken for voids that no tag declares, and "
-             "filled; %s@nodata=none reads them as heights, gdal_edit.py -a_nodata %.7g %s declares them",
+             "filled; %s@nodata=%.7g says so too, @nodata=none reads them as heights (terrain import: --nodata)",
              key, path, s->whole ? "" : "at least ", s->suspect_posts, numbers, s->suspects > 3 ? " ..." : "", s->gap_m,
-             path, s->suspect[0], path);
+             path, s->suspect[0]);
 }
 
 static Status judge_counts(ElevationSurvey *s, Raster *raster, const Counts *c, const char *key)
@@ -217,8 +217,8 @@ static Status judge_counts(ElevationSurvey *s, Raster *raster, const Counts *c, 
     }
     if (c->outside > 0)
         log_warn("%s: %s: %s%.0f posts are no heights on Earth (%.6g .. %.6g m): taken for voids that no tag declares, and "
-                 "filled; gdal_edit.py -a_nodata %.7g %s declares them", key, path, s->whole ? "" : "at least ",
-                 c->outside, c->least_out_m, c->most_out_m, c->least_out_m / unit_m, path);
+                 "filled; %s@nodata=%.7g says so (terrain import: --nodata)", key, path, s->whole ? "" : "at least ",
+                 c->outside, c->least_out_m, c->most_out_m, path, c->least_out_m / unit_m);
     int n = raster->choice.no_void || heights < least_posts ? 0 : alone(&c->lowest, clamp(4 * raster->posting_m[0], 300, 5000));
     if (n > 0 && !s->whole && !c->beside)
         for (int k = 0; k < n; k++)

@@ -32,7 +32,8 @@ Status cover_table_check(const char *path)
     return cover_table_read(&table, path);
 }
 
-static Status cover_codes(uint8_t *code, const Window *window, const Raster *raster, int band,
+/* code [ny][nx]: 0 where nothing is known, else one more than the file's. */
+static Status cover_codes(uint16_t *code, const Window *window, const Raster *raster, int band,
                           const Elevation *elevation, const LocalFrame *frame)
 {
     Finder f;
@@ -50,8 +51,8 @@ static Status cover_codes(uint8_t *code, const Window *window, const Raster *ras
                 const double x = floor(at[0]) - box[0], y = floor(at[1]) - box[1];
                 if (!(x >= 0 && y >= 0 && x < (double)w && y < (double)h)) continue;
                 const float value = px[(size_t)y * w + (size_t)x];
-                if (value >= 1 && value < cover_codes_most && code[(size_t)j * (size_t)window->nx + (size_t)i] == 0)
-                    code[(size_t)j * (size_t)window->nx + (size_t)i] = (uint8_t)value;
+                uint16_t   *to = &code[(size_t)j * (size_t)window->nx + (size_t)i];
+                if (value >= 0 && value < cover_codes_most && (value > 0 ? *to <= 1 : *to == 0)) *to = (uint16_t)(value + 1);
             }
         free(px);
     }
@@ -65,6 +66,7 @@ Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const 
     static const double most_cells[cover_windows] = {16e6, 4e6};
     RasterSet   set = {0};
     CoverGrid   grid[cover_windows] = {{0}};
+    uint16_t   *code[cover_windows] = {NULL};
     CoverReport r = {0};
     CoverTable  chosen;
     Status      status = open_whole(&set, paths, cover_key, "classes");
@@ -97,22 +99,24 @@ Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const 
         g->nx = (int)((high[0] - low[0]) / size_m) + 1;
         g->ny = (int)((high[1] - low[1]) / size_m) + 1;
         g->surface = calloc((size_t)g->nx * (size_t)g->ny, 1);
-        status = g->surface ? STATUS_OK : STATUS_NO_MEMORY;
+        code[w]    = calloc((size_t)g->nx * (size_t)g->ny, sizeof *code[w]);
+        status = g->surface && code[w] ? STATUS_OK : STATUS_NO_MEMORY;
         const Window window = {g->x0_m, g->y0_m, size_m, g->nx, g->ny};
         for (int k = 0; status == STATUS_OK && k < set.count; k++)
-            status = cover_codes(g->surface, &window, &set.raster[k], r.band, elevation, frame);
+            status = cover_codes(code[w], &window, &set.raster[k], r.band, elevation, frame);
         if (status != STATUS_OK) goto done;
     }
     long histogram[cover_codes_most] = {0}, classed = 0, of_class[SURFACE_COUNT] = {0};
     for (int w = 0; w < cover_windows; w++)
-        for (size_t n = 0; n < (size_t)grid[w].nx * (size_t)grid[w].ny; n++) histogram[grid[w].surface[n]]++;
+        for (size_t n = 0; n < (size_t)grid[w].nx * (size_t)grid[w].ny; n++)
+            if (code[w][n]) histogram[code[w][n] - 1]++;
     status = cover_table_choose(&chosen, &r.table, table, histogram);
     if (status != STATUS_OK) goto done;
     for (int w = 0; w < cover_windows; w++)
         for (size_t n = 0; n < (size_t)grid[w].nx * (size_t)grid[w].ny; n++) {
-            const uint8_t code = grid[w].surface[n];
-            if (code && !chosen.known[code] && w == 0) r.unknown++;
-            grid[w].surface[n] = chosen.surface[code];
+            const uint16_t of_file = code[w][n];
+            if (of_file > 1 && !chosen.known[of_file - 1] && w == 0) r.unknown++;
+            grid[w].surface[n] = of_file ? chosen.surface[of_file - 1] : SURFACE_NONE;
             if (w == 0) of_class[grid[w].surface[n]]++;
         }
     for (int s = 1; s < SURFACE_COUNT; s++) classed += of_class[s];
@@ -127,6 +131,7 @@ Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const 
     memset(grid, 0, sizeof grid);
     *report = r;
 done:
+    for (int w = 0; w < cover_windows; w++) free(code[w]);
     cover_grid_free(grid);
     raster_set_close(&set);
     return status;

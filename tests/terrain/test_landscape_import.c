@@ -51,6 +51,9 @@ static int level_ground(int column, int row) { (void)column; (void)row; return 1
 static int quadrants(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 10 : 30 : column < cells / 2 ? 50 : 80; }
 static int nlcd_codes(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 42 : 71 : column < cells / 2 ? 23 : 11; }
 static int fuel_codes(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 183 : 102 : column < cells / 2 ? 91 : 98; }
+static int dynamic_codes(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 1 : 4 : column < cells / 2 ? 6 : 0; }
+static int corine_numbers(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 24 : 18 : column < cells / 2 ? 2 : 41; }
+static int corine_classes(int column, int row) { return row < cells / 2 ? column < cells / 2 ? 312 : 231 : column < cells / 2 ? 112 : 512; }
 static int foreign_codes(int column, int row) { (void)row; return column < cells / 2 ? 200 + column % 3 * 5 + 10 : 240; }
 static int grassland(int column, int row) { (void)column; (void)row; return 30; }
 static int west_bright(int column, int row) { (void)row; return column < cells / 2 ? 206 : 41; }
@@ -92,6 +95,9 @@ static void classes_come_from_the_codes(void **state)
         {quadrants, "worldcover", {SURFACE_FOREST_BROADLEAF, SURFACE_GRASS, SURFACE_BUILT, SURFACE_WATER}},
         {nlcd_codes, "nlcd", {SURFACE_FOREST_CONIFER, SURFACE_GRASS, SURFACE_BUILT, SURFACE_WATER}},
         {fuel_codes, "fbfm40", {SURFACE_FOREST_CONIFER, SURFACE_DRY_GRASS, SURFACE_BUILT, SURFACE_WATER}},
+        {dynamic_codes, "dynamicworld", {SURFACE_FOREST_BROADLEAF, SURFACE_CROP, SURFACE_BUILT, SURFACE_WATER}},
+        {corine_numbers, "corine", {SURFACE_FOREST_CONIFER, SURFACE_GRASS, SURFACE_BUILT, SURFACE_WATER}},
+        {corine_classes, "corine", {SURFACE_FOREST_CONIFER, SURFACE_GRASS, SURFACE_BUILT, SURFACE_WATER}},
     };
     const LocalFrame frame = centre_frame();
     char elevation[64], cover[64];

@@ -57,6 +57,8 @@ static float higher_coarse(int i, int j)
     return (float)(325 + 20 * sin(0.03 * x) * cos(0.02 * y) + 2 * sin(0.7 * x + 0.4 * y));
 }
 static float flat(int i, int j) { return (float)(100 + 0 * i * j); }
+static float corine_classes(int i, int j) { return (float)(j < 125 ? 312 : 511 + 0 * i); }
+static float dynamic_codes(int i, int j) { return (float)(j < 125 ? 1 : 0 * i); }
 static float codes(int i, int j) { return (float)(j < 125 ? 10 : 60 + 0 * i); }
 
 static const Grid ground = {"hills", 260, 250, 11, 46, 1e-5, hills};
@@ -271,31 +273,43 @@ static void holes_are_filled_from_coarser_files_first(void **state)
 static void classes_are_where_the_file_has_them(void **state)
 {
     (void)state;
+    /* of whole numbers: the same as a VRT of octets; of more than 255; and a table where 0 is a class */
+    static const struct {
+        const char  *type, *table;
+        float      (*code)(int i, int j);
+        SurfaceClass north, south;
+    } kinds[] = {{"Byte", "worldcover", codes, SURFACE_FOREST_BROADLEAF, SURFACE_BARE_SOIL},
+                 {"Int16", "corine", corine_classes, SURFACE_FOREST_CONIFER, SURFACE_WATER},
+                 {"Byte", "dynamicworld", dynamic_codes, SURFACE_FOREST_BROADLEAF, SURFACE_WATER}};
     char          path[temp_name_size], cover[temp_name_size], out[temp_name_size], code[2 * temp_name_size];
     const char   *why;
     TerrainReport r;
     TerrainStore  store;
     write_grid(path, &ground);
-    const Grid    g = {"cover", 260, 250, 11, 46, 1e-5, codes};
-    write_grid(cover, &g);
-    /* of whole numbers: the same as a VRT of octets */
-    path_of(code, "cover.vrt");
-    FILE *vrt = fopen(code, "w");
-    CHECK(vrt != NULL);
-    fprintf(vrt, "<VRTDataset rasterXSize=\"260\" rasterYSize=\"250\"><SRS>EPSG:4326</SRS><GeoTransform>11, 1e-5, 0, %.10f, 0, "
-            "-1e-5</GeoTransform><VRTRasterBand dataType=\"Byte\" band=\"1\"><SimpleSource><SourceFilename>%s"
-            "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>", 46 + 250e-5, cover);
-    CHECK(fclose(vrt) == 0);
-    path_of(out, "cover.store");
-    TerrainOptions o = options_of(path);
-    CHECK(terrain_options_set(&o, &why, "cover", code) && terrain_options_set(&o, &why, "cover-table", "worldcover"));
-    assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
-    assert_int_equal(store_open(&store, out), STATUS_OK);
-    CHECK(cover_grid_at(store.surface, 5, 20) == SURFACE_FOREST_BROADLEAF);
-    CHECK(cover_grid_at(store.surface, 5, -20) == SURFACE_BARE_SOIL);
-    CHECK(cover_grid_at(store.surface, 5, 1e5) == SURFACE_NONE);
-    CHECK_NEAR(r.cover.share[SURFACE_FOREST_BROADLEAF], 0.5, 0.02);
-    store_close(&store);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        const Grid g = {"cover", 260, 250, 11, 46, 1e-5, kinds[k].code};
+        write_grid(cover, &g);
+        path_of(code, "cover.vrt");
+        FILE *vrt = fopen(code, "w");
+        CHECK(vrt != NULL);
+        fprintf(vrt, "<VRTDataset rasterXSize=\"260\" rasterYSize=\"250\"><SRS>EPSG:4326</SRS><GeoTransform>11, 1e-5, 0, %.10f, "
+                "0, -1e-5</GeoTransform><VRTRasterBand dataType=\"%s\" band=\"1\"><SimpleSource><SourceFilename>%s"
+                "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>", 46 + 250e-5,
+                kinds[k].type, cover);
+        CHECK(fclose(vrt) == 0);
+        path_of(out, "cover.store");
+        TerrainOptions o = options_of(path);
+        CHECK(terrain_options_set(&o, &why, "cover", code));
+        assert_int_equal(terrain_import(&r, &o, out, NULL, NULL), STATUS_OK);
+        assert_string_equal(r.cover.table, kinds[k].table);
+        assert_int_equal(store_open(&store, out), STATUS_OK);
+        assert_int_equal(cover_grid_at(store.surface, 5, 20), kinds[k].north);
+        assert_int_equal(cover_grid_at(store.surface, 5, -20), kinds[k].south);
+        CHECK(cover_grid_at(store.surface, 5, 1e5) == SURFACE_NONE);
+        CHECK_NEAR(r.cover.share[kinds[k].north], 0.5, 0.02);
+        CHECK(r.cover.unknown == 0);
+        store_close(&store);
+    }
 }
 
 /* ---- surface models -------------------------------------------------------------------------- */
