@@ -27,7 +27,7 @@ typedef struct GroundBlow {
  * starts again begins another stand. Ends with the report that shows it moved or turned, its removal, or its
  * timeout. */
 typedef struct GroundStand {
-    double   p_ecef[3];            /* the model's origin (base centre), as reported: not clamped to the ground */
+    double   p_ecef[3];            /* the model's origin (base centre), on the ground where its entity is clamped to it */
     double   r_ecef_from_body[9];
     float    low_m[3], high_m[3];  /* box of the model at rest without guns and rotors, body axes, from that origin */
     double   from_s, to_s;         /* exercise time; to_s INFINITY: still there */
@@ -37,7 +37,7 @@ typedef struct GroundStand {
 
 /* One straight piece of a trail: both tracks, or the wheels of both sides. */
 typedef struct GroundTrack {
-    double a_ecef[3], b_ecef[3];   /* centre line, at the base of the vehicle as reported */
+    double a_ecef[3], b_ecef[3];   /* centre line, at the base of the vehicle, on the ground where that is clamped to it */
     double a_s, b_s;               /* when it passed there */
     float  width_m, apart_m;       /* of one track or tyre; between their centre lines */
     float  heat_j_m2;              /* friction heat left in the ground under each */

@@ -64,51 +64,73 @@ double contact_above_m(const ContactGround *ground, const double p_ecef[3])
 }
 
 /* Carried through the air, or falling through it. */
-static bool is_airborne(const SnapshotEntity *e, const double up_ecef[3])
+static bool is_airborne(DisEntityType type, const double v_ecef_mps[3], const double up_ecef[3])
 {
-    const double v_up = v3_dot(e->v_ecef_mps, up_ecef), v = v3_length(e->v_ecef_mps);
+    const double v_up = v3_dot(v_ecef_mps, up_ecef), v = v3_length(v_ecef_mps);
     const double along = sqrt(fmax(v * v - v_up * v_up, 0));
-    return v > (e->type.kind == dis_kind_platform ? 60 : 12) || v_up < -fmax(2, 0.5 * along);
+    return v > (type.kind == dis_kind_platform ? 60 : 12) || v_up < -fmax(2, 0.5 * along);
 }
 
+/* From a base to the ground. */
+typedef struct WayUp {
+    double up_ecef[3], up[3], p[3]; /* the vertical; ENU: that, and the base */
+    double way_m, share;            /* share of it that it is moved */
+} WayUp;
+
 /* Share of the way to the ground that an entity is moved, p_enu being its base: 1 where all entities are clamped. */
-static double share_of(const SnapshotEntity *e, const ContactGround *ground, const double p_enu[3],
-                       const double up_ecef[3], double way_m)
+static double share_of(const WayUp *w, DisEntityType type, const double v_ecef_mps[3], const ContactGround *ground)
 {
     if (!ground->landscape) return 1;
-    const double share = contact_share(e->type, way_m);
+    const double share = contact_share(type, w->way_m);
     if (!(share > 0)) return 0;
-    if (contact_floats(e->type)) return share;
-    if (is_airborne(e, up_ecef)) return 0;
-    const bool at_sea = way_m < 0 && landscape_surface(ground->landscape, p_enu[0], p_enu[1]) == SURFACE_WATER;
+    if (contact_floats(type)) return share;
+    if (is_airborne(type, v_ecef_mps, w->up_ecef)) return 0;
+    const bool at_sea = w->way_m < 0 && landscape_surface(ground->landscape, w->p[0], w->p[1]) == SURFACE_WATER;
     return at_sea ? 0 : share;
 }
 
 /* Clearly consistent with the ground: independent of the inclination of the vertical. */
-static bool stands_near(const SnapshotEntity *e, const ContactGround *ground, const double p_enu[3])
+static bool stands_near(DisEntityType type, const ContactGround *ground, const double p_enu[3])
 {
     const double above_m = p_enu[2] - elevation_height(ground->elevation, p_enu[0], p_enu[1], NULL);
-    return ground->landscape && fabs(p_enu[0]) + fabs(p_enu[1]) < 20000 && contact_share(e->type, 1.01 * above_m) == 0;
+    return ground->landscape && fabs(p_enu[0]) + fabs(p_enu[1]) < 20000 && contact_share(type, 1.01 * above_m) == 0;
+}
+
+/* False: it stays where it is. */
+static bool way_to_ground(WayUp *w, DisEntityType type, const double p_ecef[3], const double v_ecef_mps[3],
+                          const ContactGround *ground)
+{
+    if (!ground->elevation) return false;
+    if (!contact_applies(type) && !(ground->landscape && contact_floats(type))) return false;
+    enu_from_ecef(w->p, ground->frame, p_ecef);
+    if (stands_near(type, ground, w->p) || !vertical(w->up_ecef, p_ecef)) return false;
+    m3_tmul_v3(w->up, ground->frame->r_ecef_from_enu, w->up_ecef);
+    w->way_m = way_up_m(ground, w->p, w->up);
+    if (!isfinite(w->way_m)) return false;
+    w->share = share_of(w, type, v_ecef_mps, ground);
+    return w->share > 0;
+}
+
+void contact_move(double p_ecef[3], DisEntityType type, const double v_ecef_mps[3], const ContactGround *ground)
+{
+    WayUp w;
+    if (way_to_ground(&w, type, p_ecef, v_ecef_mps, ground))
+        v3_add_scaled(p_ecef, p_ecef, w.share * w.way_m, w.up_ecef);
 }
 
 void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *model)
 {
     enum { along = 5, across = 3 };
     static const double steepest = 1; /* tan 45 degrees: a wall of a surface model is not a road */
-    double up_ecef[3], up[3], p[3], r_enu_from_body[9], forward[3], right[3];
-    if (!ground->elevation) return;
-    if (!contact_applies(e->type) && !(ground->landscape && contact_floats(e->type))) return;
-    enu_from_ecef(p, ground->frame, e->p_ecef);
-    if (stands_near(e, ground, p) || !vertical(up_ecef, e->p_ecef)) return;
-    m3_tmul_v3(up, ground->frame->r_ecef_from_enu, up_ecef);
+    double r_enu_from_body[9], forward[3], right[3];
+    WayUp  w;
+    if (!way_to_ground(&w, e->type, e->p_ecef, e->v_ecef_mps, ground)) return;
+    const double *up = w.up, *up_ecef = w.up_ecef, *p = w.p, share = w.share;
+    double        way_m = w.way_m;
     m3_tmul(r_enu_from_body, ground->frame->r_ecef_from_enu, e->r_ecef_from_body);
     const double nose[3] = {r_enu_from_body[0], r_enu_from_body[3], r_enu_from_body[6]};
     const double down[3] = {r_enu_from_body[2], r_enu_from_body[5], r_enu_from_body[8]};
 
-    double way_m = way_up_m(ground, p, up);
-    if (!isfinite(way_m)) return;
-    const double share = share_of(e, ground, p, up_ecef, way_m);
-    if (!(share > 0)) return;
     v3_add_scaled(forward, nose, -v3_dot(nose, up), up);
     const bool upright = leans(e->type) && v3_length(forward) > 0.3 && v3_dot(down, up) < -0.3 && v3_normalize(forward, forward);
     double slope_forward = 0, slope_right = 0;

@@ -38,5 +38,7 @@ double contact_above_m(const ContactGround *ground, const double p_ecef[3]);
  * above 12; sinking faster than 2 m/s and half its horizontal speed) and for those above the sea (on a deck, swimming).
  * Ships are clamped to the sea's surface, or where none is known to the ground; they keep their attitude. */
 void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *model);
+/* The same of a place alone, such as the end of a track: by the ground under it, without what lies about it. */
+void contact_move(double p_ecef[3], DisEntityType type, const double v_ecef_mps[3], const ContactGround *ground);
 
 #endif

@@ -39,6 +39,12 @@ static void base_of(double p_base_ecef[3], const EntitySlot *slot, const Model *
     for (int i = 0; i < 3; i++) p_base_ecef[i] = p_ecef[i] + r_ecef_from_body[3 * i + 2] * below_m;
 }
 
+/* A base where its entity is shown: on the ground where that is clamped. */
+static void settle(double p_base_ecef[3], const EntityTable *table, const EntitySlot *slot, const double v_ecef_mps[3])
+{
+    contact_move(p_base_ecef, slot->type, v_ecef_mps, &table->config.ground);
+}
+
 /* ---- stands ----------------------------------------------------------------------------------- */
 
 static double lasts_until_s(const EntitySlot *slot) { return slot->report_s + slot->paused_s + slot->timeout_s; }
@@ -67,6 +73,17 @@ static bool blows(EntityTable *table, const EntitySlot *slot, EntityMarks *m, bo
     return true;
 }
 
+/* Place and attitude of a stand: those that its entity is shown with. */
+static void set_place(GroundStand *stand, const EntityTable *table, const EntitySlot *slot, const EntityMarks *m)
+{
+    SnapshotEntity e = {.type = slot->type};
+    memcpy(e.p_ecef, m->p_ecef, sizeof e.p_ecef);
+    memcpy(e.r_ecef_from_body, m->r_ecef_from_body, sizeof e.r_ecef_from_body);
+    contact_set(&e, &table->config.ground, catalog_model(table->catalog, slot->model));
+    memcpy(stand->p_ecef, e.p_ecef, sizeof stand->p_ecef);
+    memcpy(stand->r_ecef_from_body, e.r_ecef_from_body, sizeof stand->r_ecef_from_body);
+}
+
 static void begin_stand(EntityTable *table, EntitySlot *slot, const double p_ecef[3], bool is_first, double t_s)
 {
     EntityMarks *m = marks_of(table, slot);
@@ -78,8 +95,7 @@ static void begin_stand(EntityTable *table, EntitySlot *slot, const double p_ece
     memcpy(m->r_ecef_from_body, slot->reported.r_ecef_from_body, sizeof m->r_ecef_from_body);
     if (!is_first) return;
     GroundStand stand = {.from_s = m->from_s, .to_s = lasts_until_s(slot), .owner = entity_key(slot->id) + 1};
-    memcpy(stand.p_ecef, m->p_ecef, sizeof stand.p_ecef);
-    memcpy(stand.r_ecef_from_body, m->r_ecef_from_body, sizeof stand.r_ecef_from_body);
+    set_place(&stand, table, slot, m);
     m->stand = ground_stand_again(&m->from_s, table->ground, &stand, t_s - table->config.ambient_s);
     if (m->stand) ground_stand_until(table->ground, m->stand, stand.to_s);
 }
@@ -109,8 +125,7 @@ static void record_stand(EntityTable *table, const EntitySlot *slot, EntityMarks
     if (!(t_s - m->from_s >= stood_s)) return;
     const ModelStand *box = stood_of(table, slot);
     GroundStand       stand = {.from_s = m->from_s, .to_s = to_s, .owner = entity_key(slot->id) + 1, .blow = blow};
-    memcpy(stand.p_ecef, m->p_ecef, sizeof stand.p_ecef);
-    memcpy(stand.r_ecef_from_body, m->r_ecef_from_body, sizeof stand.r_ecef_from_body);
+    set_place(&stand, table, slot, m);
     memcpy(stand.low_m, box->low_m, sizeof stand.low_m);
     memcpy(stand.high_m, box->high_m, sizeof stand.high_m);
     m->stand = ground_stand_open(table->ground, &stand);
@@ -185,13 +200,14 @@ static void put_point(TrailSink *sink, GroundTrail *trail, const double p_ecef[3
     else sink->count += ground_trail_tail(sink->out + sink->count, trail, p_ecef, t_s, last);
 }
 
-static void path_point(TrailSink *sink, GroundTrail *trail, const EntitySlot *slot, const Model *model, double own_s,
+static void path_point(TrailSink *sink, GroundTrail *trail, const EntityTable *table, const EntitySlot *slot, double own_s,
                        bool last)
 {
     Motion motion;
     double p_ecef[3];
     dead_reckon(&motion, &slot->reported, own_s - slot->report_s);
-    base_of(p_ecef, slot, model, motion.p_ecef, motion.r_ecef_from_body);
+    base_of(p_ecef, slot, catalog_model(table->catalog, slot->model), motion.p_ecef, motion.r_ecef_from_body);
+    settle(p_ecef, table, slot, motion.v_ecef_mps);
     put_point(sink, trail, p_ecef, own_s + slot->paused_s, last);
 }
 
@@ -199,11 +215,10 @@ static void path_point(TrailSink *sink, GroundTrail *trail, const EntitySlot *sl
 static void follow(TrailSink *sink, GroundTrail *trail, const EntityTable *table, const EntitySlot *slot, double from_s,
                    double to_s, int most, bool with_end)
 {
-    const Model *model = catalog_model(table->catalog, slot->model);
     const double step_s = step_of(slot, to_s - from_s, most), first = floor(from_s / step_s) + 1;
     for (int i = 0; isfinite(step_s) && i < most && (first + i) * step_s < to_s; i++)
-        path_point(sink, trail, slot, model, (first + i) * step_s, false);
-    if (with_end && to_s > from_s) path_point(sink, trail, slot, model, to_s, true);
+        path_point(sink, trail, table, slot, (first + i) * step_s, false);
+    if (with_end && to_s > from_s) path_point(sink, trail, table, slot, to_s, true);
 }
 
 /* End of the extrapolation for t_s, the entity's own time. */
@@ -225,10 +240,15 @@ void entity_marks_before(EntityTable *table, EntitySlot *slot, double t_s)
 }
 
 /* After a report. */
-static void report_trail(EntityTable *table, EntitySlot *slot, EntityMarks *m, const double p_ecef[3], double speed_mps,
+static void report_trail(EntityTable *table, EntitySlot *slot, EntityMarks *m, const double p_base_ecef[3], double speed_mps,
                          double t_s)
 {
     const bool moves = speed_mps >= moving_mps;
+    Motion     motion;
+    double     p_ecef[3] = {p_base_ecef[0], p_base_ecef[1], p_base_ecef[2]};
+    if (!moves && !m->trail.on) return;
+    dead_reckon(&motion, &slot->reported, 0);
+    settle(p_ecef, table, slot, motion.v_ecef_mps);
     if (m->trail.on) {
         m->trail.speed_mps = fmax(m->trail.speed_mps, speed_mps);
         ground_trail_point(table->ground, &m->trail, p_ecef, t_s, !moves);
@@ -323,7 +343,10 @@ void entity_marks_detonation(EntityTable *table, const DisDetonation *pdu, doubl
         return;
     GroundBurn burn = {.t_s = t_s, .radius_m = (float)(radius_m * size), .crater_m = (float)(crater_m * size),
                        .heat_j_m2 = heat_j_m2};
+    static const DisEntityType vehicle = {.kind = dis_kind_platform, .domain = dis_domain_land};
+    static const double        still[3] = {0};
     memcpy(burn.p_ecef, pdu->p_ecef, sizeof burn.p_ecef);
+    contact_move(burn.p_ecef, vehicle, still, &table->config.ground); /* by the same distance as a vehicle there */
     ground_burn(table->ground, &burn);
     table->counters.marks_forgotten = (uint64_t)ground_history_forgotten(table->ground);
 }

@@ -329,6 +329,47 @@ static void the_ground_decides(void **state)
 }
 
 /* A jump is no drive, and neither is a lift by a crane or a vehicle in the air. */
+/* The sender's ground is level; ours is a slope of one in five, 15 m lower where it starts. */
+static void marks_lie_where_their_entity_is_shown(void **state)
+{
+    (void)state;
+    LocalFrame        frame;
+    const Geodetic    origin = {0, 0, 0};
+    Elevation         ground = {0};
+    EntityTableConfig config = entity_table_default_config();
+    CHECK(local_frame_at(&frame, &origin) == STATUS_OK);
+    CHECK(elevation_level_create(&ground, 0, 101, 101, -500, -500, 10, -200, 1) == STATUS_OK);
+    for (int j = 0; j < 101; j++)
+        for (int i = 0; i < 101; i++) elevation_set_post(&ground.level[0], i, j, 185 + 2 * (j - 50));
+    elevation_build_pyramids(&ground);
+    config.ground = (ContactGround){.frame = &frame, .elevation = &ground};
+    Fixture        f = fixture_open(&config);
+    DisEntityState stands = driving(1, tank_type, 100, 0);
+    for (int t_s = 0; t_s <= 120; t_s += heartbeat_s) {
+        const DisEntityState drives = driving(2, tank_type, 2.0 * t_s, 2);
+        hear(&f, &stands, t_s), hear(&f, &drives, t_s);
+    }
+    const DisDetonation pdu = {.munition = entity_id(50), .event = {1, 3001, 1}, .result = 3,
+                               .p_ecef = {earth_radius_m + 0.3, 5, 100}, .descriptor = {{2, 2, 225, 1, 1, 3, 0}, 1000, 1000, 1, 0}};
+    entity_table_detonation(f.table, &pdu, 121);
+    const GroundMarks    *m = marks_at(&f, 122);
+    const SnapshotEntity *shown = NULL;
+    for (int i = 0; i < f.snapshot.count; i++)
+        if (f.snapshot.entity[i].id.entity == stands.id.entity) shown = &f.snapshot.entity[i];
+    CHECK(shown && m->stands == 1 && m->tracks >= 4 && m->burns == 1);
+    CHECK(memcmp(m->stand[0].p_ecef, shown->p_ecef, sizeof shown->p_ecef) == 0);
+    CHECK(memcmp(m->stand[0].r_ecef_from_body, shown->r_ecef_from_body, sizeof shown->r_ecef_from_body) == 0);
+    CHECK_NEAR(m->stand[0].p_ecef[0] - earth_radius_m, -15 + 0.2 * 100, 0.01); /* paper; north is z here, up is x */
+    CHECK_NEAR(m->stand[0].r_ecef_from_body[0], sin(atan(0.2)), 1e-4);       /* its nose is north, and up */
+    for (int i = 0; i < m->tracks; i++) {
+        CHECK_NEAR(m->track[i].a_ecef[0] - earth_radius_m, -15 + 0.2 * m->track[i].a_ecef[2], 0.02);
+        CHECK_NEAR(m->track[i].b_ecef[0] - earth_radius_m, -15 + 0.2 * m->track[i].b_ecef[2], 0.02);
+    }
+    CHECK_NEAR(m->burn[0].p_ecef[0] - earth_radius_m, -15 + 0.2 * 100, 0.01);
+    fixture_close(&f);
+    elevation_destroy(&ground);
+}
+
 static void jumps_leave_no_tracks(void **state)
 {
     (void)state;
@@ -592,6 +633,7 @@ int main(void)
         cmocka_unit_test(who_stands_has_stood),
         cmocka_unit_test(jitter_is_no_motion),
         cmocka_unit_test(the_ground_decides),
+        cmocka_unit_test(marks_lie_where_their_entity_is_shown),
         cmocka_unit_test(jumps_leave_no_tracks),
         cmocka_unit_test(a_pause_holds_trails_and_stands),
         cmocka_unit_test(rings_forget_the_oldest),
