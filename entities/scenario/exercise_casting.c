@@ -92,6 +92,38 @@ static void turned(double out[2], const Scenario *s, const double xy[2])
     out[1] = c * xy[1] - d * xy[0];
 }
 
+/* Over real ground a path may meet a ridge between its points: it then goes over what lies within a hundredth or so of its
+ * length ahead and behind, at its height. One that stays above half its height everywhere is left as it is. */
+static Status over_ridges(Route *route, const ExerciseGround *ground, double height_m)
+{
+    enum { points = 120, fine = 8, samples = points * fine };
+    double   *z = malloc((samples + 1) * sizeof *z), point[points + 1][3];
+    bool      clear = true;
+    RoutePoint at;
+    if (!z) return STATUS_NO_MEMORY;
+    for (int n = 0; n <= samples; n++) {
+        route_at(&at, route, route->length_m * n / samples);
+        z[n] = exercise_ground_at(NULL, ground, at.p[0], at.p[1]) + height_m;
+        clear &= at.p[2] > z[n] - 0.5 * height_m;
+    }
+    for (int i = 0; i <= points && !clear; i++) {
+        route_at(&at, route, route->length_m * i / points);
+        memcpy(point[i], at.p, sizeof point[i]);
+        for (int n = fine * (i - 1); n <= fine * (i + 1); n++) {
+            const int m = route->loop ? (n + samples) % samples : (int)clamp(n, 0, samples);
+            point[i][2] = n == fine * (i - 1) ? z[m] : fmax(point[i][2], z[m]);
+        }
+    }
+    free(z);
+    if (clear || route->length_m < points) return STATUS_OK;
+    Route        higher = {0};
+    const Status status = route_create(&higher, (const double (*)[3])point, points + !route->loop, route->loop);
+    if (status != STATUS_OK) return status;
+    route_destroy(route);
+    *route = higher;
+    return STATUS_OK;
+}
+
 static Status make_route(Cast *cast, int group, bool flies)
 {
     const Scenario      *s = cast->scenario;
@@ -109,7 +141,9 @@ static Status make_route(Cast *cast, int group, bool flies)
         point[1][1] += cos(heading_rad);
         count = 2;
     }
-    return route_create(&cast->route[group], (const double (*)[3])point, count, g->loop);
+    Route       *route = &cast->route[group];
+    const Status status = route_create(route, (const double (*)[3])point, count, g->loop);
+    return status == STATUS_OK && flies && cast->ground.real ? over_ridges(route, &cast->ground, g->height_m) : status;
 }
 
 /* When a group starts to stop: as given, or so that its first entity stops at the end of the route. */

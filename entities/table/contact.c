@@ -22,6 +22,11 @@ bool contact_floats(DisEntityType type)
     return type.kind == dis_kind_platform && type.domain == dis_domain_surface;
 }
 
+bool contact_lifts(DisEntityType type)
+{
+    return type.kind == dis_kind_platform && type.domain == dis_domain_air;
+}
+
 double contact_share(DisEntityType type, double above_m)
 {
     const double keep_m = contact_floats(type) ? 1.5 : 0.1, set_m = contact_floats(type) ? 3 : 0.5;
@@ -118,12 +123,25 @@ void contact_move(double p_ecef[3], DisEntityType type, const double v_ecef_mps[
         v3_add_scaled(p_ecef, p_ecef, w.share * w.way_m, w.up_ecef);
 }
 
+static void lift(SnapshotEntity *e, const ContactGround *ground)
+{
+    static const double still_mps = 0.3, most_m = 20;
+    double up_ecef[3], up[3], p[3];
+    enu_from_ecef(p, ground->frame, e->p_ecef);
+    if (!(p[2] < elevation_height(ground->elevation, p[0], p[1], NULL)) || !vertical(up_ecef, e->p_ecef)) return;
+    m3_tmul_v3(up, ground->frame->r_ecef_from_enu, up_ecef);
+    const double way_m = way_up_m(ground, p, up);
+    if (!(way_m > 0)) return;
+    v3_add_scaled(e->p_ecef, e->p_ecef, way_m + (v3_length(e->v_ecef_mps) < still_mps ? 0 : fmin(way_m, most_m)), up_ecef);
+}
+
 void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *model)
 {
     enum { along = 5, across = 3 };
     static const double steepest = 1; /* tan 45 degrees: a wall of a surface model is not a road */
     double r_enu_from_body[9], forward[3], right[3];
     WayUp  w;
+    if (ground->elevation && !ground->landscape && contact_lifts(e->type)) lift(e, ground);
     if (!way_to_ground(&w, e->type, e->p_ecef, e->v_ecef_mps, ground)) return;
     const double *up = w.up, *up_ecef = w.up_ecef, *p = w.p, share = w.share;
     double        way_m = w.way_m;

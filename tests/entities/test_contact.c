@@ -189,6 +189,27 @@ static void misfits_alone_are_set_onto_an_invented_ground(void **state)
 }
 
 /* Snapshot, single pose and so the aim agree to the bit, and stand on the ground. */
+/* Over other ground than its sender's an aircraft flies in the air, not in a mountain. */
+static void aircraft_are_lifted_out_of_the_ground(void **state)
+{
+    (void)state;
+    const LocalFrame    frame = frame_at(40, 0);
+    Elevation           ground = plane(200, 2, 7, 0.125, 0);
+    const ContactGround all = {.frame = &frame, .elevation = &ground};
+    static const struct { double above_m, speed_mps, want_m; } cases[] = {
+        {50, 60, 50}, {0.5, 60, 0.5}, {-3, 60, 3}, {-19, 60, 19}, {-300, 60, 20}, {-4, 0, 0}, {2, 0, 2}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        SnapshotEntity e = entity_at(&frame, helicopter_type, 40, 10, 7 + 0.125 * 40 + cases[k].above_m, 1);
+        for (int i = 0; i < 3; i++) e.v_ecef_mps[i] *= cases[k].speed_mps / 10;
+        const SnapshotEntity before = e;
+        contact_set(&e, &all, &box);
+        CHECK_NEAR(contact_above_m(&all, e.p_ecef), cases[k].want_m, 0.01);
+        assert_memory_equal(e.r_ecef_from_body, before.r_ecef_from_body, sizeof e.r_ecef_from_body);
+        if (cases[k].above_m >= 0) assert_memory_equal(e.p_ecef, before.p_ecef, sizeof e.p_ecef);
+    }
+    elevation_destroy(&ground);
+}
+
 static void every_pose_handed_out_stands(void **state)
 {
     (void)state;
@@ -199,6 +220,7 @@ static void every_pose_handed_out_stands(void **state)
     Fixture        f = fixture_open(&config);
     DisEntityState tank = report(1, tank_type), flyer = report(2, helicopter_type);
     tank.velocity_mps[2] = 5;
+    flyer.p_ecef[0] += 30; /* above the ground */
     hear(&f, &tank, 0);
     hear(&f, &flyer, 0);
     for (double t_s = 0; t_s < 3; t_s += 0.7) {
@@ -209,7 +231,7 @@ static void every_pose_handed_out_stands(void **state)
         assert_memory_equal(pose.p_ecef, e->p_ecef, sizeof e->p_ecef);
         assert_memory_equal(pose.r_ecef_from_body, e->r_ecef_from_body, sizeof e->r_ecef_from_body);
         e = seen_at(&f, 2, t_s);
-        CHECK(e && fabs(e->p_ecef[0] - earth_radius_m) < 1e-6);
+        CHECK(e && fabs(e->p_ecef[0] - earth_radius_m - 30) < 1e-6);
     }
     fixture_close(&f);
     elevation_destroy(&ground);
@@ -260,6 +282,7 @@ int main(void)
         cmocka_unit_test(it_moves_along_the_local_vertical),
         cmocka_unit_test(who_does_not_stand_stays),
         cmocka_unit_test(misfits_alone_are_set_onto_an_invented_ground),
+        cmocka_unit_test(aircraft_are_lifted_out_of_the_ground),
         cmocka_unit_test(every_pose_handed_out_stands),
         cmocka_unit_test(what_he_gives_off_goes_with_him),
     };

@@ -261,12 +261,55 @@ static void real_ground(void **state)
     release(cast);
 }
 
+/* A ridge of 80 m across the way, between two points 30 m above the plain, as an ESRI grid of degrees. */
+static void a_ridge_is_flown_over(void **state)
+{
+    (void)state;
+    char folder[temp_path_size], path[temp_name_size], text[2000];
+    CHECK(temp_folder(folder));
+    for (int part = 0; part < 2; part++) {
+        snprintf(path, sizeof path, "%s/ridge.%s", folder, part ? "asc" : "prj");
+        FILE *file = fopen(path, "w");
+        CHECK(file != NULL);
+        if (!part)
+            fputs("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
+                  "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]\n", file);
+        else
+            fprintf(file, "ncols 300\nnrows 100\nxllcorner 9.985\nyllcorner 45.995\ncellsize 1e-4\n");
+        for (int n = 0; part && n < 300 * 100; n++)
+            fprintf(file, "%.2f%c", 200 + 80 * exp(-0.5 * pow((n % 300 - 150) / 15.0, 2)), n % 300 == 299 ? '\n' : ' ');
+        CHECK(fclose(file) == 0);
+    }
+    for (int low = 0; low < 2; low++) {
+        snprintf(text, sizeof text,
+                 "duration_s: 60\nplace: {lat_deg: 46, lon_deg: 10, height_m: 250}\nground: {elevation: %s}\nvehicles:\n"
+                 "  - {name: H, type: helicopter, speed_mps: 30, height_m: %d, route_m: [[-800, 10], [800, -10]]}\n",
+                 path, low ? 30 : 300);
+        Cast  *cast = cast_of(text);
+        double least_m = INFINITY, most_m = -INFINITY;
+        for (double t = 0; t < 53; t += 0.1) {
+            CastPose pose;
+            cast_pose(&pose, cast, 0, t);
+            const double above_m = pose.p_enu[2] - elevation_height(&cast->ground.elevation, pose.p_enu[0], pose.p_enu[1], NULL);
+            least_m = fmin(least_m, above_m);
+            most_m = fmax(most_m, above_m);
+        }
+        if (low) CHECK(least_m > 25 && most_m < 75); /* one that kept its height would be 50 m inside */
+        else CHECK(least_m > 215 && most_m < 301);   /* high enough: straight on, as before */
+        release(cast);
+    }
+    remove(path);
+    snprintf(path, sizeof path, "%s/ridge.prj", folder);
+    remove(path);
+    rmdir(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(level_ground), cmocka_unit_test(straight_at_its_speed), cmocka_unit_test(circle),
         cmocka_unit_test(derivatives_and_attitudes), cmocka_unit_test(formations), cmocka_unit_test(shots),
-        cmocka_unit_test(real_ground),
+        cmocka_unit_test(real_ground), cmocka_unit_test(a_ridge_is_flown_over),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
