@@ -70,8 +70,9 @@ static void put_stand(FILE *to, const GroundStand *s, double unix_s)
 
 static void put_track(FILE *to, const GroundTrack *t, double unix_s)
 {
-    int column = at_kind;
-    fprintf(to, "track");
+    int column = at_owner;
+    fprintf(to, "track,");
+    if (t->owner) fprintf(to, "%llu", (unsigned long long)t->owner);
     put(to, &column, at_from, unix_s + t->a_s, 17);
     put(to, &column, at_to, unix_s + t->b_s, 17);
     put_places(to, &column, at_p, t->a_ecef, 3);
@@ -210,6 +211,7 @@ static void take_track(GroundHistory *h, Row *r)
 {
     GroundTrack t = {0};
     double      along[3];
+    if (*table_text(r->table, r->row, r->column[at_owner])) t.owner = (uint64_t)number(r, at_owner, 1, 0x1p49);
     t.a_s = time_of(r, at_from);
     t.b_s = time_of(r, at_to);
     place(t.a_ecef, r, at_p);

@@ -42,6 +42,7 @@ typedef struct GroundTrack {
     float  width_m, apart_m;       /* of one track or tyre; between their centre lines */
     float  heat_j_m2;              /* friction heat left in the ground under each */
     bool   tracked;
+    uint64_t owner;                /* entity_key + 1; 0: not known, as of a frame file */
 } GroundTrack;
 
 /* Ground that a burst burnt. */

@@ -163,7 +163,8 @@ static GroundTrack track_of(const EntitySlot *slot, const Model *model)
     const double weight_n = 1000 * t_m3 * model->length_m * model->width_m * model->height_m * gravity_mps2;
     const double heat_j_m2 = width_m > 0 ? in_ground * resistance * weight_n / (2 * width_m) : 0;
     return (GroundTrack){.width_m = (float)width_m, .apart_m = (float)(model->width_m - width_m),
-                         .heat_j_m2 = (float)fmin(heat_j_m2, 1e6), .tracked = tracked};
+                         .heat_j_m2 = (float)fmin(heat_j_m2, 1e6), .tracked = tracked,
+                         .owner = entity_key(slot->id) + 1};
 }
 
 static double speed_of(const EntitySlot *slot)

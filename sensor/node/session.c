@@ -74,9 +74,15 @@ static Status look_without(Frame *f, const Session *s, const Air *air, const dou
     f->without     = arena_alloc(f->arena, 1, sizeof *f->without);
     if (!f->without) return STATUS_NO_MEMORY;
     *f->without->sha256 = 0;
-    const Status status = pairs_take_away(&f->without->snapshot, &f->taken, &f->taken_count, &f->seen.snapshot, all,
+    Status status = pairs_take_away(&f->without->snapshot, &f->taken, &f->taken_count, &f->seen.snapshot, all,
                                           s->plan.aim, host, f->arena);
-    return status == STATUS_OK ? look(f->without, s, &f->request, air, r_host_from_enu, f->arena) : status;
+    HeatScene *heat = NULL;
+    if (status == STATUS_OK) /* the ground as it is where it did not stand */
+        status = world_heat_at(&heat, s->shared->world, &f->without->snapshot.marks, f->unix_s, f->arena);
+    if (status != STATUS_OK) return status;
+    Air without = *air;
+    without.heat = heat;
+    return look(f->without, s, &f->request, &without, r_host_from_enu, f->arena);
 }
 
 /* What the radar on the same axis measures. */

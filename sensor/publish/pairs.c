@@ -2,6 +2,7 @@
 #include "sensor/publish/pairs.h"
 #include "pitviper_output.h"
 
+#include "entities/table/entity_index.h"
 #include "sensor/publish/pair_record.h"
 
 #include <errno.h>
@@ -73,6 +74,40 @@ static Status write_line(const Pairs *p, const Frame *frame)
 
 /* ---- a frame ---------------------------------------------------------------------------------- */
 
+/* Ids are in order, as those of a snapshot are. */
+static bool is_of(uint64_t owner, const DisEntityId *id, int count)
+{
+    int low = 0, high = count;
+    while (low < high) {
+        const int      middle = (low + high) / 2;
+        const uint64_t key = entity_key(id[middle]) + 1;
+        if (key == owner) return true;
+        if (key < owner) low = middle + 1;
+        else high = middle;
+    }
+    return false;
+}
+
+/* Their smoke, dust and flames; where they stood, and their tracks. */
+static Status take_traces(Snapshot *s, const DisEntityId *id, int count, Arena *arena)
+{
+    EffectPuff  *puff  = arena_alloc(arena, (size_t)s->puff_count + 1, sizeof *puff);
+    GroundStand *stand = arena_alloc(arena, (size_t)s->marks.stands + 1, sizeof *stand);
+    GroundTrack *track = arena_alloc(arena, (size_t)s->marks.tracks + 1, sizeof *track);
+    if (!puff || !stand || !track) return STATUS_NO_MEMORY;
+    int puffs = 0, stands = 0, tracks = 0;
+    for (int i = 0; i < s->puff_count; i++)
+        if (!is_of(s->puff[i].owner, id, count)) puff[puffs++] = s->puff[i];
+    for (int i = 0; i < s->marks.stands; i++)
+        if (!is_of(s->marks.stand[i].owner, id, count)) stand[stands++] = s->marks.stand[i];
+    for (int i = 0; i < s->marks.tracks; i++)
+        if (!is_of(s->marks.track[i].owner, id, count)) track[tracks++] = s->marks.track[i];
+    s->puff = puff, s->puff_count = puffs;
+    s->marks.stand = stand, s->marks.stands = stands;
+    s->marks.track = track, s->marks.tracks = tracks;
+    return STATUS_OK;
+}
+
 Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_count, const Snapshot *with, bool all,
                        DisEntityId aim, int host, Arena *arena)
 {
@@ -90,7 +125,7 @@ Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_
     }
     *without        = *with;
     without->entity = entity;
-    return STATUS_OK;
+    return take_traces(without, ids, *taken_count, arena);
 }
 
 static Status write_member(Pairs *p, int m, Frame *frame)

@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # replay --pairs: each frame with and without its target, with and without noise. What can differ between with and without
-# is bounded so: at night (no sun, no shadow), without contact shadows, with one ray a pixel (none that also asks its
-# neighbour's edge), radiance outside the box of all the target's vertices must be the same to the bit.
+# is bounded so: of what leaves nothing on the ground and in the air, at night (no sun, no shadow), without contact shadows,
+# with one ray a pixel (none that also asks its neighbour's edge), radiance outside the box of all the target's vertices must be
+# the same to the bit. And what vehicles leave goes with them: their dust, smoke, shadows and tracks are not in a background,
+# which is that of the same exercise without them, to the bit.
 . "$(dirname "$0")/common.sh"
 judges oiiotool python3.numpy python3.PIL
 bare=("${quick[@]}" --set terrain.detail=on)
@@ -86,8 +88,42 @@ for truth, pair in zip(truths, (json.loads(line) for line in open(f"{out}/pairs.
 assert changed > 0, "the target was never seen"
 print(changed)
 PY
+cat >"$tmp/air.yaml" <<'YAML'
+duration_s: 3
+vehicles:
+  - {name: H, id: 11, type: helicopter, engine: false, height_m: 40, route_m: [0, 0]}
+  - {name: H, id: 12, type: helicopter, engine: false, height_m: 45, route_m: [25, 12]}
+YAML
+exercise "$tmp/air.yaml" "$tmp/air.pcap"
+air=(--host observer --set exercise.aim=1:3001:11 --from +1 --to +2 --bands optical,lwir,mwir)
+replay "$tmp/air.pcap" "$tmp/p" "${air[@]}" "${night[@]}" "${manual[@]}" --pairs target
 check "outside the target's box nothing differs" python3 "$tmp/compare.py" "$tmp/p" target
+replay "$tmp/air.pcap" "$tmp/all" "${air[@]}" "${night[@]}" "${manual[@]}" --pairs all
 check "outside of all boxes nothing differs" python3 "$tmp/compare.py" "$tmp/all" all
+
+# traces: by day, a tank that drives, a truck that stands and smokes; and the same without them
+cat >"$tmp/bare.yaml" <<'YAML'
+duration_s: 75
+vehicles:
+  - {name: H, id: 11, type: helicopter, engine: false, height_m: 40, route_m: [0, 0]}
+YAML
+cp "$tmp/bare.yaml" "$tmp/traces.yaml"
+cat >>"$tmp/traces.yaml" <<'YAML'
+  - {name: Tank, id: 21, type: tank, dust: large, speed_mps: 8, route_m: [[-500, 0], [500, 20]]}
+  - {name: Truck, id: 31, type: truck, route_m: [15, 25], heading_deg: 30}
+YAML
+# ground that does not follow from who stands on it
+{ printf 'ncols 300\nnrows 300\nxllcorner -123.015\nyllcorner 35.985\ncellsize 1e-4\n'; yes 120 | head -n 90000; } >"$tmp/flat.asc"
+for kind in bare traces; do
+    exercise "$tmp/$kind.yaml" "$tmp/$kind.pcap"
+    replay "$tmp/$kind.pcap" "$tmp/$kind" --host observer --set exercise.aim=1:3001:11 --from +68 --to +69 --bands optical,lwir \
+        --set sensor.hfov_deg=12 --set exercise.utc=2026-06-21T20:00:00Z --set "terrain.elevation=$tmp/flat.asc@ellipsoid@srs=EPSG:4326" \
+        --pairs all
+    grep -oE '"background_sha256":"[0-9a-f]*"' "$tmp/$kind/pairs.jsonl" >"$tmp/$kind.hashes"
+done
+check "traces: two backgrounds" [ "$(wc -l <"$tmp/traces.hashes")" = 2 ]
+check "traces: they are of the exercise without who made them" cmp -s "$tmp/bare.hashes" "$tmp/traces.hashes"
+check "traces: there were some" differ "$tmp/traces/frames/lwir" "$tmp/bare/frames/lwir"
 
 replay "$tmp/demo.pcap" "$tmp/p" "${few[@]}" "${auto[@]}"
 check "sensors: with, noisy is a plain replay" same_pngs "$tmp/auto/raw" "$tmp/p/raw"
