@@ -3,7 +3,6 @@
 
 #include "pitviper_file.h"
 #include "terrain/elevation/raster.h"
-#include "terrain/elevation/raster_source.h"
 #include "terrain/import/source_places.h"
 
 #include <stdlib.h>

@@ -30,7 +30,7 @@ Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files,
     Status status = elevation_import_open(m);
     for (int k = 0; status == STATUS_OK && files->keep_folder && k < m->set.count; k++) {
         Raster *raster = &m->set.raster[k];
-        if ((double)raster->width * raster->height > keep_px) raster_keep(raster, 1, files->keep_folder);
+        if ((double)raster->width * raster->height > keep_px) raster_keep(raster, 1, files->keep_folder, 1e12);
     }
     if (status == STATUS_OK) status = elevation_import_choose(m, &s->report);
     if (status == STATUS_OK && !like) elevation_import_plan(m, most_side_streamed);

@@ -1,8 +1,10 @@
-/* terrain/elevation/gdal_library.c: the functions of GDAL that raster.c calls. */
-#include "terrain/elevation/gdal_library.h"
+/* terrain/elevation/reader/gdal_library.c: the functions of GDAL that the reader calls. */
+#include "terrain/elevation/reader/gdal_library.h"
 
 #define GDAL(X)                                                                                                       \
     X(CPLErrorReset) X(CPLGetLastErrorMsg) X(CPLPopErrorHandler) X(CPLPushErrorHandler) X(CPLQuietErrorHandler)       \
+    X(CPLSetErrorHandler) X(GDALGetDataCoverageStatus) X(GDALGetDatasetDriver) X(GDALGetDescription)    \
+    X(CSLAddString) X(OSRGetPROJSearchPaths)                                                                          \
     X(CPLSetConfigOption) X(CSLDestroy) X(GDALGetFileList)                                                            \
     X(GDALAllRegister) X(GDALClose) X(GDALDataTypeIsInteger) X(GDALDatasetRasterIO) X(GDALGetBlockSize)               \
     X(GDALGetCacheMax64) X(GDALGetGeoTransform) X(GDALGetMaskBand) X(GDALGetMaskFlags) X(GDALGetRasterBand)           \

@@ -1,0 +1,465 @@
+/* terrain/elevation/reader/reader_set.c: sets of files as GDAL has them: what each is, and which share a grid. */
+#include "terrain/elevation/reader/reader_private.h"
+
+#include "terrain/elevation/reader/gdal_library.h"
+#include "terrain/elevation/reader/reader_handles.h"
+
+#include <strings.h>
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <dirent.h>
+#include <errno.h>
+#include <gdal.h>
+#include <ogr_srs_api.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+/* most_side: of a sheet, px; sheets lie within 1e8 px of the first, so that sums stay in an int */
+enum { most_sheets = 4096, path_size = wire_path_size, most_side = 100000000 };
+
+Status reader_prepare(void)
+{
+    static const GIntBig most_cache = 256 << 20; /* octets; by default a twentieth of the memory */
+    const Status status = library_load(&gdal_library);
+    if (status != STATUS_OK) return status;
+    CPLSetErrorHandler(CPLQuietErrorHandler);
+    /* A file may name others (VRT): none makes this process ask a server, which could not be reached. */
+    CPLSetConfigOption("GDAL_SKIP", "HTTP,WMS,WMTS,WCS,DAAS,EEDA,EEDAI,PLMosaic,NGW,OGCAPI,STACTA,STACIT,PostGISRaster");
+    CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none"); /* of /vsicurl/ and those of its kind */
+    GDALAllRegister();
+    if (GDALGetCacheMax64() > most_cache) GDALSetCacheMax64(most_cache);
+    return STATUS_OK;
+}
+
+const char *reader_reason(const char *else_text)
+{
+    const char *text = CPLGetLastErrorMsg();
+    return text && *text ? text : else_text;
+}
+
+void reader_quiet(void)
+{
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+    CPLErrorReset();
+}
+
+void reader_loud(void) { CPLPopErrorHandler(); }
+
+/* ---- one sheet ------------------------------------------------------------------------------ */
+
+/* What decides whether sheets share a grid. */
+typedef struct Opened {
+    double transform[6];
+    int    width, height, bands;
+    bool   ellipsoidal, bytes, whole;
+    double metres_per_unit;
+    int    row_block, band;
+    RasterVertical vertical;
+    OGRSpatialReferenceH crs;
+} Opened;
+
+/* As GDAL reports them from files; 0: an unknown unit of length. */
+static double metres_of_unit(const char *unit)
+{
+    static const struct {
+        const char *name;
+        double      metres;
+    } units[] = {{"", 1},
+                 {"m", 1},
+                 {"metre", 1},
+                 {"metres", 1},
+                 {"meter", 1},
+                 {"meters", 1},
+                 {"dm", 0.1},
+                 {"decimetre", 0.1},
+                 {"decimeter", 0.1},
+                 {"cm", 0.01},
+                 {"centimetre", 0.01},
+                 {"centimeter", 0.01},
+                 {"km", 1000},
+                 {"kilometre", 1000},
+                 {"kilometer", 1000},
+                 {"ft", 0.3048},
+                 {"foot", 0.3048},
+                 {"feet", 0.3048},
+                 {"us-ft", 1200.0 / 3937},
+                 {"ftUS", 1200.0 / 3937},
+                 {"US survey foot", 1200.0 / 3937}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        if (strcasecmp(unit, units[i].name) == 0) return units[i].metres;
+    return 0;
+}
+
+static Status describe(Opened *out, GDALDatasetH file, const char *path, const char *key)
+{
+    Opened o = {
+        .width = GDALGetRasterXSize(file), .height = GDALGetRasterYSize(file), .bands = GDALGetRasterCount(file)};
+    const OGRSpatialReferenceH crs = GDALGetSpatialRef(file);
+    double inverse[6];
+    if (o.bands < 1 || o.width < 2 || o.height < 2) {
+        log_error("%s: %s holds %d bands of %d x %d pixels; a sheet needs a band and 2 x 2", key, path, o.bands,
+                  o.width, o.height);
+        return STATUS_BAD_VALUE;
+    }
+    if (o.width > most_side || o.height > most_side) {
+        log_error("%s: %s has %d x %d pixels, more than %d a side; gdal_translate -srcwin cuts out what is needed", key,
+                  path, o.width, o.height, (int)most_side);
+        return STATUS_BAD_VALUE;
+    }
+    if (!crs) {
+        log_error("%s: %s does not say its coordinate system; gdal_edit.py -a_srs EPSG:nnnn %s", key, path, path);
+        return STATUS_BAD_VALUE;
+    }
+    if (GDALGetGeoTransform(file, o.transform) != CE_None || !GDALInvGeoTransform(o.transform, inverse)) {
+        log_error("%s: %s does not say where its corners are; gdal_translate -a_ullr W N E S %s OUT.tif", key, path,
+                  path);
+        return STATUS_BAD_VALUE;
+    }
+    o.crs             = OSRClone(crs);
+    o.ellipsoidal     = !OSRIsCompound(crs) && OSRGetAxesCount(crs) == 3;
+    o.bytes           = GDALGetRasterDataType(GDALGetRasterBand(file, 1)) == GDT_Byte;
+    o.whole           = GDALDataTypeIsInteger(GDALGetRasterDataType(GDALGetRasterBand(file, 1)));
+    int block_x = 0, block_y = 0;
+    GDALGetBlockSize(GDALGetRasterBand(file, 1), &block_x, &block_y);
+    for (o.row_block = 64; o.row_block < block_y && o.row_block < 1024;) o.row_block *= 2;
+    o.metres_per_unit = metres_of_unit(GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
+    if (o.metres_per_unit == 0) {
+        if (!o.bytes) /* codes and photographs have no length */
+            log_warn("%s: %s: its unit is '%s', which is not a length that is known here; taken as metres", key, path,
+                     GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
+        o.metres_per_unit = 1;
+    }
+    OSRStripVertical(o.crs);
+    OSRDemoteTo2D(o.crs, NULL);
+    OSRSetAxisMappingStrategy(o.crs, OAMS_TRADITIONAL_GIS_ORDER);
+    *out = o;
+    return STATUS_OK;
+}
+
+/* ---- grids ---------------------------------------------------------------------------------- */
+
+static bool same_grid(const Raster *raster, const Opened *o, double at_px[2])
+{
+    const double *a = raster->crs_from_px, *b = o->transform;
+    if (!OSRIsSame(raster->crs, o->crs) || raster->ellipsoidal != o->ellipsoidal || raster->bytes != o->bytes ||
+        raster->bands != o->bands || raster->metres_per_unit != o->metres_per_unit || raster->vertical != o->vertical)
+        return false;
+    static const int terms[4] = {1, 2, 4, 5};
+    for (int k = 0; k < 4; k++)
+        if (!(fabs(a[terms[k]] - b[terms[k]]) <= 1e-6 * (fabs(a[1]) + fabs(a[2])))) return false;
+    const double dx = b[0] - a[0], dy = b[3] - a[3];
+    const double *to = raster->px_from_crs;
+    at_px[0] = to[1] * dx + to[2] * dy;
+    at_px[1] = to[4] * dx + to[5] * dy;
+    if (raster->whole_turn_px > 0) at_px[0] -= raster->whole_turn_px * rint(at_px[0] / raster->whole_turn_px);
+    return fabs(at_px[0] - rint(at_px[0])) < 0.01 && fabs(at_px[1] - rint(at_px[1])) < 0.01 &&
+           fabs(at_px[0]) < 1e8 && fabs(at_px[1]) < 1e8;
+}
+
+static Status start_raster(Raster *raster, Opened *o)
+{
+    OGRSpatialReferenceH earth = OSRNewSpatialReference(NULL);
+    Status status = STATUS_BAD_VALUE;
+    memcpy(raster->crs_from_px, o->transform, sizeof o->transform);
+    raster->bands           = o->bands;
+    raster->ellipsoidal     = o->ellipsoidal;
+    raster->metres_per_unit = o->metres_per_unit;
+    raster->bytes           = o->bytes;
+    raster->whole           = o->whole;
+    raster->vertical        = o->vertical;
+    raster->row_block       = o->row_block;
+    raster->crs             = o->crs;
+    o->crs                  = NULL;
+    if (OSRIsGeographic(raster->crs)) {
+        double turn = 2 * pi_rad / OSRGetAngularUnits(raster->crs, NULL);
+        raster->whole_turn_px = fabs(turn / raster->crs_from_px[1]);
+        if (!isfinite(raster->whole_turn_px)) raster->whole_turn_px = 0;
+    }
+    if (earth && OSRImportFromEPSG(earth, 4326) == OGRERR_NONE) {
+        OSRSetAxisMappingStrategy(earth, OAMS_TRADITIONAL_GIS_ORDER);
+        raster->crs_from_earth = OCTNewCoordinateTransformation(earth, raster->crs);
+        raster->earth_from_crs = OCTNewCoordinateTransformation(raster->crs, earth);
+        if (raster->crs_from_earth && raster->earth_from_crs &&
+            GDALInvGeoTransform(raster->crs_from_px, raster->px_from_crs))
+            status = STATUS_OK;
+    }
+    if (earth) OSRDestroySpatialReference(earth);
+    return status;
+}
+
+void reader_take_suffixes(char *path, RasterVertical *vertical, int *to_band)
+{
+    struct stat about;
+    if (stat(path, &about) == 0) return;
+    char *at = strrchr(path, '@');
+    if (at && (strcmp(at, "@geoid") == 0 || strcmp(at, "@ellipsoid") == 0)) {
+        *vertical = at[1] == 'g' ? RASTER_VERTICAL_GEOID : RASTER_VERTICAL_ELLIPSOID;
+        *at = 0;
+    }
+    char     *colon = strrchr(path, ':');
+    long long band;
+    if (stat(path, &about) == 0 || !colon || !text_to_long(&band, colon + 1) || band < 1 || band > 65535) return;
+    *colon = 0;
+    if (stat(path, &about) == 0) *to_band = (int)band;
+    else *colon = ':';
+}
+
+/* Of a file that names others, such as a VRT, those too; what those name where nothing else stops it. */
+static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char *owner, const char *key, int depth)
+{
+    char **parts = GDALGetFileList(file);
+    bool   good = depth < 8;
+    for (int k = 0; good && parts && parts[k]; k++) {
+        if (strcmp(parts[k], path) == 0) continue;
+        good = reader_part_allowed(parts[k], owner, key);
+        const bool   list = strlen(parts[k]) > 4 && strcasecmp(parts[k] + strlen(parts[k]) - 4, ".vrt") == 0;
+        GDALDatasetH part = good && (list || reader_by_name) ? GDALOpen(parts[k], GA_ReadOnly) : NULL;
+        if (part) good = parts_may_be_opened(part, parts[k], owner, key, depth + 1);
+        if (part) GDALClose(part);
+    }
+    CSLDestroy(parts);
+    return good;
+}
+
+static Status add_sheet(RasterSet *set, const char *name, const char *key)
+{
+    Opened o = {0};
+    Status status = STATUS_IO;
+    double at_px[2] = {0, 0};
+    char   path[path_size];
+    snprintf(path, sizeof path, "%s", name);
+    reader_take_suffixes(path, &o.vertical, &o.band);
+    const RasterVertical vertical = o.vertical;
+    const int            chosen_band = o.band;
+    if (!reader_file_allowed(path, key)) return STATUS_IO;
+    reader_works_at(path);
+    GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
+    if (!file) {
+        log_error("%s: cannot read %s: %s; gdalinfo %s says what it is", key, path, reader_reason("not a raster GDAL knows"),
+                  path);
+        return STATUS_IO;
+    }
+    status = parts_may_be_opened(file, path, path, key, 0) ? describe(&o, file, path, key) : STATUS_IO;
+    const double data_px = status == STATUS_OK ? reader_data_px(file) : 0;
+    GDALClose(file);
+    if (status != STATUS_OK) return status;
+    o.vertical = vertical;
+    o.band     = chosen_band;
+    if (o.band > o.bands) {
+        log_error("%s: %s has %d bands, not %d; gdalinfo %s lists them", key, path, o.bands, o.band, path);
+        status = STATUS_BAD_VALUE;
+        goto done;
+    }
+
+    Raster *raster = NULL;
+    for (int k = 0; !raster && k < set->count; k++)
+        if (same_grid(&set->raster[k], &o, at_px)) raster = &set->raster[k];
+    if (!raster) {
+        Raster *more = realloc(set->raster, ((size_t)set->count + 1) * sizeof *more);
+        if (!more) {
+            status = STATUS_NO_MEMORY;
+            goto done;
+        }
+        set->raster = more;
+        raster      = &set->raster[set->count++];
+        *raster     = (Raster){.order = set->count};
+        at_px[0] = at_px[1] = 0;
+        status = start_raster(raster, &o);
+        if (status != STATUS_OK) {
+            log_error("%s: no way from WGS 84 to the coordinate system of %s: %s; gdalwarp -t_srs EPSG:4326 %s OUT.tif",
+                      key, path, reader_reason("unknown to PROJ"), path);
+            goto done;
+        }
+    }
+    RasterSheet *sheets = realloc(raster->sheet, ((size_t)raster->sheet_count + 1) * sizeof *sheets);
+    if (!sheets) {
+        status = STATUS_NO_MEMORY;
+        goto done;
+    }
+    raster->sheet = sheets;
+    sheets[raster->sheet_count] =
+        (RasterSheet){strdup(path), (int)lrint(at_px[0]), (int)lrint(at_px[1]), o.width, o.height, o.band, NULL};
+    raster->data_share += data_px;
+    if (o.row_block > raster->row_block) raster->row_block = o.row_block;
+    if (sheets[raster->sheet_count].path) raster->sheet_count++;
+    else status = STATUS_NO_MEMORY;
+done:
+    if (o.crs) OSRDestroySpatialReference(o.crs);
+    return status;
+}
+
+/* The outermost corner becomes pixel (0, 0). */
+static Status finish_raster(Raster *raster)
+{
+    int x0 = raster->sheet[0].x0, y0 = raster->sheet[0].y0, x1 = x0, y1 = y0;
+    for (int k = 0; k < raster->sheet_count; k++) {
+        const RasterSheet *s = &raster->sheet[k];
+        x0 = s->x0 < x0 ? s->x0 : x0;
+        y0 = s->y0 < y0 ? s->y0 : y0;
+        x1 = s->x0 + s->width > x1 ? s->x0 + s->width : x1;
+        y1 = s->y0 + s->height > y1 ? s->y0 + s->height : y1;
+    }
+    for (int k = 0; k < raster->sheet_count; k++) {
+        raster->sheet[k].x0 -= x0;
+        raster->sheet[k].y0 -= y0;
+    }
+    raster->width  = x1 - x0;
+    raster->height = y1 - y0;
+    raster->data_share = fmin(raster->data_share / ((double)raster->width * raster->height), 1);
+    raster->sparse     = raster->data_share < 1 - 1e-12;
+    double *t = raster->crs_from_px;
+    t[0] += x0 * t[1] + y0 * t[2];
+    t[3] += x0 * t[4] + y0 * t[5];
+    if (!GDALInvGeoTransform(t, raster->px_from_crs)) return STATUS_BAD_VALUE;
+
+    const double cx = 0.5 * raster->width, cy = 0.5 * raster->height;
+    double x[3] = {cx, cx + 1, cx}, y[3] = {cy, cy, cy + 1}, p_ecef[3][3];
+    reader_earth_from_px(raster, 3, x, y);
+    for (int k = 0; k < 3; k++) {
+        const Geodetic place = {.lat_rad = y[k], .lon_rad = x[k]};
+        const Status   status = ecef_from_geodetic(p_ecef[k], NULL, &place);
+        if (status != STATUS_OK) return status;
+    }
+    for (int k = 0; k < 2; k++) {
+        double d[3];
+        v3_sub(d, p_ecef[k + 1], p_ecef[0]);
+        raster->posting_m[k] = v3_length(d);
+    }
+    return raster->posting_m[0] > 0 && raster->posting_m[1] > 0 ? STATUS_OK : STATUS_BAD_VALUE;
+}
+
+/* ---- lists of files ------------------------------------------------------------------------- */
+
+static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
+
+static Status add_folder(RasterSet *set, const char *path, const char *key)
+{
+    char  **name = NULL, full[path_size];
+    int     names = 0, used = 0;
+    Status  status = STATUS_OK;
+    DIR    *folder = opendir(path);
+    if (!folder) {
+        log_error("%s: cannot read the folder %s: %s", key, path, strerror(errno));
+        return STATUS_IO;
+    }
+    for (struct dirent *entry; status == STATUS_OK && (entry = readdir(folder));) {
+        struct stat about;
+        const int   n = snprintf(full, sizeof full, "%s/%s", path, entry->d_name);
+        if (n < 0 || n >= (int)sizeof full || stat(full, &about) != 0 || !S_ISREG(about.st_mode)) continue;
+        if (!reader_file_allowed(full, key)) {
+            status = STATUS_IO;
+            break;
+        }
+        if (!GDALIdentifyDriver(full, NULL)) continue; /* notes, world files, overviews' sidecars */
+        char **more = names < most_sheets ? realloc(name, ((size_t)names + 1) * sizeof *name) : NULL;
+        if (more) name = more;
+        if (!more || !(name[names] = strdup(full))) status = STATUS_NO_MEMORY;
+        else names++;
+    }
+    closedir(folder);
+    if (names > 0) qsort(name, (size_t)names, sizeof *name, by_name);
+    for (int k = 0; k < names; k++) {
+        if (status == STATUS_OK) status = add_sheet(set, name[k], key);
+        used++;
+        free(name[k]);
+    }
+    free(name);
+    if (status == STATUS_OK && used == 0) {
+        log_error("%s: the folder %s holds nothing that GDAL reads; gdalinfo --formats lists what it does", key, path);
+        status = STATUS_BAD_VALUE;
+    }
+    return status;
+}
+
+static int finer_first(const void *a, const void *b)
+{
+    const Raster *p = a, *q = b;
+    /* within a hundredth they are the same: a posting in degrees changes along the meridian */
+    const double x = rint(100 * log(fmax(p->posting_m[0], p->posting_m[1]))),
+                 y = rint(100 * log(fmax(q->posting_m[0], q->posting_m[1])));
+    if (x != y) return x < y ? -1 : 1;
+    return p->order < q->order ? -1 : p->order > q->order;
+}
+
+/* Room for handles, unless that takes more files than a process may have open. */
+static void keep_open(RasterSet *set)
+{
+    int sheets = 0;
+    for (int k = 0; k < set->count; k++) sheets += set->raster[k].sheet_count;
+    for (int k = 0; sheets <= most_open_sheets && k < set->count; k++)
+        for (int n = 0; n < set->raster[k].sheet_count; n++) {
+            RasterOpen *open = set->raster[k].sheet[n].open = calloc(1, sizeof *open);
+            for (int h = 0; open && h < handles; h++) pthread_mutex_init(&open->lock[h], NULL);
+        }
+}
+
+static void close_handles(RasterOpen *open)
+{
+    for (int h = 0; open && h < handles; h++) {
+        if (open->file[h]) GDALClose(open->file[h]);
+        pthread_mutex_destroy(&open->lock[h]);
+    }
+    free(open);
+}
+
+bool reader_next_name(char out[wire_path_size], const char **at, bool *long_name)
+{
+    while (**at) {
+        const size_t length = strcspn(*at, ",");
+        size_t       skip = strspn(*at, " "), end = length;
+        if (skip > length) skip = length;
+        while (end > skip && (*at)[end - 1] == ' ') end--;
+        const int n = snprintf(out, wire_path_size, "%.*s", (int)(end - skip), *at + skip);
+        *at += length + ((*at)[length] == ',');
+        *long_name |= n >= wire_path_size;
+        if (n > 0) return n < wire_path_size;
+    }
+    return false;
+}
+
+Status reader_set_open(RasterSet *out, const char *paths, const char *key)
+{
+    RasterSet set = {0};
+    Status    status = STATUS_OK;
+    char      path[path_size];
+    bool      too_long = false;
+    reader_quiet();
+    for (const char *at = paths; status == STATUS_OK && reader_next_name(path, &at, &too_long);) {
+        struct stat about;
+        status = stat(path, &about) == 0 && S_ISDIR(about.st_mode) ? add_folder(&set, path, key) : add_sheet(&set, path, key);
+    }
+    if (too_long && status == STATUS_OK) status = STATUS_BAD_VALUE;
+    for (int k = 0; status == STATUS_OK && k < set.count; k++) {
+        status = finish_raster(&set.raster[k]);
+        if (status != STATUS_OK)
+            log_error("%s: %s does not lie on the Earth; gdalinfo says its corners", key, set.raster[k].sheet[0].path);
+    }
+    if (status == STATUS_OK && set.count == 0) {
+        log_error("%s: names no file", key);
+        status = STATUS_BAD_VALUE;
+    }
+    if (status == STATUS_OK) qsort(set.raster, (size_t)set.count, sizeof *set.raster, finer_first);
+    if (status == STATUS_OK) keep_open(&set);
+    reader_loud();
+    if (status == STATUS_OK) *out = set;
+    else reader_set_close(&set);
+    return status;
+}
+
+void reader_set_close(RasterSet *set)
+{
+    for (int k = 0; k < set->count; k++) {
+        Raster *raster = &set->raster[k];
+        for (int n = 0; n < raster->sheet_count; n++) {
+            close_handles(raster->sheet[n].open);
+            free(raster->sheet[n].path);
+        }
+        free(raster->sheet);
+        if (raster->crs_from_earth) OCTDestroyCoordinateTransformation(raster->crs_from_earth);
+        if (raster->earth_from_crs) OCTDestroyCoordinateTransformation(raster->earth_from_crs);
+        if (raster->crs) OSRDestroySpatialReference(raster->crs);
+    }
+    free(set->raster);
+    *set = (RasterSet){0};
+}
+
