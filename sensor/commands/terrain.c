@@ -34,6 +34,7 @@ static const char help[] =
     "  --canopy-cover FILE    share of the ground under trees, percent\n"
     "  --vertical WHAT        heights are above: auto (by each file's coordinate system), geoid, ellipsoid (auto)\n"
     "  --geoid FILE           geoid grid in PROJ's .gtx form (EGM96 of proj-data)\n"
+    "  --sources-from FOLDERS where files may lie that others name (VRT), beside those in the folder of the one that names them\n"
     "terrain\n"
     "  --origin LAT,LON       middle of the terrain, degrees (middle of the finest file)\n"
     "  --size KMxKM           east by north, of the finest posts, each 0.01 .. 1000 (all data)\n"
@@ -42,6 +43,7 @@ static const char help[] =
     "output\n"
     "  -o, --out STORE        the store; made again from the same sources when one of them changes and\n"
     "                         all lie in its folder; `terrain again STORE` makes it from any\n"
+    "  --most-gb GB           refuse what would write more, or read 64 times as much, 0.001 .. 1000000 (16)\n"
     "  --overwrite            replace an existing STORE; without it that is an error\n"
     "  --threads N            1 .. 256 (all processors)\n";
 
@@ -79,6 +81,8 @@ static int parse(Wanted *w, int argc, char **argv)
         {"size", 1, NULL, VALUE + 9},
         {"spacing", 1, NULL, VALUE + 10},
         {"horizon", 1, NULL, VALUE + 11},
+        {"sources-from", 1, NULL, VALUE + 12},
+        {"most-gb", 1, NULL, VALUE + 13},
         {NULL, 0, NULL, 0}};
     enum { own_options = 4 };
     const char *why = NULL;
@@ -118,6 +122,11 @@ static bool show(void *user, const char *stage, double share)
     const double begun_s = *(const double *)user;
     char         text[120];
     if (stop_asked()) return false;
+    if (share < 0) {
+        log_print("%s\n", stage);
+        fflush(stdout); /* before a work of hours */
+        return true;
+    }
     if (wall_clock_s() - begun_s < 1) return true;
     snprintf(text, sizeof text, "terrain import: %s, %.0f %%", stage, 100 * share);
     log_status(text);

@@ -60,6 +60,7 @@ void   raster_set_close(RasterSet *set); /* accepts zeroes */
 /* Both are of the whole process, for sets opened later, and set before threads read. Folders below which files may lie that
  * other files name, separated by commas; empty: none. */
 void raster_sources_from(const char *folders);
+const char *raster_sources(void); /* as it was set */
 /* From here on only files below this folder are opened, links followed, and none that name others outside it, whatever
  * raster_sources_from has. NULL: anywhere. */
 void raster_stay_within(const char *folder);

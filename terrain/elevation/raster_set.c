@@ -13,6 +13,8 @@ void raster_stay_within(const char *folder) { snprintf(only_within, sizeof only_
 
 void raster_sources_from(const char *folders) { snprintf(sources_from, sizeof sources_from, "%s", folders ? folders : ""); }
 
+const char *raster_sources(void) { return sources_from; }
+
 /* ---- what a set is ------------------------------------------------------------------------------------ */
 
 static void begin(WireChannel *channel, WireAsk ask, const Raster *raster, const char *key)
