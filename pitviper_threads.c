@@ -1,6 +1,7 @@
 /* pitviper_threads.c: one pool. Tasks are handed out by a counter; results must not depend on which thread ran which
  * task. */
 #include "pitviper.h"
+#include "pitviper_file.h"
 
 #include <pthread.h>
 #include <sched.h>
@@ -125,6 +126,26 @@ void pool_run(Pool *pool, int count, PoolTask *task, void *user)
     pthread_mutex_lock(&pool->lock);
     while (pool->busy > 0) pthread_cond_wait(&pool->done, &pool->lock);
     pthread_mutex_unlock(&pool->lock);
+}
+
+typedef struct Stoppable {
+    PoolTask *task;
+    void     *user;
+} Stoppable;
+
+static void unless_stopped(void *user, int worker, int task)
+{
+    const Stoppable *s = user;
+    if (!file_stop_asked()) s->task(s->user, worker, task);
+}
+
+bool pool_run_unless_stopped(Pool *pool, int count, PoolTask *task, void *user)
+{
+    Stoppable s = {task, user};
+    if (pool) pool_run(pool, count, unless_stopped, &s);
+    else
+        for (int n = 0; n < count; n++) unless_stopped(&s, 0, n);
+    return !file_stop_asked();
 }
 
 int thread_processors(void)

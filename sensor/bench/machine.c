@@ -3,7 +3,6 @@
 
 #include "entities/import/assimp_library.h"
 #include "sensor/publish/image_file.h"
-#include "terrain/elevation/gdal_library.h"
 
 #include <gnu/libc-version.h>
 #include <libgen.h>
@@ -33,11 +32,11 @@ typedef struct Libraries {
     size_t size, used;
 } Libraries;
 
-/* The real name of a shared object ends with its version: libgdal.so.32.3.6.2. */
+/* The real name of a shared object ends with its version: libassimp.so.5.2.5. */
 static int add_library(struct dl_phdr_info *info, size_t size, void *user)
 {
-    static const char *const shown[] = {"embree", "OpenImageIO", "gdal",    "GeographicLib", "assimp", "erfa",
-                                        "pcap",   "fftw3",       "jansson", "crypto",        "yaml"};
+    static const char *const shown[] = {"embree", "OpenImageIO", "GeographicLib", "assimp", "erfa",
+                                        "pcap",   "fftw3",       "jansson",       "crypto", "yaml"};
     Libraries *l = user;
     char       real[PATH_MAX];
     (void)size;
@@ -75,9 +74,8 @@ void bench_machine_read(BenchMachine *out)
              "gcc", __VERSION__);
 #endif
     Libraries l = {out->libraries, sizeof out->libraries, 0};
-    l.used = (size_t)snprintf(l.out, l.size, "glibc %s", gnu_get_libc_version());
-    if (library_load(&gdal_library) != STATUS_OK || library_load(&assimp_library) != STATUS_OK ||
-        image_file_prepare() != STATUS_OK)
+    l.used = (size_t)snprintf(l.out, l.size, "glibc %s, gdal %s", gnu_get_libc_version(), PITVIPER_GDAL_VERSION);
+    if (library_load(&assimp_library) != STATUS_OK || image_file_prepare() != STATUS_OK)
         log_warn("bench: a library is missing, and so are its version and what needs it");
     dl_iterate_phdr(add_library, &l);
 }

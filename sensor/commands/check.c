@@ -90,6 +90,7 @@ static bool sheets_are_valid(const Check *c, const char *paths, const char *key,
     static float piece[side * side];
     RasterSet    set = {0};
     if (!*paths) return true;
+    raster_sources_from(c->config->terrain.sources_from);
     Status status = raster_set_open(&set, paths, key);
     for (int i = 0; heights && i < set.count && status == STATUS_OK; i++) {
         ElevationSurvey survey;

@@ -41,6 +41,7 @@ static const char help[] =
     "  --srs EPSG:N           coordinate system (as each file says)\n"
     "  --nodata N             a number that is no height; none: voids are those that a file declares, no others\n"
     "  --geoid FILE           geoid grid in PROJ's .gtx form (EGM96 of proj-data)\n"
+    "  --sources-from FOLDERS where files may lie that others name (VRT), beside those in the folder of the one that names them\n"
     "terrain\n"
     "  --origin LAT,LON       middle of the terrain, degrees (middle of the finest file)\n"
     "  --size KMxKM           east by north, of the finest posts, each 0.01 .. 1000 (all data)\n"
@@ -49,6 +50,7 @@ static const char help[] =
     "output\n"
     "  -o, --out STORE        the store; made again from the same sources when one of them changes and\n"
     "                         all lie in its folder; `terrain again STORE` makes it from any\n"
+    "  --most-gb GB           refuse what would write more, or read 64 times as much, 0.001 .. 1000000 (16)\n"
     "  --overwrite            replace an existing STORE; without it that is an error\n"
     "  --threads N            1 .. 256 (all processors)\n"
     "  --json                 what was read and made as one JSON object on standard output\n";
@@ -91,6 +93,8 @@ static int parse(Wanted *w, int argc, char **argv)
         {"size", 1, NULL, VALUE + 12},
         {"spacing", 1, NULL, VALUE + 13},
         {"horizon", 1, NULL, VALUE + 14},
+        {"sources-from", 1, NULL, VALUE + 15},
+        {"most-gb", 1, NULL, VALUE + 16},
         {NULL, 0, NULL, 0}};
     enum { own_options = 5 };
     const char *why = NULL;
@@ -136,6 +140,11 @@ static bool show(void *user, const char *stage, double share)
     const double begun_s = ((const Watching *)user)->begun_s;
     char         text[120];
     if (stop_asked()) return false;
+    if (share < 0) {
+        if (!((const Watching *)user)->sources.json) log_print("%s\n", stage);
+        fflush(stdout); /* before a work of hours */
+        return true;
+    }
     if (wall_clock_s() - begun_s < 1) return true;
     snprintf(text, sizeof text, "terrain import: %s, %.0f %%", stage, 100 * share);
     log_status(text);

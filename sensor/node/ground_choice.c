@@ -5,6 +5,7 @@
 #include "entities/table/contact.h"
 #include "sensor/node/ground_evidence.h"
 #include "sensor/node/ground_store.h"
+#include "terrain/elevation/raster.h"
 #include "terrain/landscape/landscape_import.h"
 
 #include <stdlib.h>
@@ -91,6 +92,7 @@ static Status import(Landscape *out, Choices *choices, const Config *config, con
                                   .cover_band = config->terrain.cover_band,
                                   .photo = config->terrain.orthophoto,
                                   .seed = (uint64_t)config->seed};
+    raster_sources_from(config->terrain.sources_from);
     const Status status = landscape_import(out, &r, &files, frame, e->fix, fit ? e->said.fix_count : 0);
     if (status != STATUS_OK) return status;
 

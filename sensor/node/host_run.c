@@ -12,7 +12,6 @@
 #include "sensor/settings/plane_choice.h"
 #include "sensor/node/shape_choice.h"
 #include "sensor/node/woods_choice.h"
-#include "terrain/elevation/gdal_library.h"
 
 #include <stdlib.h>
 
@@ -59,13 +58,11 @@ Status run_prepare(Run *run)
     return status == STATUS_OK ? hash_config(run->config_sha256, &run->options) : status;
 }
 
-/* Libraries that products and terrain need, on this thread, before the pool starts. */
+/* Libraries that products need, on this thread, before the pool starts. */
 static Status load_libraries(const Config *config)
 {
     const bool images = config->publish.files || config->publish.latest;
-    const bool ground = *config->terrain.elevation || *config->terrain.cover || *config->terrain.orthophoto;
     Status     status = images ? image_file_prepare() : STATUS_OK;
-    if (status == STATUS_OK && ground) status = library_load(&gdal_library);
     return status == STATUS_OK ? video_prepare(config) : status;
 }
 

@@ -280,6 +280,8 @@ static const Setting keys[] = {
     {"terrain.cover_band", SETTING_INT, AT(terrain.cover_band), 0, 1000, NULL, "",
      "band of the cover files; 0: 4 for LANDFIRE landscape files (8 bands), else 1"},
     {"terrain.orthophoto", SETTING_PATHS, AT(terrain.orthophoto), 0, 0, NULL, "", "orthophoto files or folders"},
+    {"terrain.sources_from", SETTING_PATHS, AT(terrain.sources_from), 0, 0, NULL, "",
+     "folders where files may lie that others name (VRT); empty: in the folder of the file that names them alone"},
     {"terrain.ground", SETTING_TEXT, AT(terrain.ground), 0, 0, "auto|clamp|trust|fit", "",
      "ground clamping; clamp: place land entities on the terrain; trust: leave them at their reported heights; fit: "
      "fit the terrain "

@@ -125,6 +125,7 @@ typedef struct Config {
         char   cover[config_paths_size], cover_table[1024];
         int    cover_band;
         char   orthophoto[config_paths_size];
+        char   sources_from[config_paths_size];
         char   ground[8];
         char   detail[8];          /* on or off: noise of the ground */
         char   woods[8], woods_leaves[8]; /* on or off: trees and other plants; their leaves in winter */

@@ -1,6 +1,8 @@
 /* terrain/elevation/patch.c: a window of a raster: averaged, its voids filled, and reduced to mip levels. */
 #include "terrain/elevation/patch.h"
 
+#include "pitviper_file.h"
+
 #include <stdlib.h>
 
 void patch_free(Patch *patch)
@@ -63,17 +65,10 @@ static void halve_rows(void *user, int worker, int task)
         }
 }
 
-static void run(Pool *pool, int count, PoolTask *task, void *user)
-{
-    if (pool) pool_run(pool, count, task, user);
-    else
-        for (int n = 0; n < count; n++) task(user, 0, n);
-}
-
 static void halve(Patch *p, int k, Pool *pool)
 {
     Halving h = {p->v[k], p->v[k - 1], p->nx[k], p->ny[k], p->nx[k - 1], p->ny[k - 1]};
-    run(pool, (h.out_ny + rows_a_task - 1) / rows_a_task, halve_rows, &h);
+    (void)pool_run_unless_stopped(pool, (h.out_ny + rows_a_task - 1) / rows_a_task, halve_rows, &h);
 }
 
 static double bilinear(const float *v, int nx, int ny, double x, double y)
@@ -123,7 +118,7 @@ static Status fill(Patch *p, int k)
                                  p->y0 + post_px * ((double)(at[n] / (size_t)nx) + 0.5));
         if (k == 0) p->hole[at[n]] = 1;
     }
-    for (int sweep = 0; sweep < sweeps; sweep++)
+    for (int sweep = 0; sweep < sweeps && !file_stop_asked(); sweep++)
         for (size_t n = 0; n < count; n++) {
             const size_t q = sweep & 1 ? at[count - 1 - n] : at[n], i = q % (size_t)nx, j = q / (size_t)nx;
             double       sum = 0;
@@ -190,6 +185,7 @@ static Status fill_all(Patch *p, Pool *pool)
         return STATUS_OK;
     }
     for (int k = p->wider ? p->mips - 1 : p->mips - 2; status == STATUS_OK && k >= 0; k--) status = fill(p, k);
+    if (status == STATUS_OK && file_stop_asked()) status = STATUS_IO;
     if (status == STATUS_OK) status = measure_holes(p);
     return status;
 }
@@ -205,30 +201,61 @@ typedef struct Reading {
     Status            *status;               /* [strips] */
 } Reading;
 
-static void read_strip(void *user, int worker, int task)
+/* Columns of a strip: rows y0 .. y1 - 1 of columns x0 .. x1 - 1, averaged into every patch that has some of them. strip:
+ * their pixels; NULL: all are `value`. */
+static void average_columns(const Reading *r, const float *strip, float value, int x0, int x1, int y0, int y1)
 {
-    const Reading *r = user;
-    (void)worker;
-    const int y0 = (r->y0 / r->rows + task) * r->rows > r->y0 ? (r->y0 / r->rows + task) * r->rows : r->y0;
-    const int end = (r->y0 / r->rows + task + 1) * r->rows, y1 = end < r->y1 ? end : r->y1;
-    const int width = r->x1 - r->x0;
-    float    *strip = malloc((size_t)(y1 - y0) * (size_t)width * sizeof *strip);
-    if (!strip) {
-        r->status[task] = STATUS_NO_MEMORY;
-        return;
-    }
-    r->status[task] = raster_read(strip, r->source->raster, r->source->band, r->x0, y0, width, y1 - y0, r->source->key);
-    const float  low = (float)r->source->low, high = (float)r->source->high;
-    const size_t count = (size_t)(y1 - y0) * (size_t)width;
-    for (size_t n = 0; n < count; n++) strip[n] = strip[n] >= low && strip[n] <= high ? strip[n] : NAN;
-    for (int w = 0; w < r->count && r->status[task] == STATUS_OK; w++) {
+    for (int w = 0; w < r->count; w++) {
         const PatchWindow *of = &r->window[w];
         Patch             *p = &r->patch[w];
         const int from = y0 > p->y0 ? y0 : p->y0, to = y1 < of->y1 ? y1 : of->y1;
-        for (int y = from; y < to; y += p->factor)
-            average_row(p->v[0] + (size_t)((y - p->y0) / p->factor) * (size_t)p->nx[0], p->nx[0],
-                        strip + (size_t)(y - y0) * (size_t)width + (size_t)(p->x0 - r->x0), (size_t)width,
-                        of->x1 - p->x0, to - y < p->factor ? to - y : p->factor, p->factor);
+        const int west = x0 > p->x0 ? x0 : p->x0, east = x1 < of->x1 ? x1 : of->x1;
+        if (west >= east) continue;
+        const int i0 = (west - p->x0) / p->factor, nx = (east - p->x0 + p->factor - 1) / p->factor - i0;
+        for (int y = from; y < to; y += p->factor) {
+            float *out = p->v[0] + (size_t)((y - p->y0) / p->factor) * (size_t)p->nx[0] + (size_t)i0;
+            if (strip)
+                average_row(out, nx, strip + (size_t)(y - y0) * (size_t)(x1 - x0) + (size_t)(west - x0), (size_t)(x1 - x0),
+                            east - west, to - y < p->factor ? to - y : p->factor, p->factor);
+            else
+                for (int i = 0; i < nx; i++) out[i] = value;
+        }
+    }
+}
+
+/* Pieces of columns begin at multiples of raster_piece, and so of every factor: no average straddles two. */
+static void read_strip(void *user, int worker, int task)
+{
+    const Reading *r = user;
+    const Raster  *raster = r->source->raster;
+    (void)worker;
+    const int y0 = (r->y0 / r->rows + task) * r->rows > r->y0 ? (r->y0 / r->rows + task) * r->rows : r->y0;
+    const int end = (r->y0 / r->rows + task + 1) * r->rows, y1 = end < r->y1 ? end : r->y1;
+    const int piece = raster_piece(raster);
+    float    *strip = NULL;
+    for (int x0 = r->x0, x1; x0 < r->x1 && r->status[task] == STATUS_OK; x0 = x1) {
+        const int   next = (x0 / piece + 1) * piece;
+        const float low = (float)r->source->low, high = (float)r->source->high;
+        float       value;
+        x1 = next < r->x1 ? next : r->x1;
+        if (file_stop_asked()) {
+            r->status[task] = STATUS_IO;
+        } else if (raster_uniform(&value, raster, r->source->band, x0, y0, x1 - x0, y1 - y0, r->source->key)) {
+            average_columns(r, NULL, value >= low && value <= high ? value : NAN, x0, x1, y0, y1);
+        } else {
+            const int    width = x1 - x0;
+            const size_t count = (size_t)(y1 - y0) * (size_t)width;
+            free(strip);
+            strip = malloc(count * sizeof *strip);
+            if (!strip) {
+                r->status[task] = STATUS_NO_MEMORY;
+                break;
+            }
+            r->status[task] = raster_read(strip, raster, r->source->band, x0, y0, width, y1 - y0, r->source->key);
+            if (r->status[task] != STATUS_OK) break;
+            for (size_t n = 0; n < count; n++) strip[n] = strip[n] >= low && strip[n] <= high ? strip[n] : NAN;
+            average_columns(r, strip, 0, x0, x1, y0, y1);
+        }
     }
     free(strip);
 }
@@ -281,7 +308,7 @@ Status patches_read(Patch *out, const PatchWindow *window, int count, const Patc
     const int strips = (r.y1 - 1) / r.rows - r.y0 / r.rows + 1;
     if (status == STATUS_OK) r.status = calloc((size_t)strips, sizeof *r.status);
     if (status == STATUS_OK && !r.status) status = STATUS_NO_MEMORY;
-    if (status == STATUS_OK) run(source->pool, strips, read_strip, &r);
+    if (status == STATUS_OK && !pool_run_unless_stopped(source->pool, strips, read_strip, &r)) status = STATUS_IO;
     for (int k = 0; status == STATUS_OK && k < strips; k++) status = r.status[k];
     for (int k = 0; status == STATUS_OK && k < count; k++) status = fill_all(&p[k], source->pool);
     for (int k = 0; p && k < count; k++) {

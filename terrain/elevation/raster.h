@@ -1,5 +1,8 @@
-/* terrain/elevation/raster.h: georeferenced pixels of anything GDAL reads (GeoTIFF, DTED, HGT, VRT ...); with the
- * elevation, cover and photographs that are made of them, the only files that know it: raster.c.
+/* terrain/elevation/raster.h: georeferenced pixels of anything GDAL reads (GeoTIFF, DTED, HGT, VRT ...).
+ *
+ * GDAL and PROJ work in a process of their own (terrain/elevation/reader), one for each set: it cannot open a connection,
+ * start a program, write, or read files elsewhere, and its memory and time are limited (raster_child.h). What a broken
+ * file does to it is one logged line here.
  *
  * Sheets of one grid (same CRS, same pixel size, a whole number of pixels apart) are one Raster, as tiles of a
  * survey are. Pixel (i, j) covers [i, i+1) x [j, j+1), row 0 northernmost as a rule; its post, or centre, is at (i +
@@ -15,7 +18,7 @@ typedef struct RasterSheet {
     char *path;
     int   x0, y0, width, height; /* px of the Raster */
     int   band;                  /* of `FILE:BAND`; 0: the caller's choice */
-    struct RasterOpen *open;     /* private: handles kept between reads; NULL: the file is opened for each */
+    struct RasterOpen *open;     /* the reader's: handles kept between reads; NULL: the file is opened for each */
 } RasterSheet;
 
 typedef struct Raster {
@@ -30,25 +33,39 @@ typedef struct Raster {
     double  metres_per_unit;     /* of the band; negative: its numbers grow downwards. Of an unknown unit 1 */
     bool    bytes;               /* its samples are octets: of a picture, or a class */
     bool    whole;               /* they are whole numbers: no elevation in float */
+    bool    sparse;              /* parts are known to be uniform without being read (raster_uniform) */
+    double  data_share;          /* of its pixels, those that must be read; 1: not known to be fewer */
     int     sheet_count;
     RasterSheet *sheet;
     /* private: */
+    struct RasterChild *child;   /* of its set */
+    int     index;               /* there */
+    struct RasterKept *kept;
+    /* the reader's: */
     double  crs_from_px[6], px_from_crs[6];
     double  whole_turn_px;       /* geographic: px of 360 degrees; else 0 */
     void   *crs, *crs_from_earth, *earth_from_crs;
-    struct RasterKept *kept;
 } Raster;
 
 typedef struct RasterSet {
     int     count;
     Raster *raster;              /* finest posting first; equals in the order given */
+    struct RasterChild *child;   /* private */
 } RasterSet;
 
-/* paths: files and folders, separated by commas; of a folder, all that GDAL reads. After a
- * name stands what the user says of it: raster_choice.h. key: the setting, for messages. An unusable file is one
- * logged line with a remedy, and STATUS_IO or STATUS_BAD_VALUE. */
+/* paths: files and folders, separated by commas; of a folder, all that GDAL reads. After a name stands what the user says of
+ * it: raster_choice.h. key: the setting, for messages. An unusable file is one logged line with a remedy, and STATUS_IO or
+ * STATUS_BAD_VALUE. A file that names others (VRT) may name those that lie in its own folder, or below one of
+ * raster_sources_from. */
 Status raster_set_open(RasterSet *out, const char *paths, const char *key);
 void   raster_set_close(RasterSet *set); /* accepts zeroes */
+/* Both are of the whole process, for sets opened later, and set before threads read. Folders below which files may lie that
+ * other files name, separated by commas; empty: none. */
+void raster_sources_from(const char *folders);
+const char *raster_sources(void); /* as it was set */
+/* From here on only files below this folder are opened, links followed, and none that name others outside it, whatever
+ * raster_sources_from has. NULL: anywhere. */
+void raster_stay_within(const char *folder);
 
 /* In place, count places: longitude and latitude (rad) to column and row, and back. NaN where the projection has
  * none. */
@@ -63,9 +80,15 @@ void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, con
  * at once; windows whose first rows lie in different blocks of row_block rows do not wait for each other. STATUS_IO,
  * logged, when a file turns out to be damaged. */
 Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key);
-/* From now on whole rows of a band that are read are kept, decoded, in a nameless file of this folder, and read from it
- * when they are asked for again: 4 octets a pixel. Nothing where the folder cannot have such a file. */
-void raster_keep(Raster *raster, int band, const char *folder);
+/* Whether all of a window is known to have one value (NaN: no data) without being read: between sheets, and where a TIFF has
+ * no block. False also where it is not known. */
+bool raster_uniform(float *value, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key);
+/* Columns that are best read at once, px: all, or 32768 of a raster so wide that its rows would fill the memory. */
+int  raster_piece(const Raster *raster);
+/* From now on rows of a band that are read, whole or in whole pieces (raster_piece), are kept, decoded, in a nameless file of
+ * this folder, and read from it when they are asked for again: 4 octets a pixel, at most most_octets. Nothing where the
+ * folder cannot have such a file. */
+void raster_keep(Raster *raster, int band, const char *folder, double most_octets);
 /* The same of a raster of octets: out [height][width][bands], and valid [height][width], 0 or 255. bands: how many, from
  * the first on. */
 Status raster_read_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, int first_band, int bands, int x0, int y0,

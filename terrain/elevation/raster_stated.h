@@ -19,8 +19,4 @@ typedef struct RasterStated {
     double nodata;
 } RasterStated;
 
-/* For raster.c. file: GDAL's dataset; crs: its coordinate system, or what the user named in its place, whole, with its
- * vertical part. */
-void raster_state(RasterStated *out, void *file, int band, void *crs);
-
 #endif

@@ -8,13 +8,6 @@
 
 enum { node_cells = 64, rows_a_task = 16 };
 
-static void run(Pool *pool, int count, PoolTask *task, void *user)
-{
-    if (pool) pool_run(pool, count, task, user);
-    else
-        for (int n = 0; n < count; n++) task(user, 0, n);
-}
-
 /* ---- where cells lie ------------------------------------------------------------------------- */
 
 /* Exact at every node_cells-th corner of cells, on the ground itself, linear between. */
@@ -135,9 +128,11 @@ static Status each_raster(void *out, const RasterSet *set, int band, int most_ba
             job.valid = malloc(count);
         }
         if (!job.status || !(numbers ? job.number != NULL : job.bytes && job.valid)) status = STATUS_NO_MEMORY;
-        if (status == STATUS_OK) run(view->pool, tasks, read_rows, &job);
+        if (status == STATUS_OK && !pool_run_unless_stopped(view->pool, tasks, read_rows, &job)) status = STATUS_IO;
         for (int n = 0; status == STATUS_OK && n < tasks; n++) status = job.status[n];
-        if (status == STATUS_OK) run(view->pool, (cells->rows + rows_a_task - 1) / rows_a_task, sample, &job);
+        if (status == STATUS_OK &&
+            !pool_run_unless_stopped(view->pool, (cells->rows + rows_a_task - 1) / rows_a_task, sample, &job))
+            status = STATUS_IO;
         free(job.status);
         free(job.bytes);
         free(job.valid);

@@ -25,6 +25,7 @@ static const struct Row {
     {"canopy-cover", LIST, TEXT_AT(canopy_cover), 0, 0, 0, "a file, or FILE:BAND"},
     {"cover-table", LIST, TEXT_AT(cover_table), 0, 0, 0, "worldcover, nlcd, fbfm40, dynamicworld, corine, or a CSV"},
     {"geoid", LIST, TEXT_AT(geoid), 0, 0, 0, "a file in PROJ's .gtx form"},
+    {"sources-from", LIST, TEXT_AT(sources_from), 0, 0, 0, "a list of folders"},
     {"vertical", CHOICE, TEXT_AT(vertical), 0, 0, ELEVATION_BY_FILE, "auto, geoid or ellipsoid"},
     {"unit", SAYS, TEXT_AT(unit), 0, 0, 0, "a unit of length: m, dm, cm, ft, us-ft"},
     {"srs", SAYS, TEXT_AT(srs), 0, 0, 0, "a coordinate system by its number: EPSG:32633, or EPSG:32633+5773"},
@@ -33,6 +34,7 @@ static const struct Row {
     {"origin", PAIR, TEXT_AT(origin_deg), -360, 360, NAN, "LAT,LON: degrees in -90 .. 90 and -360 .. 360"},
     {"size", SIZE, TEXT_AT(size_km), 0.01, 1000, 0, "KMxKM, east by north, each in 0.01 .. 1000"},
     {"horizon", NUMBER, TEXT_AT(horizon_km), 1, 400, 100, "kilometres in 1 .. 400"},
+    {"most-gb", NUMBER, TEXT_AT(most_gb), 0.001, 1e6, 16, "gigabytes in 0.001 .. 1000000"},
 };
 enum { row_count = sizeof rows / sizeof *rows };
 
@@ -40,7 +42,7 @@ static const char *const verticals[] = {"auto", "geoid", "ellipsoid"};
 
 void terrain_options_default(TerrainOptions *out)
 {
-    *out = (TerrainOptions){.origin_deg = {NAN, NAN}, .horizon_km = 100};
+    *out = (TerrainOptions){.origin_deg = {NAN, NAN}, .horizon_km = 100, .most_gb = 16};
 }
 
 /* Two numbers with a separator between them. */

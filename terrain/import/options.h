@@ -13,16 +13,19 @@ typedef struct TerrainOptions {
         photo[terrain_paths_size], canopy_height[terrain_path_size], canopy_cover[terrain_path_size];
     char   cover_table[terrain_path_size], geoid[terrain_path_size]; /* empty: chosen; EGM96 */
     char   unit[16], srs[128], nodata[32]; /* of elevation and surface files that have none after their name */
+    char   sources_from[terrain_path_size]; /* folders of files that other files name (raster_sources_from) */
     ElevationVertical vertical;
     double spacing_m;             /* 0: the posting of the finest data */
     double origin_deg[2];         /* latitude, longitude; NaN: middle of the finest data */
     double size_km[2];            /* 0: all data */
     double horizon_km;
+    double most_gb;               /* that may be written; 64 times as much decoded */
 } TerrainOptions;
 
 void   terrain_options_default(TerrainOptions *out);
 /* One option by its name: elevation (added to those before), surface, cover, cover-table, photo, canopy-height,
- * canopy-cover, geoid, vertical, unit, srs, nodata, spacing, origin, size, horizon. False: *why says what is accepted, in static storage,
+ * canopy-cover, geoid, sources-from, vertical, unit, srs, nodata, spacing, origin, size, horizon, most-gb. False: *why says what is
+ * accepted, in static storage,
  * and nothing has changed. */
 bool   terrain_options_set(TerrainOptions *o, const char **why, const char *name, const char *value);
 /* The names of a list of elevation or surface files, each with what the options choose for it after it

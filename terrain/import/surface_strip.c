@@ -199,11 +199,7 @@ Status surface_strip_make(SurfaceStrip *out, const SurfaceSources *from, int row
     Status     status = whole ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = read_models(&w, from);
     if (status == STATUS_OK && from->photo) status = read_colours(&w, from);
-    if (status == STATUS_OK) {
-        if (from->pool) pool_run(from->pool, w.windows, take_window, &w);
-        else
-            for (int k = 0; k < w.windows; k++) take_window(&w, 0, k);
-    }
+    if (status == STATUS_OK && !pool_run_unless_stopped(from->pool, w.windows, take_window, &w)) status = STATUS_IO;
     for (int k = 0; status == STATUS_OK && k < w.windows; k++) {
         status = w.status[k];
         strip.crowns += w.crowns[k];

@@ -2,12 +2,14 @@
  * covers it. */
 #include "terrain/import/terrain_import.h"
 
+#include "pitviper_file.h"
 #include "terrain/import/building_count.h"
 #include "terrain/import/ground_rows.h"
 #include "terrain/import/surface_strip.h"
 #include "terrain/landscape/cover_table.h"
 
 #include <stdlib.h>
+#include <sys/statvfs.h>
 
 enum { rows_plain = 512, rows_apart = 1024, most_sources = 8192, options_size = 8 * terrain_paths_size };
 
@@ -17,7 +19,7 @@ typedef struct Making {
     const TerrainOptions *o;
     Pool            *pool;
     TerrainWatch     watch;
-    double           told_s;
+    double           told_s, keep_octets;
     LocalFrame       frame;
     ElevationFiles   files[2];        /* terrain model, surface model */
     ElevationStream *terrain, *surface, *first; /* first: whose levels are made */
@@ -86,7 +88,6 @@ static Status open_sources(Making *m)
                                        .heard = m->watch.heard, .heard_user = m->watch.user};
     if (*o->surface && status == STATUS_OK)
         status = elevation_stream_open(&m->surface, &m->files[1], &m->frame, NULL, m->pool);
-    if (!go_on(m, "levels around", *o->surface ? 0.5 : 0, true)) return STATUS_IO;
     if (*o->elevation && status == STATUS_OK)
         status = elevation_stream_open(&m->terrain, &m->files[0], &m->frame, m->surface, m->pool);
     m->first = m->surface ? m->surface : m->terrain;
@@ -233,6 +234,53 @@ static Status plan(Making *m)
              "; where files overlap the finest wins, of equals the one given first");
     p->provenance = m->notes;
     return STATUS_OK;
+}
+
+/* Says what there is to do, before it is done; no more than is allowed, and than the disk has room for. Decoded rows are
+ * kept, where that is worth it, in what the store leaves of both. */
+static Status say_size(Making *m)
+{
+    enum { reads_per_octet = 64 };
+    const double   most = 1e9 * m->o->most_gb;
+    const uint64_t octets = store_plan_octets(&m->plan);
+    double         px = 0, free_octets = INFINITY;
+    struct statvfs disk;
+    char           text[256];
+    if (m->surface) px += elevation_stream_reads_px(m->surface);
+    if (m->terrain) px += elevation_stream_reads_px(m->terrain);
+    if (statvfs(m->folder, &disk) == 0) free_octets = (double)disk.f_bavail * (double)disk.f_frsize;
+    const double posts = (double)m->level.nx * m->level.ny, store = (double)octets;
+    m->keep_octets = fmax(fmin(fmin(most - store, 0.5 * (free_octets - store)), sizeof(float) * px), 0);
+    snprintf(text, sizeof text,
+             "to do: %.1f M posts, %.3g m apart over %.2f x %.2f km; %.1f M pixels to read; %.2f GB to write, and at most %.2f GB of "
+             "decoded rows meanwhile", 1e-6 * posts, m->level.spacing_m, 1e-3 * m->level.nx * m->level.spacing_m,
+             1e-3 * m->level.ny * m->level.spacing_m, 1e-6 * px, 1e-9 * store, 1e-9 * m->keep_octets);
+    if (m->watch.progress && !m->watch.progress(m->watch.user, text, -1)) m->r.stopped = true;
+    if (m->r.stopped) return STATUS_IO;
+    if (store > most || sizeof(float) * px > reads_per_octet * most) {
+        log_error("%s: that is %.2f GB to write and %.2f GB to decode, more than %.3g and %.3g; --size takes a part, --spacing fewer "
+                  "posts, --horizon less around them, --most-gb allows more",
+                  module, 1e-9 * store, 1e-9 * sizeof(float) * px, m->o->most_gb, reads_per_octet * m->o->most_gb);
+        return STATUS_BAD_VALUE;
+    }
+    if (store > free_octets) {
+        log_error("%s: that is %.2f GB to write, and %s has room for %.2f; -o names a store on another disk, --size takes a part",
+                  module, 1e-9 * store, m->folder, 1e-9 * free_octets);
+        return STATUS_IO;
+    }
+    return STATUS_OK;
+}
+
+/* The levels around: all files are read once. */
+static Status begin(Making *m)
+{
+    const bool   both = m->surface && m->terrain;
+    const double keep_octets = both ? 0.5 * m->keep_octets : m->keep_octets;
+    Status       status = STATUS_OK;
+    if (m->surface) status = elevation_stream_begin(m->surface, keep_octets);
+    if (status == STATUS_OK && both && !go_on(m, "levels around", 0.5, true)) return STATUS_IO;
+    if (status == STATUS_OK && m->terrain) status = elevation_stream_begin(m->terrain, keep_octets);
+    return status;
 }
 
 /* ---- what covers the ground ------------------------------------------------------------------ */
@@ -555,16 +603,21 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     snprintf(m->folder, sizeof m->folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
     const double begun_s = wall_clock_s();
     const char  *fault = terrain_options_fault(options);
+    char        *sources = strdup(raster_sources());
+    if (*options->sources_from) raster_sources_from(options->sources_from);
     Status       status = fault ? STATUS_BAD_VALUE : STATUS_OK;
     if (fault) log_error("%s: %s", module, fault);
     if (status == STATUS_OK && !go_on(m, "levels around", 0, true)) status = STATUS_IO;
     if (status == STATUS_OK) status = open_sources(m);
     if (status == STATUS_OK) status = plan(m);
+    if (status == STATUS_OK) status = say_size(m);
+    if (status == STATUS_OK) status = begin(m);
     if (status == STATUS_OK) status = store_writer_create(&m->writer, path, &m->plan, pool);
     m->r.seconds[0] = wall_clock_s() - begun_s;
     if (status == STATUS_OK) status = make_levels(m);
     if (status == STATUS_OK) status = finish(m, path);
     store_writer_abandon(m->writer);
+    m->r.stopped |= status != STATUS_OK && m->watch.progress && file_stop_asked();
     *out = m->r;
     elevation_stream_close(m->terrain);
     elevation_stream_close(m->surface);
@@ -576,6 +629,8 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     for (int k = 0; k < 2; k++) free(m->list[k]);
     free(m->options);
     building_count_free(&m->buildings);
+    if (sources) raster_sources_from(sources);
+    free(sources);
     free(m);
     return status;
 }

@@ -8,7 +8,8 @@
 #include "terrain/import/options.h"
 #include "terrain/store/store.h"
 
-/* Called some times a second at most, by the thread of the import. False: stop, and leave nothing behind. */
+/* Called some times a second at most, by the thread of the import; once, before the work, with a line that says how much there is
+ * to do, and a share of -1. False: stop, and leave nothing behind. */
 typedef bool TerrainProgress(void *user, const char *stage, double share);
 
 typedef struct TerrainWatch {

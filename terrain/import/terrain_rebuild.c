@@ -3,7 +3,6 @@
 
 #include "pitviper_file.h"
 #include "terrain/elevation/raster.h"
-#include "terrain/elevation/raster_source.h"
 #include "terrain/import/source_places.h"
 
 #include <stdlib.h>
@@ -12,6 +11,10 @@ static bool tell(void *user, const char *stage, double share)
 {
     char text[160];
     if (file_stop_asked()) return false;
+    if (share < 0) {
+        log_detail("terrain: the store is made again: %s", stage);
+        return true;
+    }
     if (wall_clock_s() - *(double *)user < 1) return true;
     snprintf(text, sizeof text, "terrain: the store is made again: %s, %.0f %%", stage, 100 * share);
     log_status(text);

@@ -63,11 +63,11 @@ Status elevation_import_open(Import *m);
 Status elevation_import_choose(Import *m, ElevationReport *report);
 void   elevation_import_plan(Import *m, int most_side);
 
-/* elevation_posts.c: lattice of a view; windows of the grids' pixels that it needs; heights above the ellipsoid.
+/* elevation_posts.c: lattice of a view; windows of the grids' pixels that it needs; heights above the ellipsoid (STATUS_IO: a stop was requested).
  * View_window: false: the grid has nothing near. */
 Status view_create(View *out, const Import *m, const Field *level, int row0, int rows);
 bool   view_window(PatchWindow *out, const View *view, const Import *m, int grid);
-void   view_heights(float *h_m, const View *view, const Import *m);
+Status view_heights(float *h_m, const View *view, const Import *m);
 void   view_free(View *view); /* accepts zeroes */
 /* In place, rows of a level: heights above the ellipsoid to ENU z; and blended into the level around. */
 Status view_bend(float *rows_m, const Import *m, const Field *level, int row0, int rows);

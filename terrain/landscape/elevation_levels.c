@@ -74,7 +74,7 @@ Status elevation_import_levels(Import *m, bool with_0, View *finest)
         }
         if (status == STATUS_OK && (k > 0 || with_0))
             status = field_create(z, z->spacing_m, z->i0, z->j0, z->nx, z->ny);
-        if (status == STATUS_OK && (k > 0 || with_0)) view_heights(z->v, &view[k], m);
+        if (status == STATUS_OK && (k > 0 || with_0)) status = view_heights(z->v, &view[k], m);
     }
     if (status == STATUS_OK) {
         *finest     = view[first];

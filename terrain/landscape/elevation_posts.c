@@ -7,13 +7,6 @@
 static const double lowest_view_m = -1000, highest_view_m = 9500, rise_m = 4000; /* rise: between the exact look-ups */
 enum { rows_a_task = 16, most_run = 128, rows_at_once = 4 };
 
-static void run(Pool *pool, int count, PoolTask *task, void *user)
-{
-    if (pool) pool_run(pool, count, task, user);
-    else
-        for (int n = 0; n < count; n++) task(user, 0, n);
-}
-
 /* ---- where posts lie in the grids ----------------------------------------------------------- */
 
 /* Longitude and latitude on the lattice's nodes of the vertical line at height h. */
@@ -335,7 +328,7 @@ static void find_rows(void *user, int worker, int task)
     }
 }
 
-void view_heights(float *h_m, const View *view, const Import *m)
+Status view_heights(float *h_m, const View *view, const Import *m)
 {
     Finding f = {m, view, h_m, -1};
     int     some = 0;
@@ -345,7 +338,7 @@ void view_heights(float *h_m, const View *view, const Import *m)
         f.only = k;
     }
     if (some != 1 || view->patch[f.only].nx[0] < 2 || view->patch[f.only].ny[0] < 2) f.only = -1;
-    run(m->pool, (view->rows + rows_a_task - 1) / rows_a_task, find_rows, &f);
+    return pool_run_unless_stopped(m->pool, (view->rows + rows_a_task - 1) / rows_a_task, find_rows, &f) ? STATUS_OK : STATUS_IO;
 }
 
 /* ---- into ENU -------------------------------------------------------------------------------- */
@@ -396,9 +389,9 @@ Status view_bend(float *rows_m, const Import *m, const Field *level, int row0, i
     const int tasks = (row0 + rows - 1) / b.stride - row0 / b.stride + 1;
     b.z = malloc(4 * (size_t)b.nx * (size_t)tasks * sizeof *b.z);
     if (!b.z) return STATUS_NO_MEMORY;
-    run(m->pool, tasks, bend_rows, &b);
+    const bool whole = pool_run_unless_stopped(m->pool, tasks, bend_rows, &b);
     free(b.z);
-    return STATUS_OK;
+    return whole ? STATUS_OK : STATUS_IO;
 }
 
 /* As levels_join, of some rows of a level. */

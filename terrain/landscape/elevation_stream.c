@@ -28,10 +28,6 @@ Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files,
     Import *m = &s->m;
     curve_of_frame(&m->curve, frame);
     Status status = elevation_import_open(m);
-    for (int k = 0; status == STATUS_OK && files->keep_folder && k < m->set.count; k++) {
-        Raster *raster = &m->set.raster[k];
-        if ((double)raster->width * raster->height > keep_px) raster_keep(raster, 1, files->keep_folder);
-    }
     if (status == STATUS_OK) status = elevation_import_choose(m, &s->report);
     if (status == STATUS_OK && !like) elevation_import_plan(m, most_side_streamed);
     if (status == STATUS_OK && like) {
@@ -44,15 +40,46 @@ Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files,
     }
     if (status == STATUS_OK) {
         m->geoid_m = m->geoid.n_m ? geoid_height_m(&m->geoid, frame->origin.lat_rad, frame->origin.lon_rad) : 0;
-        status     = elevation_import_levels(m, false, &s->wide);
     }
+    if (status == STATUS_OK) *out = s;
+    else elevation_stream_close(s);
+    return status;
+}
+
+/* What of a raster is read once: within the horizon, and not known to hold nothing. */
+static double reads_px(const Import *m, const Raster *raster)
+{
+    double px = raster->data_share;
+    for (int c = 0; c < 2; c++) {
+        const double size = c ? raster->height : raster->width;
+        px *= fmin(size, 2 * m->files->horizon_m / raster->posting_m[c] + 2);
+    }
+    return px;
+}
+
+double elevation_stream_reads_px(const ElevationStream *s)
+{
+    double px = 0;
+    for (int k = 0; k < s->m.set.count; k++) px += reads_px(&s->m, &s->m.set.raster[k]);
+    return px;
+}
+
+Status elevation_stream_begin(ElevationStream *s, double keep_octets)
+{
+    Import *m = &s->m;
+    for (int k = 0; s->files.keep_folder && k < m->set.count; k++) {
+        Raster      *raster = &m->set.raster[k];
+        const double octets = fmin(sizeof(float) * reads_px(m, raster), keep_octets);
+        if ((double)raster->width * raster->height <= keep_px) continue;
+        raster_keep(raster, 1, s->files.keep_folder, octets);
+        keep_octets -= octets;
+    }
+    Status status = elevation_import_levels(m, false, &s->wide);
     for (int k = m->level_count - 1; status == STATUS_OK && k >= 1; k--) {
         Field *z = &m->level[k].z;
         status   = view_bend(z->v, m, z, 0, z->ny);
         if (status == STATUS_OK && !m->level[k].outermost) view_join(z->v, z, 0, z->ny, &m->level[k + 1].z);
     }
-    if (status == STATUS_OK) *out = s;
-    else elevation_stream_close(s);
     return status;
 }
 
@@ -158,7 +185,7 @@ Status elevation_stream_heights(ElevationStream *s, int row0, int rows, float *h
     Status     status = view_create(&view, m, &m->level[0].z, row0, rows);
     for (int grid = 0; grid < m->grids && status == STATUS_OK; grid++)
         status = read_patch(&view, &borrowed[grid], s, grid);
-    if (status == STATUS_OK) view_heights(h_m, &view, m);
+    if (status == STATUS_OK) status = view_heights(h_m, &view, m);
     if (status == STATUS_OK && from_file) mark(from_file, &view, m);
     const Patch *patch = &view.patch[m->main];
     if (status == STATUS_OK && counted) {

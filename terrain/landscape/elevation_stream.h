@@ -1,7 +1,7 @@
 /* terrain/landscape/elevation_stream.h: terrain from elevation files, level 0 a strip of rows at a time: the same posts as
  * elevation_import gives, for levels larger than memory.
  *
- * The levels around level 0 are whole in memory. Strips may overlap and come in any order; a strip reads its part of the
+ * Between opening and elevation_stream_begin it is known how much there is to do. The levels around level 0 are whole in memory. Strips may overlap and come in any order; a strip reads its part of the
  * files, and takes 5 octets a pixel of it and 4 a post. */
 #ifndef TERRAIN_LANDSCAPE_ELEVATION_STREAM_H
 #define TERRAIN_LANDSCAPE_ELEVATION_STREAM_H
@@ -18,10 +18,15 @@ typedef struct StreamLevel {
     const float *z_m; /* ENU z [ny][nx]; NULL: level 0 */
 } StreamLevel;
 
-/* like: another stream whose levels this one takes over, for a second set of files over the same ground; NULL: none. The
+/* Which files there are, and the levels that show them; the heights of none. like: another stream whose levels this one takes over, for a second set of files over the same ground; NULL: none. The
  * texts of files and the pool must outlive the stream. Failures are logged. */
 Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files, const LocalFrame *frame,
                              const ElevationStream *like, Pool *pool);
+/* Heights of the levels around level 0, which all that follows needs: reads the files once. keep_octets: of decoded rows
+ * that may lie in files->keep_folder meanwhile. */
+Status elevation_stream_begin(ElevationStream *stream, double keep_octets);
+/* Pixels that this reads, at most. */
+double elevation_stream_reads_px(const ElevationStream *stream);
 void   elevation_stream_close(ElevationStream *stream); /* accepts NULL */
 const RasterSet *elevation_stream_files(const ElevationStream *stream);
 int    elevation_stream_levels(const ElevationStream *stream);

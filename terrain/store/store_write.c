@@ -1,5 +1,6 @@
 /* terrain/store/store_write.c: a terrain store written: the file at its full size, its rasters, and its end. */
 #include "terrain/store/store_write_private.h"
+#include "pitviper_file.h"
 #include "pitviper_output.h"
 
 #include "terrain/landscape/landscape_parts.h"
@@ -16,9 +17,7 @@
 
 void store_run(Pool *pool, int count, PoolTask *task, void *user)
 {
-    if (pool && count > 1) pool_run(pool, count, task, user);
-    else
-        for (int k = 0; k < count; k++) task(user, 0, k);
+    (void)pool_run_unless_stopped(count > 1 ? pool : NULL, count, task, user); /* what is not whole is never sealed */
 }
 
 bool store_source_look(StoreSource *source)
@@ -196,6 +195,14 @@ Status store_writer_create(StoreWriter **out, const char *path, const StorePlan 
     return status;
 }
 
+uint64_t store_plan_octets(const StorePlan *plan)
+{
+    StoreHeader   *h = NULL;
+    const uint64_t octets = make_header(&h, plan) == STATUS_OK && store_layout(h) ? h->file_octets : UINT64_MAX;
+    free(h);
+    return octets;
+}
+
 static void free_writer(StoreWriter *w)
 {
     store_posts_end(w);
@@ -340,12 +347,19 @@ static void sync_folder(const char *path)
 
 static Status seal(StoreWriter *w)
 {
+    enum { synced_at_once = 64 << 20 }; /* octets; a stop waits for so many */
     StoreHeader *h = w->header;
+    if (file_stop_asked()) return STATUS_IO;
     h->content = store_content(h, w->map, w->pool);
     date(h->made);
     h->checksum = store_checksum(h);
     memcpy(w->map, h, (size_t)h->header_octets);
-    if (msync(w->map, w->map_octets, MS_SYNC) != 0 || fsync(w->file) != 0) return io_fault(w, "write");
+    for (size_t at = 0; at < w->map_octets; at += synced_at_once) {
+        const size_t left = w->map_octets - at;
+        if (file_stop_asked()) return STATUS_IO;
+        if (msync((char *)w->map + at, left < synced_at_once ? left : synced_at_once, MS_SYNC) != 0) return io_fault(w, "write");
+    }
+    if (fsync(w->file) != 0) return io_fault(w, "write");
     if (output_rename(w->part, w->path) != 0) {
         log_error("store: cannot rename %s to %s: %s", w->part, w->path, strerror(errno));
         return STATUS_IO;

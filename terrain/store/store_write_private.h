@@ -40,7 +40,7 @@ struct StoreWriter {
     int           surface_rows[cover_windows], canopy_height_rows, canopy_cover_rows;
 };
 
-/* pool_run, or the caller alone. */
+/* Unless a stop is requested. */
 void store_run(Pool *pool, int count, PoolTask *task, void *user);
 
 Status store_posts_begin(StoreWriter *writer, int level, int seam_shift);

@@ -30,22 +30,21 @@ MAY = {
     'sensor': ('dis/*', 'terrain/*', 'entities/*', 'render/*'),
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),
 }
-BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_file.h', 'pitviper_library.h', 'pitviper_output.h',
+BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_confine.h', 'pitviper_file.h', 'pitviper_library.h', 'pitviper_output.h',
                 'pitviper_simd.h')
 
 # Libraries that one file, or one folder, knows: header, places.
 LIBRARIES = (
-    ('GeographicLib/*', 'terrain/*.cpp'), ('gdal*', 'terrain/elevation/raster.c'),
-    ('gdal*', 'terrain/elevation/raster_stated.c'), ('ogr_*', 'terrain/elevation/raster_stated.c'),
-    ('cpl_*', 'terrain/elevation/raster.c'), ('ogr_*', 'terrain/elevation/raster.c'), ('erfa.h', 'terrain/*'),
+    ('GeographicLib/*', 'terrain/*.cpp'), ('gdal*', 'terrain/elevation/reader/*'),
+    ('cpl_*', 'terrain/elevation/reader/*'), ('ogr_*', 'terrain/elevation/reader/*'), ('erfa.h', 'terrain/*'),
     ('OpenImageIO/*', 'sensor/publish/image_module.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
     ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),
     ('jansson.h', 'sensor/publish/*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep_file.c'),
 )
 
-# Files are opened for writing, and renamed, by pitviper_output.c alone, which follows no link; shared memory has names of its own.
+# Files are opened for writing, and renamed, by pitviper_output.c alone, which follows no link; shared memory has names of its own; pitviper_confine.c forbids it.
 WRITES = re.compile(r'\bf(?:re)?open\s*\([^;]*"[wa]|\bO_CREAT\b|(?<![\w.>])(?:creat|rename|truncate)\s*\(|\bjson_dump_file\b')
-WRITERS = ('pitviper_output.c', 'sensor/publish/memory/memory_segment.c')
+WRITERS = ('pitviper_output.c', 'pitviper_confine.c', 'sensor/publish/memory/memory_segment.c')
 
 # Includes from one wing into another that are left out when circles between wings are looked for, with the reason.
 WING_EXCEPTIONS = {}

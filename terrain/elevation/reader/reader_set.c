@@ -1,63 +1,49 @@
-/* terrain/elevation/raster.c: the interface to GDAL. Its messages are captured, not printed: one log line has them,
- * with a remedy. */
-#include "terrain/elevation/raster.h"
+/* terrain/elevation/reader/reader_set.c: sets of files as GDAL has them: what each is, and which share a grid. */
+#include "terrain/elevation/reader/reader_private.h"
 
-#include "terrain/elevation/gdal_library.h"
-#include "terrain/elevation/raster_source.h"
-#include "terrain/elevation/raster_stated.h"
+#include "terrain/elevation/reader/gdal_library.h"
+#include "terrain/elevation/reader/reader_handles.h"
 
 #include <strings.h>
 #include <cpl_conv.h>
 #include <cpl_string.h>
 #include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <gdal.h>
-#include <limits.h>
 #include <ogr_srs_api.h>
-#include <pthread.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* most_side: of a sheet, px; sheets lie within 1e8 px of the first, so that sums stay in an int */
-enum { most_sheets = 4096, path_size = 4096, most_side = 100000000 };
+enum { most_sheets = 4096, path_size = wire_path_size, most_side = 100000000 };
 
-/* Handles of one file, so that threads read at once and GDAL's cache of blocks lasts from one read to the next. */
-enum { handles = 8, most_open_sheets = 48 };
-typedef struct RasterOpen {
-    pthread_mutex_t lock[handles];
-    GDALDatasetH    file[handles];
-} RasterOpen;
-
-static pthread_once_t once = PTHREAD_ONCE_INIT;
-
-static void register_drivers(void)
+Status reader_prepare(void)
 {
     static const GIntBig most_cache = 256 << 20; /* octets; by default a twentieth of the memory */
-    /* A file may name others (VRT): none makes this program ask a server. */
+    const Status status = library_load(&gdal_library);
+    if (status != STATUS_OK) return status;
+    CPLSetErrorHandler(CPLQuietErrorHandler);
+    /* A file may name others (VRT): none makes this process ask a server, which could not be reached. */
     CPLSetConfigOption("GDAL_SKIP", "HTTP,WMS,WMTS,WCS,DAAS,EEDA,EEDAI,PLMosaic,NGW,OGCAPI,STACTA,STACIT,PostGISRaster");
     CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none"); /* of /vsicurl/ and those of its kind */
     GDALAllRegister();
     if (GDALGetCacheMax64() > most_cache) GDALSetCacheMax64(most_cache);
+    return STATUS_OK;
 }
 
-/* GDAL's reason for the last failure, or a default text. */
-static const char *reason(const char *else_text)
+const char *reader_reason(const char *else_text)
 {
     const char *text = CPLGetLastErrorMsg();
     return text && *text ? text : else_text;
 }
 
-static void quiet(void)
+void reader_quiet(void)
 {
     CPLPushErrorHandler(CPLQuietErrorHandler);
-    pthread_once(&once, register_drivers);
     CPLErrorReset();
 }
 
-static void loud(void) { CPLPopErrorHandler(); }
+void reader_loud(void) { CPLPopErrorHandler(); }
 
 /* ---- one sheet ------------------------------------------------------------------------------ */
 
@@ -86,7 +72,7 @@ static OGRSpatialReferenceH crs_of(const RasterChoice *choice, GDALDatasetH file
     OGRSpatialReferenceH named = OSRNewSpatialReference(NULL);
     if (named && OSRSetFromUserInput(named, choice->srs) == OGRERR_NONE) return named;
     log_error("%s: %s: '%s' is no coordinate system that PROJ knows: %s; EPSG:32633 is one", key, path, choice->srs,
-              reason("unknown"));
+              reader_reason("unknown"));
     if (named) OSRDestroySpatialReference(named);
     return NULL;
 }
@@ -160,7 +146,7 @@ static Status describe(Opened *out, GDALDatasetH file, const RasterChoice *choic
     if (!o.crs) return STATUS_BAD_VALUE;
     const int             number = choice->band ? choice->band : 1;
     const GDALRasterBandH band = GDALGetRasterBand(file, number);
-    raster_state(&o.stated, file, number, o.crs);
+    reader_state(&o.stated, file, number, o.crs);
     o.ellipsoidal     = !OSRIsCompound(o.crs) && OSRGetAxesCount(o.crs) == 3;
     o.bytes           = GDALGetRasterDataType(band) == GDT_Byte;
     o.whole           = GDALDataTypeIsInteger(GDALGetRasterDataType(band));
@@ -241,16 +227,17 @@ static Status start_raster(Raster *raster, Opened *o)
     return status;
 }
 
-/* Of a file that names others, such as a VRT, those too; what those name where it matters. */
-static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char *key, int depth)
+/* Of a file that names others, such as a VRT, those too; what those name where nothing else stops it. */
+static bool parts_may_be_opened(GDALDatasetH file, const char *path, const char *owner, const char *key, int depth)
 {
     char **parts = GDALGetFileList(file);
     bool   good = depth < 8;
     for (int k = 0; good && parts && parts[k]; k++) {
         if (strcmp(parts[k], path) == 0) continue;
-        good = raster_file_allowed(parts[k], key);
-        GDALDatasetH part = good && raster_stays_within() ? GDALOpen(parts[k], GA_ReadOnly) : NULL;
-        if (part) good = parts_may_be_opened(part, parts[k], key, depth + 1);
+        good = reader_part_allowed(parts[k], owner, key);
+        const bool   list = strlen(parts[k]) > 4 && strcasecmp(parts[k] + strlen(parts[k]) - 4, ".vrt") == 0;
+        GDALDatasetH part = good && (list || reader_by_name) ? GDALOpen(parts[k], GA_ReadOnly) : NULL;
+        if (part) good = parts_may_be_opened(part, parts[k], owner, key, depth + 1);
         if (part) GDALClose(part);
     }
     CSLDestroy(parts);
@@ -275,23 +262,25 @@ static Status add_sheet(RasterSet *set, const char *name, const RasterChoice *ch
     double at_px[2] = {0, 0};
     char   path[path_size], next[path_size + 80];
     snprintf(path, sizeof path, "%s", name);
-    if (!raster_file_allowed(path, key)) return STATUS_IO;
+    if (!reader_file_allowed(path, key)) return STATUS_IO;
+    reader_works_at(path);
     GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
     if (!file) {
-        log_error("%s: cannot read %s: %s; %s", key, path, reason("not a raster GDAL knows"), remedy(next, path));
+        log_error("%s: cannot read %s: %s; %s", key, path, reader_reason("not a raster GDAL knows"), remedy(next, path));
         return STATUS_IO;
     }
     if (*choice->part || (GDALGetRasterCount(file) < 1 && GDALGetMetadata(file, "SUBDATASETS"))) {
-        const bool chosen = parts_may_be_opened(file, path, key, 0) && choose_part(path, file, choice->part, key);
+        const bool chosen = parts_may_be_opened(file, path, path, key, 0) && choose_part(path, file, choice->part, key);
         GDALClose(file);
         if (!chosen) return STATUS_BAD_VALUE;
         file = GDALOpen(path, GA_ReadOnly);
         if (!file) {
-            log_error("%s: cannot read %s: %s", key, path, reason("not a raster GDAL knows"));
+            log_error("%s: cannot read %s: %s", key, path, reader_reason("not a raster GDAL knows"));
             return STATUS_IO;
         }
     }
-    status = parts_may_be_opened(file, path, key, 0) ? describe(&o, file, choice, path, key) : STATUS_IO;
+    status = parts_may_be_opened(file, path, name, key, 0) ? describe(&o, file, choice, path, key) : STATUS_IO;
+    const double data_px = status == STATUS_OK ? reader_data_px(file) : 0;
     GDALClose(file);
     if (status != STATUS_OK) return status;
 
@@ -311,7 +300,7 @@ static Status add_sheet(RasterSet *set, const char *name, const RasterChoice *ch
         status = start_raster(raster, &o);
         if (status != STATUS_OK) {
             log_error("%s: no way from WGS 84 to the coordinate system of %s: %s; gdalwarp -t_srs EPSG:4326 %s OUT.tif",
-                      key, path, reason("unknown to PROJ"), path);
+                      key, path, reader_reason("unknown to PROJ"), path);
             goto done;
         }
     }
@@ -323,6 +312,7 @@ static Status add_sheet(RasterSet *set, const char *name, const RasterChoice *ch
     raster->sheet = sheets;
     sheets[raster->sheet_count] =
         (RasterSheet){strdup(path), (int)lrint(at_px[0]), (int)lrint(at_px[1]), o.width, o.height, o.choice.band, NULL};
+    raster->data_share += data_px;
     if (o.row_block > raster->row_block) raster->row_block = o.row_block;
     if (sheets[raster->sheet_count].path) raster->sheet_count++;
     else status = STATUS_NO_MEMORY;
@@ -348,6 +338,8 @@ static Status finish_raster(Raster *raster)
     }
     raster->width  = x1 - x0;
     raster->height = y1 - y0;
+    raster->data_share = fmin(raster->data_share / ((double)raster->width * raster->height), 1);
+    raster->sparse     = raster->data_share < 1 - 1e-12;
     double *t = raster->crs_from_px;
     t[0] += x0 * t[1] + y0 * t[2];
     t[3] += x0 * t[4] + y0 * t[5];
@@ -355,7 +347,7 @@ static Status finish_raster(Raster *raster)
 
     const double cx = 0.5 * raster->width, cy = 0.5 * raster->height;
     double x[3] = {cx, cx + 1, cx}, y[3] = {cy, cy, cy + 1}, p_ecef[3][3];
-    raster_earth_from_px(raster, 3, x, y);
+    reader_earth_from_px(raster, 3, x, y);
     for (int k = 0; k < 3; k++) {
         const Geodetic place = {.lat_rad = y[k], .lon_rad = x[k]};
         const Status   status = ecef_from_geodetic(p_ecef[k], NULL, &place);
@@ -387,7 +379,7 @@ static Status add_folder(RasterSet *set, const char *path, const RasterChoice *c
         struct stat about;
         const int   n = snprintf(full, sizeof full, "%s/%s", path, entry->d_name);
         if (n < 0 || n >= (int)sizeof full || stat(full, &about) != 0 || !S_ISREG(about.st_mode)) continue;
-        if (!raster_file_allowed(full, key)) {
+        if (!reader_file_allowed(full, key)) {
             status = STATUS_IO;
             break;
         }
@@ -434,8 +426,6 @@ static void keep_open(RasterSet *set)
         }
 }
 
-static void kept_free(struct RasterKept *kept);
-
 static void close_handles(RasterOpen *open)
 {
     for (int h = 0; open && h < handles; h++) {
@@ -445,32 +435,41 @@ static void close_handles(RasterOpen *open)
     free(open);
 }
 
-Status raster_set_open(RasterSet *out, const char *paths, const char *key)
+bool reader_next_name(char out[wire_path_size], const char **at, bool *long_name)
+{
+    while (**at) {
+        const size_t length = strcspn(*at, ",");
+        size_t       skip = strspn(*at, " "), end = length;
+        if (skip > length) skip = length;
+        while (end > skip && (*at)[end - 1] == ' ') end--;
+        const int n = snprintf(out, wire_path_size, "%.*s", (int)(end - skip), *at + skip);
+        *at += length + ((*at)[length] == ',');
+        *long_name |= n >= wire_path_size;
+        if (n > 0) return n < wire_path_size;
+    }
+    return false;
+}
+
+Status reader_set_open(RasterSet *out, const char *paths, const char *key)
 {
     RasterSet set = {0};
-    Status    status = library_load(&gdal_library);
-    if (status != STATUS_OK) return status;
-    quiet();
-    for (const char *at = paths; status == STATUS_OK && *at;) {
-        char         path[path_size], name[path_size];
+    Status    status = STATUS_OK;
+    char      path[path_size];
+    bool      too_long = false;
+    reader_quiet();
+    for (const char *at = paths; status == STATUS_OK && reader_next_name(path, &at, &too_long);) {
+        struct stat  about;
         RasterChoice choice;
         const char  *why = NULL;
-        struct stat  about;
-        const size_t length = strcspn(at, ",");
-        size_t       skip = strspn(at, " "), end = length;
-        if (skip > length) skip = length;
-        while (end > skip && at[end - 1] == ' ') end--;
-        const int n = snprintf(path, sizeof path, "%.*s", (int)(end - skip), at + skip);
-        at += length + (at[length] == ',');
-        if (n == 0) continue;
+        char         name[path_size];
         memcpy(name, path, sizeof name);
-        if (n < 0 || n >= (int)sizeof path) status = STATUS_BAD_VALUE;
-        else if (!raster_choice_take(&choice, &why, path)) {
+        if (!raster_choice_take(&choice, &why, path)) {
             log_error("%s: %s: %s", key, name, why);
             status = STATUS_BAD_VALUE;
         } else if (stat(path, &about) == 0 && S_ISDIR(about.st_mode)) status = add_folder(&set, path, &choice, key);
         else status = add_sheet(&set, path, &choice, key);
     }
+    if (too_long && status == STATUS_OK) status = STATUS_BAD_VALUE;
     for (int k = 0; status == STATUS_OK && k < set.count; k++) {
         status = finish_raster(&set.raster[k]);
         if (status != STATUS_OK)
@@ -482,13 +481,13 @@ Status raster_set_open(RasterSet *out, const char *paths, const char *key)
     }
     if (status == STATUS_OK) qsort(set.raster, (size_t)set.count, sizeof *set.raster, finer_first);
     if (status == STATUS_OK) keep_open(&set);
-    loud();
+    reader_loud();
     if (status == STATUS_OK) *out = set;
-    else raster_set_close(&set);
+    else reader_set_close(&set);
     return status;
 }
 
-void raster_set_close(RasterSet *set)
+void reader_set_close(RasterSet *set)
 {
     for (int k = 0; k < set->count; k++) {
         Raster *raster = &set->raster[k];
@@ -497,7 +496,6 @@ void raster_set_close(RasterSet *set)
             free(raster->sheet[n].path);
         }
         free(raster->sheet);
-        kept_free(raster->kept);
         if (raster->crs_from_earth) OCTDestroyCoordinateTransformation(raster->crs_from_earth);
         if (raster->earth_from_crs) OCTDestroyCoordinateTransformation(raster->earth_from_crs);
         if (raster->crs) OSRDestroySpatialReference(raster->crs);
@@ -506,343 +504,3 @@ void raster_set_close(RasterSet *set)
     *set = (RasterSet){0};
 }
 
-/* ---- places --------------------------------------------------------------------------------- */
-
-static void through(const double t[6], int count, double *x, double *y)
-{
-    for (int k = 0; k < count; k++) {
-        const double a = x[k], b = y[k];
-        const bool   ok = isfinite(a) && isfinite(b);
-        x[k] = ok ? t[0] + a * t[1] + b * t[2] : NAN;
-        y[k] = ok ? t[3] + a * t[4] + b * t[5] : NAN;
-    }
-}
-
-void raster_px_from_earth(const Raster *raster, int count, double *lon_to_x, double *lat_to_y)
-{
-    for (int k = 0; k < count; k++) {
-        lon_to_x[k] /= rad_per_deg;
-        lat_to_y[k] /= rad_per_deg;
-    }
-    quiet();
-    OCTTransform(raster->crs_from_earth, count, lon_to_x, lat_to_y, NULL);
-    loud();
-    through(raster->px_from_crs, count, lon_to_x, lat_to_y);
-    if (raster->whole_turn_px > 0) /* the full turn of longitude of the raster */
-        for (int k = 0; k < count; k++)
-            lon_to_x[k] -= raster->whole_turn_px * rint((lon_to_x[k] - 0.5 * raster->width) / raster->whole_turn_px);
-}
-
-void raster_earth_from_px(const Raster *raster, int count, double *x_to_lon, double *y_to_lat)
-{
-    through(raster->crs_from_px, count, x_to_lon, y_to_lat);
-    quiet();
-    OCTTransform(raster->earth_from_crs, count, x_to_lon, y_to_lat, NULL);
-    loud();
-    for (int k = 0; k < count; k++) {
-        const bool ok = isfinite(x_to_lon[k]) && isfinite(y_to_lat[k]) && fabs(y_to_lat[k]) <= 90;
-        x_to_lon[k] = ok ? x_to_lon[k] * rad_per_deg : NAN;
-        y_to_lat[k] = ok ? y_to_lat[k] * rad_per_deg : NAN;
-    }
-}
-
-/* ---- pixels --------------------------------------------------------------------------------- */
-
-/* A sheet's handle for a window that begins at row y, locked; NULL, logged: the file cannot be read. */
-static GDALDatasetH sheet_open(const RasterSheet *s, int row_block, int y, const char *key)
-{
-    const int    h = y / (row_block > 0 ? row_block : 1) % handles;
-    GDALDatasetH file = NULL;
-    if (s->open) {
-        pthread_mutex_lock(&s->open->lock[h]);
-        file = s->open->file[h];
-    }
-    if (!file) file = GDALOpen(s->path, GA_ReadOnly);
-    if (s->open) s->open->file[h] = file;
-    if (file && GDALGetRasterXSize(file) == s->width && GDALGetRasterYSize(file) == s->height) return file;
-    log_error("%s: %s: %s", key, s->path, file ? "it changed while it was read" : reason("it cannot be opened"));
-    if (s->open) {
-        s->open->file[h] = NULL;
-        pthread_mutex_unlock(&s->open->lock[h]);
-    }
-    if (file) GDALClose(file);
-    return NULL;
-}
-
-static void sheet_done(const RasterSheet *s, int row_block, int y, GDALDatasetH file)
-{
-    if (!s->open) GDALClose(file);
-    else pthread_mutex_unlock(&s->open->lock[y / (row_block > 0 ? row_block : 1) % handles]);
-}
-
-/* What a sheet and a window have in common, px of the raster. False: nothing. */
-static bool common_part(int part[4], const RasterSheet *s, int x0, int y0, int width, int height)
-{
-    part[0] = x0 > s->x0 ? x0 : s->x0;
-    part[1] = y0 > s->y0 ? y0 : s->y0;
-    part[2] = x0 + width < s->x0 + s->width ? x0 + width : s->x0 + s->width;
-    part[3] = y0 + height < s->y0 + s->height ? y0 + height : s->y0 + s->height;
-    return part[0] < part[2] && part[1] < part[3];
-}
-
-/* ---- decoded rows ---------------------------------------------------------------------------- */
-
-/* A file without a name: the raster's rows in float, those that have been read. */
-typedef struct RasterKept {
-    int           file;
-    int           band;
-    atomic_uchar *has; /* [height] */
-} RasterKept;
-
-void raster_keep(Raster *raster, int band, const char *folder)
-{
-    RasterKept *kept = calloc(1, sizeof *kept);
-    if (!kept || raster->kept) {
-        free(kept);
-        return;
-    }
-    kept->band = band;
-    kept->has  = calloc((size_t)raster->height, sizeof *kept->has);
-    kept->file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (!kept->has || kept->file < 0) { /* no such file system: read twice */
-        if (kept->file >= 0) close(kept->file);
-        free(kept->has);
-        free(kept);
-        return;
-    }
-    raster->kept = kept;
-}
-
-static void kept_free(RasterKept *kept)
-{
-    if (!kept) return;
-    close(kept->file);
-    free(kept->has);
-    free(kept);
-}
-
-static bool whole_io(bool write, int file, float *at, size_t count, size_t offset)
-{
-    char  *octets = (char *)at;
-    size_t left = count * sizeof *at;
-    off_t  where = (off_t)(offset * sizeof *at);
-    while (left > 0) {
-        const ssize_t n = write ? pwrite(file, octets, left, where) : pread(file, octets, left, where);
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return false;
-        octets += n;
-        where += n;
-        left -= (size_t)n;
-    }
-    return true;
-}
-
-/* Full rows of the raster into the file; a full disk only costs another reading. */
-static void keep_rows(const Raster *raster, float *rows, int y0, int height)
-{
-    RasterKept *kept = raster->kept;
-    for (int y = y0; y < y0 + height; y++)
-        if (!atomic_load(&kept->has[y]) && whole_io(true, kept->file, rows + (size_t)(y - y0) * (size_t)raster->width,
-                                                   (size_t)raster->width, (size_t)y * (size_t)raster->width))
-            atomic_store(&kept->has[y], 1);
-}
-
-static bool read_kept(float *out, const Raster *raster, int x0, int y0, int width, int height)
-{
-    const RasterKept *kept = raster->kept;
-    if (x0 < 0 || y0 < 0 || x0 + width > raster->width || y0 + height > raster->height) return false;
-    for (int y = y0; y < y0 + height; y++)
-        if (!atomic_load(&kept->has[y])) return false;
-    if (x0 == 0 && width == raster->width)
-        return whole_io(false, kept->file, out, (size_t)width * (size_t)height, (size_t)y0 * (size_t)width);
-    for (int y = y0; y < y0 + height; y++)
-        if (!whole_io(false, kept->file, out + (size_t)(y - y0) * (size_t)width, (size_t)width,
-                      (size_t)y * (size_t)raster->width + (size_t)x0))
-            return false;
-    return true;
-}
-
-static Status damaged(const RasterSheet *s, const char *key)
-{
-    log_error("%s: %s is damaged: %s; fetch it again, or leave it out", key, s->path, reason("rows are missing"));
-    return STATUS_IO;
-}
-
-/* One sheet's part of the window, over what is there already: the first sheet that has a value wins. */
-static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s, bool first, int number, int x0, int y0,
-                         int width, int height, const char *key)
-{
-    int part[4];
-    if (!common_part(part, s, x0, y0, width, height)) return STATUS_OK;
-    const int w = part[2] - part[0], h = part[3] - part[1];
-    const int strip = h < 256 ? h : 256;
-
-    Status         status = STATUS_IO;
-    float         *value = NULL;
-    unsigned char *mask = NULL;
-    GDALDatasetH   file = sheet_open(s, raster->row_block, part[1], key);
-    if (!file) return status;
-    GDALRasterBandH band = GDALGetRasterBand(file, s->band ? s->band : number);
-    if (!band) {
-        log_error("%s: %s: %s", key, s->path, reason("it has no such band"));
-        goto done;
-    }
-    const bool masked = !(GDALGetMaskFlags(band) & GMF_ALL_VALID);
-    int        has_scale = 0, has_offset = 0;
-    double     scale = GDALGetRasterScale(band, &has_scale), offset = GDALGetRasterOffset(band, &has_offset);
-    if (!has_scale || !(scale != 0) || !isfinite(scale)) scale = 1;
-    if (!has_offset || !isfinite(offset)) offset = 0;
-    const bool  more = masked || raster->choice.has_void || isfinite(raster->low) || isfinite(raster->high);
-    const float hole = raster->choice.has_void ? (float)raster->choice.void_value : NAN;
-    if (first && !more && scale == 1 && offset == 0) { /* nothing else is there: without a copy */
-        float *to = out + (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
-        status = GDALRasterIO(band, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, to, w, h, GDT_Float32, 0,
-                              width * (int)sizeof *to) == CE_None ? STATUS_OK : damaged(s, key);
-        goto done;
-    }
-    status = STATUS_NO_MEMORY;
-    value  = malloc((size_t)w * (size_t)strip * sizeof *value);
-    mask   = malloc((size_t)w * (size_t)strip);
-    if (!value || !mask) goto done;
-    for (int y = part[1]; y < part[3]; y += strip) {
-        const int rows = part[3] - y < strip ? part[3] - y : strip;
-        if (GDALRasterIO(band, GF_Read, part[0] - s->x0, y - s->y0, w, rows, value, w, rows, GDT_Float32, 0, 0) !=
-                CE_None ||
-            (masked && GDALRasterIO(GDALGetMaskBand(band), GF_Read, part[0] - s->x0, y - s->y0, w, rows, mask, w, rows,
-                                    GDT_Byte, 0, 0) != CE_None)) {
-            status = damaged(s, key);
-            goto done;
-        }
-        for (int r = 0; r < rows; r++) {
-            float *to = out + (size_t)(y + r - y0) * (size_t)width + (size_t)(part[0] - x0);
-            const float         *from = value + (size_t)r * (size_t)w;
-            const unsigned char *valid = mask + (size_t)r * (size_t)w;
-            if (!more)
-                for (int i = 0; i < w; i++) to[i] = isnan(to[i]) ? (float)(from[i] * scale + offset) : to[i];
-            for (int i = 0; more && i < w; i++) {
-                const float z = (float)(from[i] * scale + offset);
-                const bool  good = (!masked || valid[i]) && from[i] != hole && z >= raster->low && z <= raster->high;
-                to[i] = isnan(to[i]) && good ? z : to[i];
-            }
-        }
-    }
-    status = STATUS_OK;
-done:
-    sheet_done(s, raster->row_block, part[1], file);
-    free(value);
-    free(mask);
-    return status;
-}
-
-static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, const RasterSheet *s, int first,
-                               int bands, int x0, int y0, int width, int height, const char *key)
-{
-    int part[4];
-    if (!common_part(part, s, x0, y0, width, height)) return STATUS_OK;
-    const int      w = part[2] - part[0], h = part[3] - part[1];
-    const size_t   count = (size_t)w * (size_t)h;
-    uint8_t       *value = NULL, *mask = NULL;
-    Status         status = STATUS_IO;
-    GDALDatasetH   file = sheet_open(s, raster->row_block, part[1], key);
-    if (!file) return status;
-    int band[4] = {0};
-    for (int b = 0; b < bands; b++) band[b] = s->band && bands == 1 ? s->band : first + b;
-    const GDALRasterBandH of = GDALGetRasterBand(file, band[0]);
-    if (!of || !GDALGetRasterBand(file, band[bands - 1])) {
-        log_error("%s: %s: %s", key, s->path, reason("it has no such band"));
-        goto done;
-    }
-    const bool masked = !(GDALGetMaskFlags(of) & GMF_ALL_VALID);
-    if (raster->sheet_count == 1 && !masked) { /* nothing else is there: without a copy */
-        const size_t at = (size_t)(part[1] - y0) * (size_t)width + (size_t)(part[0] - x0);
-        const CPLErr error = GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h,
-                                                 out + at * (size_t)bands, w, h, GDT_Byte, bands, band, bands,
-                                                 bands * width, 1);
-        status = error == CE_None ? STATUS_OK : damaged(s, key);
-        for (int r = 0; r < h; r++) memset(valid + at + (size_t)r * (size_t)width, 255, (size_t)w);
-        goto done;
-    }
-    status = STATUS_NO_MEMORY;
-    value  = malloc(count * (size_t)bands);
-    mask   = malloc(count);
-    if (!value || !mask) goto done;
-    status = STATUS_IO;
-    if (GDALDatasetRasterIO(file, GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, value, w, h, GDT_Byte, bands, band,
-                            bands, bands * w, 1) != CE_None ||
-        (masked && GDALRasterIO(GDALGetMaskBand(of), GF_Read, part[0] - s->x0, part[1] - s->y0, w, h, mask, w, h,
-                                GDT_Byte, 0, 0) != CE_None)) {
-        status = damaged(s, key);
-        goto done;
-    }
-    for (int r = 0; r < h; r++) {
-        const size_t at = (size_t)(part[1] + r - y0) * (size_t)width + (size_t)(part[0] - x0);
-        const size_t from = (size_t)r * (size_t)w;
-        for (size_t i = 0; i < (size_t)w; i++) {
-            if (valid[at + i] || (masked && !mask[from + i])) continue;
-            valid[at + i] = 255;
-            for (int b = 0; b < bands; b++)
-                out[(at + i) * (size_t)bands + (size_t)b] = value[(from + i) * (size_t)bands + (size_t)b];
-        }
-    }
-    status = STATUS_OK;
-done:
-    sheet_done(s, raster->row_block, part[1], file);
-    free(value);
-    free(mask);
-    return status;
-}
-
-void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, const LocalFrame *frame, double inset_px)
-{
-    enum { side = 16 };
-    low_m[0] = low_m[1] = INFINITY;
-    high_m[0] = high_m[1] = -INFINITY;
-    const double w = raster->width - 2 * inset_px, h = raster->height - 2 * inset_px;
-    for (int edge = 0; edge < 4; edge++)
-        for (int k = 0; k <= side; k++) {
-            const double along = (double)k / side;
-            double       x = inset_px + (edge < 2 ? along * w : edge == 2 ? 0 : w);
-            double       y = inset_px + (edge < 2 ? edge ? h : 0 : along * h);
-            double       p_ecef[3], p_enu[3];
-            raster_earth_from_px(raster, 1, &x, &y);
-            const Geodetic place = {.lat_rad = y, .lon_rad = x};
-            if (ecef_from_geodetic(p_ecef, NULL, &place) != STATUS_OK) continue;
-            enu_from_ecef(p_enu, frame, p_ecef);
-            for (int c = 0; c < 2; c++) {
-                low_m[c]  = fmin(low_m[c], p_enu[c]);
-                high_m[c] = fmax(high_m[c], p_enu[c]);
-            }
-        }
-}
-
-Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key)
-{
-    Status       status = STATUS_OK;
-    const size_t count = (size_t)width * (size_t)height;
-    const bool   keeps = raster->kept && ((RasterKept *)raster->kept)->band == band;
-    if (keeps && read_kept(out, raster, x0, y0, width, height)) return STATUS_OK;
-    const RasterSheet *only = raster->sheet_count == 1 ? &raster->sheet[0] : NULL;
-    for (size_t k = 0; k < count; k++) out[k] = NAN;
-    quiet();
-    for (int k = 0; status == STATUS_OK && k < raster->sheet_count; k++)
-        status = read_sheet(out, raster, &raster->sheet[k], only != NULL, band, x0, y0, width, height, key);
-    loud();
-    if (status == STATUS_OK && keeps && x0 == 0 && width == raster->width && y0 >= 0 && y0 + height <= raster->height)
-        keep_rows(raster, out, y0, height);
-    return status;
-}
-
-Status raster_read_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, int first_band, int bands, int x0, int y0,
-                         int width, int height, const char *key)
-{
-    Status       status = STATUS_OK;
-    const size_t count = (size_t)width * (size_t)height;
-    if (bands < 1 || bands > 4) return STATUS_BAD_VALUE;
-    memset(out, 0, count * (size_t)bands);
-    memset(valid, 0, count);
-    quiet();
-    for (int k = 0; status == STATUS_OK && k < raster->sheet_count; k++)
-        status = read_sheet_bytes(out, valid, raster, &raster->sheet[k], first_band, bands, x0, y0, width, height, key);
-    loud();
-    return status;
-}

@@ -1,5 +1,5 @@
-/* terrain/elevation/raster_stated.c: type, unit, direction and coordinate system of a band, as its file has them. */
-#include "terrain/elevation/raster_stated.h"
+/* terrain/elevation/reader/reader_stated.c: type, unit, direction and coordinate system of a band, as its file has them. */
+#include "terrain/elevation/reader/reader_private.h"
 
 #include <gdal.h>
 #include <ogr_srs_api.h>
@@ -41,7 +41,7 @@ static bool grows_down(GDALRasterBandH band)
     return positive && strcasecmp(positive, "down") == 0;
 }
 
-void raster_state(RasterStated *out, void *file, int number, void *crs)
+void reader_state(RasterStated *out, void *file, int number, void *crs)
 {
     RasterStated          s = {0};
     const GDALRasterBandH band = GDALGetRasterBand(file, number);
