@@ -28,8 +28,10 @@ static void print_source(const ElevationSurvey *s)
               r->stated.type);
     if (octets_of(r) > 0) log_print("%.1f kB; ", 1e-3 * octets_of(r)); /* none of a file in an archive */
     log_print("%s (--srs)\n", r->stated.crs);
-    log_print("  heights %.1f .. %.1f m%s; unit %s, %s (--unit); above %s, %s (--vertical)%s\n", s->low_m, s->high_m,
-              s->whole ? "" : " where it was looked at", unit, unit_from, datum, datum_from,
+    if (isfinite(s->low_m)) log_print("  heights %.1f .. %.1f m", s->low_m, s->high_m);
+    else log_print("  no heights");
+    log_print("%s; unit %s, %s (--unit); above %s, %s (--vertical)%s\n", s->whole ? "" : " where it was looked at", unit,
+              unit_from, datum, datum_from,
               r->metres_per_unit < 0 ? "; depths, turned round (FILE@up)" : "");
     if (s->voids + s->outside + s->suspect_posts > 0)
         log_print("  voids %.2g %%%s\n", 100 * (s->voids + s->outside + s->suspect_posts) / s->posts,

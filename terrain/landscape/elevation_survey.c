@@ -196,6 +196,11 @@ static void warn_of_voids(const ElevationSurvey *s, const char *key)
         const size_t used = strlen(numbers);
         snprintf(numbers + used, sizeof numbers - used, "%s%.7g", k ? ", " : "", s->suspect[k]);
     }
+    if (!(s->gap_m > 0)) {
+        log_warn("%s: %s holds %s alone: taken for voids that no tag declares; %s@nodata=none reads them as heights", key, path,
+                 numbers, path);
+        return;
+    }
     log_warn("%s: %s: %s%.0f posts of %s%s lie %.0f m below all others: taken for voids that no tag declares, and "
              "filled; %s@nodata=%.7g says so too, @nodata=none reads them as heights (terrain import: --nodata)",
              key, path, s->whole ? "" : "at least ", s->suspect_posts, numbers, s->suspects > 3 ? " ..." : "", s->gap_m,
@@ -206,7 +211,8 @@ static Status judge_counts(ElevationSurvey *s, Raster *raster, const Counts *c, 
 {
     const double unit_m = raster->metres_per_unit, heights = c->posts - c->voids - c->outside;
     const char  *path = path_of(raster);
-    if (c->outside > heights) {
+    const bool constant = c->least_out_m == c->most_out_m; /* one number, however often, is a void beside heights */
+    if (c->outside > heights && !(constant && heights >= least_posts)) {
         log_error("%s: %s: numbers of %.6g .. %.6g, which are no heights on Earth in %s; say what they are: %s@cm, %s@dm "
                   "(terrain import: --unit), or declare its voids: %s@nodata=%.7g", key, path,
                   fmin(c->least_out_m / unit_m, c->most_out_m / unit_m),
@@ -223,16 +229,17 @@ static Status judge_counts(ElevationSurvey *s, Raster *raster, const Counts *c, 
     if (n > 0 && !s->whole && !c->beside)
         for (int k = 0; k < n; k++)
             if (!is_usual(c->lowest.h_m[k] / unit_m)) n = 0;
-    s->low_m  = heights > 0 ? c->lowest.h_m[n] : NAN;
-    s->high_m = heights > 0 ? c->high_m : NAN;
-    if (n == 0) return STATUS_OK;
-    s->suspects = n;
-    s->gap_m    = c->lowest.h_m[n] - c->lowest.h_m[n - 1];
-    for (int k = 0; k < n; k++) {
+    const bool empty = n == 0 && !raster->choice.no_void && c->lowest.count == 1 && is_usual(c->lowest.h_m[0] / unit_m);
+    s->low_m  = heights > 0 && !empty ? c->lowest.h_m[n] : NAN;
+    s->high_m = heights > 0 && !empty ? c->high_m : NAN;
+    if (n == 0 && !empty) return STATUS_OK;
+    s->suspects = n + empty;
+    s->gap_m    = empty ? 0 : c->lowest.h_m[n] - c->lowest.h_m[n - 1];
+    for (int k = 0; k < s->suspects; k++) {
         s->suspect[k] = c->lowest.h_m[k] / unit_m;
         s->suspect_posts += c->lowest.posts[k];
     }
-    const double limit = 0.5 * (c->lowest.h_m[n] + c->lowest.h_m[n - 1]) / unit_m;
+    const double limit = (empty ? c->lowest.h_m[0] + 1 : 0.5 * (c->lowest.h_m[n] + c->lowest.h_m[n - 1])) / unit_m;
     if (unit_m > 0) raster->low = limit;
     else raster->high = limit;
     warn_of_voids(s, key);

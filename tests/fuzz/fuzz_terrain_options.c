@@ -10,11 +10,12 @@ const int fuzz_rounds = 20000;
 
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
-    static const char *const seed[2] = {
+    static const char *const seed[3] = {
         "elevation /data/a.tif,/data/b.tif@ellipsoid\ncover /data/c.tif:4\ncover-table nlcd\norigin 47.5,-122\nsize 12x16\n",
         "surface /data/dsm\nphoto /data/rgb.tif\nvertical geoid\nspacing 0.5\nhorizon 50\ncanopy-height /data/lcp.tif:6\n",
+        "elevation /data/a.nc@part=z@down@nodata=-9999@srs=EPSG:32633+5773\nunit us-ft\nsrs EPSG:6529\nnodata none\n",
     };
-    return fuzz_seed_text(out, seed[index % 2]);
+    return fuzz_seed_text(out, seed[index % 3]);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -30,6 +30,7 @@ static double hole_999(int i, int j) { return in_hole(i, j) ? -999 : hills(i, j)
 static double hole_0(int i, int j) { return in_hole(i, j) ? 0 : 200 + hills(i, j); }
 static double hole_two(int i, int j) { return in_hole(i, j) ? i < 60 ? -9999 : -9998 : hills(i, j); }
 static double hole_low(int i, int j) { return in_hole(i, j) ? -32768 : hills(i, j); }
+static double mostly_low(int i, int j) { return in_hole(i, j) || i > 155 || i < 50 ? -32767 : hills(i, j); }
 static double hole_high(int i, int j) { return in_hole(i, j) ? 1e20 : hills(i, j); }
 static double hole_depth(int i, int j) { return in_hole(i, j) ? 9999 : -hills(i, j); }
 static double depths(int i, int j) { return -hills(i, j); }
@@ -145,6 +146,7 @@ static void numbers_are_read_as_what_they_are(void **state)
         {"0 below a plateau", {.type = "Int16", .z = hole_0}, "posts of 0", NAN, 200},
         {"-9999 and -9998", {.type = "Float32", .z = hole_two}, "-9999, -9998", NAN, 0},
         {"-32768", {.type = "Int16", .z = hole_low}, "no heights on Earth", NAN, 0},
+        {"-32767 on half of it and more", {.type = "Int16", .z = mostly_low}, "no heights on Earth", NAN, 0},
         {"1e20", {.type = "Float32", .z = hole_high}, "no heights on Earth", NAN, 0},
         {"named by the user", {.type = "Int16", .z = hole_9999, .choice = "@nodata=-9999"}, NULL, NAN, 0},
         {"the user says it is none", {.type = "Int16", .z = hole_9999, .choice = "@nodata=none"}, NULL, -9999, 0},
@@ -175,6 +177,23 @@ static void numbers_are_read_as_what_they_are(void **state)
         if (isnan(cases[k].hole_m) ? !(hole > base + 230 && hole < base + 370) : !(fabs(hole - cases[k].hole_m) < 1))
             fail_msg("%s: %g m in the hole", cases[k].what, hole);
     }
+}
+
+static double nothing(int i, int j) { return (void)i, (void)j, -9999; }
+
+/* A tile without a height beside one that has them: the other is used; alone it is an error. */
+static void a_tile_of_voids_alone_is_none(void **state)
+{
+    (void)state;
+    char            void_path[temp_name_size + 64], path[temp_name_size + 64], both[2 * temp_name_size + 200];
+    ElevationReport report;
+    const File      f = {.type = "Int16", .z = nothing}, g = {.type = "Float32", .z = plain};
+    write_file(void_path, "nothing", &f, 0);
+    write_file(path, "something", &g, 0);
+    CHECK(isnan(ground_at(void_path, 100, 80, &report)) && strstr(heard_all, "no post"));
+    snprintf(both, sizeof both, "%s,%s", void_path, path);
+    CHECK_NEAR(ground_at(both, 100, 80, &report), hills(100, 80), 0.1);
+    CHECK(strstr(heard_all, "-9999 alone") != NULL);
 }
 
 static void a_trench_is_no_void(void **state)
@@ -404,6 +423,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers_are_read_as_what_they_are),
+        cmocka_unit_test(a_tile_of_voids_alone_is_none),
         cmocka_unit_test(a_trench_is_no_void),
         cmocka_unit_test(a_void_of_one_sheet_does_not_hide_another),
         cmocka_unit_test(what_cannot_be_heights_is_refused_by_name),
