@@ -23,7 +23,9 @@ Status raster_child_ask(RasterChild *child, WireChannel *channel, WireReply *rep
 /* A reply cannot be what a reader sends: logged once, and the reader is ended. STATUS_BAD_VALUE. */
 Status raster_child_distrust(RasterChild *child, WireChannel *channel);
 
-/* Seconds without a sign of life after which a reader is given up; 0: as at the start, 120. For tests. */
+/* For tests. Seconds without a sign of life after which a reader is given up; 0: as at the start, 120. Another program in the
+ * place of pitviper-rasters, NULL: that again; no set may be open. */
 void   raster_child_patience(double s);
+void   raster_child_program(const char *path);
 
 #endif
