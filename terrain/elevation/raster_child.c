@@ -1,7 +1,6 @@
 /* terrain/elevation/raster_child.c: the process that reads rasters, seen from the program. */
 #include "terrain/elevation/raster_child.h"
 
-#include "pitviper_file.h"
 #include "pitviper_library.h"
 
 #include <errno.h>
@@ -341,7 +340,7 @@ Status raster_child_ask(RasterChild *child, WireChannel *channel, WireReply *rep
             give_up(child, channel, FAULT_ENDED);
             return STATUS_IO;
         }
-        if (file_stop_asked()) {
+        if (work_stop_asked()) {
             give_up(child, channel, FAULT_STOP);
             return STATUS_IO;
         }

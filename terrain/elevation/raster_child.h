@@ -17,7 +17,7 @@ void   raster_child_stop(RasterChild *child); /* accepts NULL; no request may be
 WireChannel *raster_child_take(RasterChild *child);
 void         raster_child_give(RasterChild *child, WireChannel *channel);
 /* The channel's request, answered: what the reader had to say is logged, and the reply copied. STATUS_IO: the reader has
- * ended or did nothing for too long, which is logged once and ends it for good, or a stop was requested (pitviper_file.h).
+ * ended or did nothing for too long, which is logged once and ends it for good, or a stop was asked for (work_stop_when).
  * Status of the reply itself: reply->status, one of Status. */
 Status raster_child_ask(RasterChild *child, WireChannel *channel, WireReply *reply);
 /* A reply cannot be what a reader sends: logged once, and the reader is ended. STATUS_BAD_VALUE. */

@@ -587,6 +587,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     const char  *fault = terrain_options_fault(options);
     char        *sources = strdup(raster_sources());
     if (*options->sources_from) raster_sources_from(options->sources_from);
+    if (progress) work_stop_when(file_stop_asked);
     Status       status = fault ? STATUS_BAD_VALUE : STATUS_OK;
     if (fault) log_error("%s: %s", module, fault);
     if (status == STATUS_OK && !go_on(m, "levels around", 0, true)) status = STATUS_IO;
@@ -611,6 +612,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     free(m->options);
     building_count_free(&m->buildings);
     if (sources) raster_sources_from(sources);
+    work_stop_when(NULL);
     free(sources);
     free(m);
     return status;

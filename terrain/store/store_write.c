@@ -1,6 +1,5 @@
 /* terrain/store/store_write.c: a terrain store written: the file at its full size, its rasters, and its end. */
 #include "terrain/store/store_write_private.h"
-#include "pitviper_file.h"
 #include "pitviper_output.h"
 
 #include "terrain/landscape/landscape_parts.h"
@@ -369,14 +368,14 @@ static Status seal(StoreWriter *w)
 {
     enum { synced_at_once = 64 << 20 }; /* octets; a stop waits for so many */
     StoreHeader *h = w->header;
-    if (file_stop_asked()) return STATUS_IO;
+    if (work_stop_asked()) return STATUS_IO;
     h->content = store_content(h, w->map, w->pool);
     date(h->made);
     h->checksum = store_checksum(h);
     memcpy(w->map, h, (size_t)h->header_octets);
     for (size_t at = 0; at < w->map_octets; at += synced_at_once) {
         const size_t left = w->map_octets - at;
-        if (file_stop_asked()) return STATUS_IO;
+        if (work_stop_asked()) return STATUS_IO;
         if (msync((char *)w->map + at, left < synced_at_once ? left : synced_at_once, MS_SYNC) != 0) return io_fault(w, "write");
     }
     if (fsync(w->file) != 0) return io_fault(w, "write");
