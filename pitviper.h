@@ -85,8 +85,11 @@ void   pool_destroy(Pool *pool);
 int    pool_threads(const Pool *pool);
 /* Runs task(user, worker, i) once for each i, in any order, and returns when all are done. */
 void   pool_run(Pool *pool, int count, PoolTask *task, void *user);
-/* The same, by the caller alone without a pool (NULL), and for work of minutes: once a stop was requested (file_stop_asked) tasks
- * that have not begun are left out. False: some may have been. */
+/* Work of minutes that a stop ends where it is, such as an import: how it learns of one, from now on. NULL: nothing ends it. */
+void   work_stop_when(bool (*asked)(void));
+bool   work_stop_asked(void);
+/* pool_run, or the caller alone without a pool (NULL); once a stop is asked for tasks that have not begun are left out. False:
+ * some may have been. */
 bool   pool_run_unless_stopped(Pool *pool, int count, PoolTask *task, void *user);
 /* Flush-to-zero and denormals-are-zero for the calling thread; main and the workers call it once. */
 void   thread_flush_denormals(void);

@@ -1,10 +1,10 @@
 /* pitviper_threads.c: one pool. Tasks are handed out by a counter; results must not depend on which thread ran which
  * task. */
 #include "pitviper.h"
-#include "pitviper_file.h"
 
 #include <pthread.h>
 #include <sched.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <time.h>
 #include <xmmintrin.h>
@@ -128,6 +128,16 @@ void pool_run(Pool *pool, int count, PoolTask *task, void *user)
     pthread_mutex_unlock(&pool->lock);
 }
 
+static bool (*_Atomic work_stop)(void);
+
+void work_stop_when(bool (*asked)(void)) { atomic_store(&work_stop, asked); }
+
+bool work_stop_asked(void)
+{
+    bool (*asked)(void) = atomic_load(&work_stop);
+    return asked && asked();
+}
+
 typedef struct Stoppable {
     PoolTask *task;
     void     *user;
@@ -136,7 +146,7 @@ typedef struct Stoppable {
 static void unless_stopped(void *user, int worker, int task)
 {
     const Stoppable *s = user;
-    if (!file_stop_asked()) s->task(s->user, worker, task);
+    if (!work_stop_asked()) s->task(s->user, worker, task);
 }
 
 bool pool_run_unless_stopped(Pool *pool, int count, PoolTask *task, void *user)
@@ -145,7 +155,7 @@ bool pool_run_unless_stopped(Pool *pool, int count, PoolTask *task, void *user)
     if (pool) pool_run(pool, count, unless_stopped, &s);
     else
         for (int n = 0; n < count; n++) unless_stopped(&s, 0, n);
-    return !file_stop_asked();
+    return !work_stop_asked();
 }
 
 int thread_processors(void)

@@ -1,8 +1,6 @@
 /* terrain/elevation/patch.c: a window of a raster: averaged, its voids filled, and reduced to mip levels. */
 #include "terrain/elevation/patch.h"
 
-#include "pitviper_file.h"
-
 #include <stdlib.h>
 
 void patch_free(Patch *patch)
@@ -118,7 +116,7 @@ static Status fill(Patch *p, int k)
                                  p->y0 + post_px * ((double)(at[n] / (size_t)nx) + 0.5));
         if (k == 0) p->hole[at[n]] = 1;
     }
-    for (int sweep = 0; sweep < sweeps && !file_stop_asked(); sweep++)
+    for (int sweep = 0; sweep < sweeps && !work_stop_asked(); sweep++)
         for (size_t n = 0; n < count; n++) {
             const size_t q = sweep & 1 ? at[count - 1 - n] : at[n], i = q % (size_t)nx, j = q / (size_t)nx;
             double       sum = 0;
@@ -185,7 +183,7 @@ static Status fill_all(Patch *p, Pool *pool)
         return STATUS_OK;
     }
     for (int k = p->wider ? p->mips - 1 : p->mips - 2; status == STATUS_OK && k >= 0; k--) status = fill(p, k);
-    if (status == STATUS_OK && file_stop_asked()) status = STATUS_IO;
+    if (status == STATUS_OK && work_stop_asked()) status = STATUS_IO;
     if (status == STATUS_OK) status = measure_holes(p);
     return status;
 }
@@ -238,7 +236,7 @@ static void read_strip(void *user, int worker, int task)
         const float low = (float)r->source->low, high = (float)r->source->high;
         float       value;
         x1 = next < r->x1 ? next : r->x1;
-        if (file_stop_asked()) {
+        if (work_stop_asked()) {
             r->status[task] = STATUS_IO;
         } else if (raster_uniform(&value, raster, r->source->band, x0, y0, x1 - x0, y1 - y0, r->source->key)) {
             average_columns(r, NULL, value >= low && value <= high ? value : NAN, x0, x1, y0, y1);

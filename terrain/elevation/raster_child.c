@@ -1,7 +1,6 @@
 /* terrain/elevation/raster_child.c: the process that reads rasters, seen from the program. */
 #include "terrain/elevation/raster_child.h"
 
-#include "pitviper_file.h"
 #include "pitviper_library.h"
 
 #include <errno.h>
@@ -133,6 +132,16 @@ static bool starter_asked(int32_t *answer, WireOrderKind kind, pid_t process, co
     return got == (ssize_t)sizeof *answer;
 }
 
+static const char *other_program;
+
+void raster_child_program(const char *path)
+{
+    pthread_mutex_lock(&starter.lock);
+    starter_gone();
+    other_program = path;
+    pthread_mutex_unlock(&starter.lock);
+}
+
 /* 0, or the error. */
 static int start_reader(pid_t *process, const char *program, const int descriptors[wire_descriptors])
 {
@@ -157,7 +166,8 @@ Status raster_child_start(RasterChild **out, const char *key)
     char         program[wire_path_size];
     const size_t octets = wire_channels * sizeof(WireChannel);
     int          far[wire_descriptors];
-    if (!library_module(program, sizeof program, "pitviper-rasters")) return STATUS_IO;
+    if (other_program) snprintf(program, sizeof program, "%s", other_program);
+    else if (!library_module(program, sizeof program, "pitviper-rasters")) return STATUS_IO;
     RasterChild *child = calloc(1, sizeof *child);
     if (!child) return STATUS_NO_MEMORY;
     pthread_mutex_init(&child->lock, NULL);
@@ -330,7 +340,7 @@ Status raster_child_ask(RasterChild *child, WireChannel *channel, WireReply *rep
             give_up(child, channel, FAULT_ENDED);
             return STATUS_IO;
         }
-        if (file_stop_asked()) {
+        if (work_stop_asked()) {
             give_up(child, channel, FAULT_STOP);
             return STATUS_IO;
         }

@@ -238,14 +238,16 @@ static Status plan(Making *m)
 
 /* Says what there is to do, before it is done; no more than is allowed, and than the disk has room for. Decoded rows are
  * kept, where that is worth it, in what the store leaves of both. */
-static Status say_size(Making *m)
+static Status say_size(Making *m, const char *path)
 {
     enum { reads_per_octet = 64 };
     const double   most = 1e9 * m->o->most_gb;
-    const uint64_t octets = store_plan_octets(&m->plan);
+    uint64_t       octets = 0;
     double         px = 0, free_octets = INFINITY;
     struct statvfs disk;
     char           text[256];
+    const Status   status = store_plan_octets(&octets, path, &m->plan);
+    if (status != STATUS_OK) return status;
     if (m->surface) px += elevation_stream_reads_px(m->surface);
     if (m->terrain) px += elevation_stream_reads_px(m->terrain);
     if (statvfs(m->folder, &disk) == 0) free_octets = (double)disk.f_bavail * (double)disk.f_frsize;
@@ -605,12 +607,13 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     const char  *fault = terrain_options_fault(options);
     char        *sources = strdup(raster_sources());
     if (*options->sources_from) raster_sources_from(options->sources_from);
+    if (progress) work_stop_when(file_stop_asked);
     Status       status = fault ? STATUS_BAD_VALUE : STATUS_OK;
     if (fault) log_error("%s: %s", module, fault);
     if (status == STATUS_OK && !go_on(m, "levels around", 0, true)) status = STATUS_IO;
     if (status == STATUS_OK) status = open_sources(m);
     if (status == STATUS_OK) status = plan(m);
-    if (status == STATUS_OK) status = say_size(m);
+    if (status == STATUS_OK) status = say_size(m, path);
     if (status == STATUS_OK) status = begin(m);
     if (status == STATUS_OK) status = store_writer_create(&m->writer, path, &m->plan, pool);
     m->r.seconds[0] = wall_clock_s() - begun_s;
@@ -630,6 +633,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     free(m->options);
     building_count_free(&m->buildings);
     if (sources) raster_sources_from(sources);
+    work_stop_when(NULL);
     free(sources);
     free(m);
     return status;

@@ -53,8 +53,8 @@ static const double store_canopy_cover = 0.01;   /* a canopy cover's octet, 0 ..
 
 typedef struct StoreWriter StoreWriter;
 
-/* Of the file that a plan makes, but for its crowns. UINT64_MAX: none. */
-uint64_t store_plan_octets(const StorePlan *plan);
+/* Of the file that a plan makes, but for its crowns. What no store holds is logged as by store_writer_create. */
+Status store_plan_octets(uint64_t *octets, const char *path, const StorePlan *plan);
 /* Creates PATH.tmp at its full size. The plan and its texts are copied; pool (NULL: one thread) is used by every call.
  * Failures are logged; on failure *out is NULL. */
 Status store_writer_create(StoreWriter **out, const char *path, const StorePlan *plan, Pool *pool);

@@ -1,6 +1,5 @@
 /* terrain/store/store_write.c: a terrain store written: the file at its full size, its rasters, and its end. */
 #include "terrain/store/store_write_private.h"
-#include "pitviper_file.h"
 #include "pitviper_output.h"
 
 #include "terrain/landscape/landscape_parts.h"
@@ -50,12 +49,25 @@ static bool is_power_of_two(double x)
     return x > 0 && isfinite(x) && frexp(x, &exponent) == 0.5;
 }
 
+/* How far the ellipsoid lies below the plane of the posts at the corner of a level farthest from its origin; radius: of the
+ * pole, where it bends least, so that nothing is refused that fits. */
+static double deepest_m(const StoreHeaderLevel *l)
+{
+    static const double radius_m = 6.4e6;
+    const double x_m = fmax(-l->x0_m, l->x0_m + (l->nx - 1) * l->spacing_m), y_m = fmax(-l->y0_m, l->y0_m + (l->ny - 1) * l->spacing_m);
+    const double far_m = fmin(hypot(x_m, y_m), radius_m);
+    return radius_m - sqrt(radius_m * radius_m - far_m * far_m);
+}
+
 static const char *plan_fault(const StorePlan *plan, const StoreHeader *h)
 {
     for (int n = 0; n < plan->level_count; n++) {
         const double z0 = h->level[n].z0_m;
         const bool   even = z0 == h->level[0].z0_m || z0 == 64 * rint(z0 / 64);
         if (!is_power_of_two(h->level[n].step_m) || !even) return "steps or origins are not dyadic";
+        if (deepest_m(&h->level[n]) > fabs(z0) + 9000 + h->level[n].step_m * elevation_highest_post)
+            return "it reaches so far that the ground sinks more than 16 km below the plane at its origin; --size takes a part, "
+                   "--horizon less around it";
         if (n > 0 && !is_power_of_two(rint(h->level[n].spacing_m / h->level[n - 1].spacing_m)))
             return "the spacings of two levels are not in the ratio of a power of two";
     }
@@ -169,38 +181,45 @@ static Status begin(StoreWriter *w, const StorePlan *plan)
     return status == STATUS_OK ? store_albedo_begin(w) : status;
 }
 
+/* The header of a plan, laid out; logged what no store holds. */
+static Status plan_header(StoreHeader **out, const char *path, const StorePlan *plan)
+{
+    const char *why = NULL;
+    Status      status = make_header(out, plan);
+    if (status != STATUS_OK) return status;
+    StoreHeader *h = *out;
+    why = plan_fault(plan, h);
+    if (!why && !store_layout(h)) why = "its sizes are out of range";
+    h->checksum = store_checksum(h);
+    if (!why) store_header_check(&why, h, (size_t)h->header_octets, h->file_octets);
+    if (why) log_error("store: %s cannot be written: %s", path, why);
+    return why ? STATUS_BAD_VALUE : STATUS_OK;
+}
+
+Status store_plan_octets(uint64_t *octets, const char *path, const StorePlan *plan)
+{
+    StoreHeader *h = NULL;
+    const Status status = plan_header(&h, path, plan);
+    if (status == STATUS_OK) *octets = h->file_octets;
+    free(h);
+    return status;
+}
+
 Status store_writer_create(StoreWriter **out, const char *path, const StorePlan *plan, Pool *pool)
 {
     *out = NULL;
     StoreWriter *w = calloc(1, sizeof *w);
-    const char  *why = NULL;
     if (!w) return STATUS_NO_MEMORY;
     w->file = -1;
     w->pool = pool;
     w->seed = plan->seed;
     const bool named = asprintf(&w->part, "%s.tmp", path) > 0 && (w->path = strdup(path)) != NULL;
-    Status     status = named ? make_header(&w->header, plan) : STATUS_NO_MEMORY;
-    if (status == STATUS_OK) {
-        why = plan_fault(plan, w->header);
-        if (!why && !store_layout(w->header)) why = "its sizes are out of range";
-        w->header->checksum = store_checksum(w->header);
-        if (!why) store_header_check(&why, w->header, (size_t)w->header->header_octets, w->header->file_octets);
-        status = why ? STATUS_BAD_VALUE : STATUS_OK;
-        if (why) log_error("store: %s cannot be written: %s", path, why);
-    }
+    Status     status = named ? plan_header(&w->header, path, plan) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = open_part(w);
     if (status == STATUS_OK) status = begin(w, plan);
     if (status == STATUS_OK) *out = w;
     else store_writer_abandon(w);
     return status;
-}
-
-uint64_t store_plan_octets(const StorePlan *plan)
-{
-    StoreHeader   *h = NULL;
-    const uint64_t octets = make_header(&h, plan) == STATUS_OK && store_layout(h) ? h->file_octets : UINT64_MAX;
-    free(h);
-    return octets;
 }
 
 static void free_writer(StoreWriter *w)
@@ -349,14 +368,14 @@ static Status seal(StoreWriter *w)
 {
     enum { synced_at_once = 64 << 20 }; /* octets; a stop waits for so many */
     StoreHeader *h = w->header;
-    if (file_stop_asked()) return STATUS_IO;
+    if (work_stop_asked()) return STATUS_IO;
     h->content = store_content(h, w->map, w->pool);
     date(h->made);
     h->checksum = store_checksum(h);
     memcpy(w->map, h, (size_t)h->header_octets);
     for (size_t at = 0; at < w->map_octets; at += synced_at_once) {
         const size_t left = w->map_octets - at;
-        if (file_stop_asked()) return STATUS_IO;
+        if (work_stop_asked()) return STATUS_IO;
         if (msync((char *)w->map + at, left < synced_at_once ? left : synced_at_once, MS_SYNC) != 0) return io_fault(w, "write");
     }
     if (fsync(w->file) != 0) return io_fault(w, "write");

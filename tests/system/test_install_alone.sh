@@ -40,7 +40,12 @@ cp -r "$tmp/prefix/share" "$tmp/alone/"
 hidden "$tmp/alone/bin/pitviper" replay "${bare[@]}" "${coarse[@]}" "$tmp/demo.pcap" --out "$tmp/out2" --size 64x48 --only 0 --threads 1
 check "alone, share put beside it, without its module: exit code" [ $code = 1 ]
 check "alone: the module is named, and what to install" complained 'module pitviper-images.so is missing: looked .*copy lib/pitviper'
+touch "$tmp/a.tif"
+hidden "$tmp/alone/bin/pitviper" terrain import "$tmp/a.tif" -o "$tmp/a.store"
+check "alone: what reads rasters is named" complained 'module pitviper-rasters is missing: looked .*copy lib/pitviper'
 cp -r "$tmp/prefix/lib" "$tmp/alone/"
+hidden "$tmp/alone/bin/pitviper" terrain import "$tmp/a.tif" -o "$tmp/a.store"
+check "with lib beside it, it is found" complained 'not recognized as a supported file format'
 hidden "$tmp/alone/bin/pitviper" replay "${bare[@]}" "${coarse[@]}" "$tmp/demo.pcap" --out "$tmp/out2" --overwrite --size 64x48 --only 0 --threads 1
 check "alone, share and lib put beside it: replay" [ $code = 0 ]
 cd "$source" || exit 1

@@ -17,6 +17,7 @@ few=(--horizon 1 --threads 2)
 
 run terrain import "$tmp/west.asc" "$tmp/east.asc" -o "$tmp/a.store" "${few[@]}"
 check "two sheets: exit code" [ $code = 0 ]
+check "two sheets: what there is to do comes first" eval 'head -n 1 "$tmp/stdout" | grep -qE "^to do: [0-9.]+ M posts, .* M pixels to read; [0-9.]+ GB to write"'
 check "two sheets: posts and files" said 'M posts, .* from 2 files'
 check "two sheets: error against the files" said 'resampling: .*rms'
 check "two sheets: the hole is counted" said 'voids: [1-9][0-9]* posts filled'
@@ -34,6 +35,26 @@ run -q terrain import "$tmp/west.asc" "$tmp/east.asc" -o "$tmp/b.store" "${few[@
 check "quiet: nothing said" [ ! -s "$tmp/stdout" ]
 run terrain info "$tmp/b.store"
 check "one thread: the same content" said "${content:-none}"
+
+# a file that names others: in its own folder, or where that is allowed
+mkdir "$tmp/own"
+printf '<VRTDataset rasterXSize="90" rasterYSize="120"><SRS>EPSG:4326</SRS><GeoTransform>11,1e-5,0,46.0012,0,-1e-5</GeoTransform>
+<VRTRasterBand dataType="Float32" band="1"><SimpleSource><SourceFilename relativeToVRT="0">%s</SourceFilename><SourceBand>1</SourceBand>
+</SimpleSource></VRTRasterBand></VRTDataset>\n' "$tmp/west.asc" | tee "$tmp/here.vrt" >"$tmp/own/there.vrt"
+run terrain import "$tmp/here.vrt" -o "$tmp/v.store" "${few[@]}"
+check "a VRT of its own folder" [ $code = 0 ]
+run terrain import "$tmp/own/there.vrt" -o "$tmp/w.store" "${few[@]}"
+check "a VRT of another folder is refused" eval '[ $code = 1 ] && complained "there.vrt names .*west.asc, which lies outside its folder.*--sources-from"'
+run terrain import "$tmp/own/there.vrt" -o "$tmp/w.store" "${few[@]}" --sources-from "/nowhere,$tmp"
+check "and read where that is allowed" [ $code = 0 ]
+run terrain again "$tmp/w.store"
+check "also when it is made again" eval '[ $code = 0 ] && said "sources-from /nowhere,$tmp"'
+printf 'terrain: {elevation: %s/own/there.vrt}\n' "$tmp" >"$tmp/node.yaml"
+run check "$tmp/node.yaml"
+check "check: the same" eval '[ $code != 0 ] && complained "lies outside its folder.*terrain.sources_from"'
+printf 'terrain: {elevation: %s/own/there.vrt, sources_from: [%s]}\n' "$tmp" "$tmp" >"$tmp/node.yaml"
+run check "$tmp/node.yaml"
+check "check: allowed" [ $code = 0 ]
 
 echo cut >"$tmp/bad.tif"
 while read -r named arguments; do
@@ -53,7 +74,7 @@ run terrain frobnicate
 check "an unknown action is named" complained frobnicate
 run terrain import --help
 for option in --surface --cover --cover-table --photo --canopy-height --canopy-cover --vertical --geoid --origin --size --spacing \
-              --horizon --out --overwrite --threads; do
+              --horizon --out --overwrite --threads --sources-from --most-gb; do
     check "terrain --help names $option" grep -q -- "$option" "$tmp/stdout"
 done
 

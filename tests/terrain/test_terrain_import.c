@@ -98,6 +98,7 @@ static void heights_of(float *h_m, const ElevationFiles *files, const LocalFrame
 {
     ElevationStream *stream = NULL;
     assert_int_equal(elevation_stream_open(&stream, files, frame, NULL, pool), STATUS_OK);
+    assert_int_equal(elevation_stream_begin(stream, 0), STATUS_OK);
     elevation_stream_level(level, stream, 0);
     for (int row0 = 0; row0 < level->ny; row0 += rows) {
         const int here = level->ny - row0 < rows ? level->ny - row0 : rows;
@@ -582,8 +583,16 @@ static void a_store_is_made_again_of_its_own_folder_alone(void **state)
     snprintf(text, sizeof text, "elevation %s\nspacing 10\nhorizon 1\n", path);
     CHECK(!terrain_store_foreign(outside, sizeof outside, out, text));
     assert_int_equal(terrain_store_rebuild(out, text, false), STATUS_OK);
+    /* anywhere: what is named is read, and what that names where the options say so */
+    log_set_sink(check_listen, NULL);
     snprintf(text, sizeof text, "elevation %s\nspacing 10\nhorizon 1\n", nested);
+    CHECK(terrain_store_rebuild(out, text, true) != STATUS_OK && strstr(check_said, "lies outside its folder"));
+    log_set_sink(NULL, NULL);
+    snprintf(text, sizeof text, "elevation %s\nspacing 10\nhorizon 1\nsources-from %s\n", nested, other);
     assert_int_equal(terrain_store_rebuild(out, text, true), STATUS_OK);
+    log_set_sink(check_listen, NULL);
+    CHECK(terrain_store_rebuild(out, text, false) != STATUS_OK); /* a store's own word does not widen that */
+    log_set_sink(NULL, NULL);
     memcpy(folder, other, sizeof folder);
     tear_down(state);
     memcpy(folder, own, sizeof folder);
