@@ -17,6 +17,7 @@ typedef enum ImportLost {
     LOST_CAMERAS,
     LOST_ANIMATIONS,
     LOST_BONES,
+    LOST_MORPH_TARGETS,      /* glTF's stand at their default weights */
     LOST_POINTS_AND_LINES,   /* meshes of them */
     LOST_LEVELS_OF_DETAIL,   /* all but the finest */
     LOST_SWITCHED_OFF,       /* children of switches */
@@ -41,9 +42,12 @@ typedef enum ImportMaterialSource {
 typedef struct ModelImport {
     char   file[1024];                 /* the model's own */
     char   sidecar[1024];              /* empty: none */
+    char   unit_from[96], axes_from[96]; /* where scale and axes come from */
     double scale_m;                    /* p_body = scale_m r_body_from_file (p_file - p_origin_file) */
     double r_body_from_file[9], p_origin_file[3];
-    bool   axes_assumed;               /* from the format, not specified */
+    bool   axes_assumed;               /* not from the sidecar */
+    bool   scale_assumed;
+    bool   mirrored;                   /* the file's axes are left-handed */
     int    source_nodes, source_meshes, source_materials;
     int    unnamed_nodes, shared_names; /* nodes without a name; with one that another has, too */
     int    dropped_meshes;             /* by the sidecar */
