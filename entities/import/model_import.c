@@ -471,15 +471,24 @@ Status model_import(Model *out, ModelImport *report, const char *path)
     import_paints_close(&paints);
     sidecar_close(&sidecar);
     if (status == STATUS_OK) {
-        log_detail("model: %s: %d nodes, %d parts, %d triangles, %.3f x %.3f x %.3f m; sidecar: %s", filled.file,
-                   b.model.node_count, b.model.part_count, b.model.triangle_count, b.model.length_m, b.model.width_m,
-                   b.model.height_m, filled.sidecar[0] ? filled.sidecar : "none");
         *out = b.model;
         if (report) *report = filled;
     } else {
         model_destroy(&b.model);
     }
     return status;
+}
+
+void model_import_say(const ModelImport *r, const Model *model)
+{
+    char lost[400] = "nothing";
+    size_t n = 0;
+    for (int i = 0; i < IMPORT_LOST_COUNT && n < sizeof lost; i++)
+        if (r->lost[i] > 0)
+            n += (size_t)snprintf(lost + n, sizeof lost - n, "%s%d %s", n ? ", " : "", r->lost[i], import_lost_name((ImportLost)i));
+    log_info("model: %s: %.4g x %.4g x %.4g m, %d triangles; %.9g m a unit (%s), axes by %s; lost: %s%s", r->file, model->length_m,
+             model->width_m, model->height_m, model->triangle_count, r->scale_m, r->unit_from, r->axes_from, lost,
+             r->scale_assumed || r->axes_assumed ? "; `scale` and `axes` in its sidecar say otherwise" : "");
 }
 
 Status model_say_unknown(const char *name)

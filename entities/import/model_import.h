@@ -42,6 +42,7 @@ typedef enum ImportMaterialSource {
 typedef struct ModelImport {
     char   file[1024];                 /* the model's own */
     char   sidecar[1024];              /* empty: none */
+    long long octets;                  /* of the model's own file, on disk */
     char   unit_from[96], axes_from[96]; /* where scale and axes come from */
     double scale_m;                    /* p_body = scale_m r_body_from_file (p_file - p_origin_file) */
     double r_body_from_file[9], p_origin_file[3];
@@ -66,6 +67,8 @@ typedef struct ModelImport {
  * Limits: 256 MiB unpacked, 8 M vertices and triangles, 65536 nodes, 256 levels, 16384 parts, 256 joints. */
 Status model_import(Model *out, ModelImport *report, const char *path);
 
+/* Says in a line what was taken for what: unit, axes, size, what was lost, and the keys that say otherwise. */
+void   model_import_say(const ModelImport *report, const Model *model);
 /* Whether a name means a file: it has a slash or a dot. */
 bool   model_is_path(const char *name);
 /* Logs that there is no built-in model of this name, with the nearest one. Returns STATUS_UNSUPPORTED. */
