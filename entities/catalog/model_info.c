@@ -106,10 +106,13 @@ static void print_parts(const Model *m)
     }
 }
 
-/* Beyond all of the catalog by half, or of 5 cm and less; else, where its name says what it is, off by a factor of 3. */
+/* Beyond all of the catalog by half, or hardly a thing at all; else, where its name says what it is, off by a factor of 3. */
 static void judge_size(ModelInfo *info, const char *name)
 {
-    static const double least_m = 0.05, slack = 1.5, named_slack = 3;
+    static const double slack = 1.5, named_slack = 3;
+    const ModelImport *import = &info->import;
+    /* a file that says centimetres may be drawn in metres all the same: 8 cm are then 8 m */
+    const double least_m = import->scale_assumed && import->scale_m != 1 ? 0.3 : 0.05;
     const double largest_m = size_of_model(&info->model);
     const char *slash = strrchr(name, '/');
     char path[4096], advice[200];
@@ -121,13 +124,13 @@ static void judge_size(ModelInfo *info, const char *name)
         catalog_close(catalog);
     }
     log_suppress(false);
-    range.low_m = slack * least_m;
+    range.low_m = slack * least_m; /* which size_is_odd divides by slack */
     if (size_range_named(&named, slash ? slash + 1 : name) && size_is_odd(advice, largest_m, &named, named_slack, &info->import))
         snprintf(info->advice, sizeof info->advice, "it is %.3g m large, and `%s`, as it is called, %.3g m: %s", largest_m,
                  named.high, named.high_m, advice);
     else if (size_is_odd(advice, largest_m, &range, slack, &info->import))
         snprintf(info->advice, sizeof info->advice, "it is %.3g m large, and %s %.3g m%s%s: %s", largest_m,
-                 largest_m > range.high_m ? "nothing of etc/catalog.csv is larger than" : "hardly a thing is smaller than",
+                 largest_m > range.high_m ? "nothing of etc/catalog.csv is larger than" : "few things are smaller than",
                  largest_m > range.high_m ? range.high_m : least_m, largest_m > range.high_m ? ", " : "",
                  largest_m > range.high_m ? range.high : "", advice);
     info->odd = info->advice[0] != 0;

@@ -15,8 +15,8 @@ typedef struct FileText {
     const char *extension;
     bool        has_unit, has_up;            /* FBX, COLLADA */
     char        unit[24], up[24];            /* COLLADA: as it says it */
-    double      comment_m;                   /* unit that a comment names; 0: none */
-    char        comment[24];
+    double      stated_m, comment_m;         /* unit that the format, or a comment, names; 0: none */
+    char        stated[24], comment[24];
 } FileText;
 
 typedef struct Files {
@@ -92,6 +92,7 @@ static Status see_model(Files *f, OpenFile *file)
         t->has_unit = end && find_after(t->unit, unit, (size_t)(end - unit), "meter=\"", "\"");
         t->has_up = find_after(t->up, file->bytes, file->octets, "<up_axis>", "< \t\r\n");
     } else {
+        t->stated_m = import_stated_unit(t->stated, t->extension, file->bytes, file->octets);
         const bool stl = strcmp(t->extension, "stl") == 0, obj = strcmp(t->extension, "obj") == 0;
         if (obj || stl || strcmp(t->extension, "ply") == 0)
             t->comment_m = import_comment_unit(t->comment, file->bytes, file->octets);
@@ -325,6 +326,11 @@ static void frame(ImportScene *s, const struct aiScene *source, const FileText *
         if (text->has_up)
             snprintf(s->axes_from, sizeof s->axes_from, "the file's <up_axis> %.20s, turned to y up", text->up);
         else snprintf(s->axes_from, sizeof s->axes_from, "COLLADA's default: the file says none");
+    }
+    if (text->stated_m > 0) {
+        s->unit_m = text->stated_m;
+        if (text->stated[0]) snprintf(s->unit_from, sizeof s->unit_from, "the file's unit, %s", text->stated);
+        else snprintf(s->unit_from, sizeof s->unit_from, "the format's default, millimetres: the file says none");
     }
     if (text->comment_m > 0 && text->comment_m != 1)
         reader_warns(said, "a comment says `%s`, the format has no unit: taken as metres; `scale: %g` in its sidecar takes it so",

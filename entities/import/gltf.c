@@ -321,20 +321,28 @@ static Status read_document(Gltf *g)
     return STATUS_OK;
 }
 
-Status import_gltf_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, const char *extension)
+Status import_gltf_text(ImportScene *s, ReaderSaid *said, ReaderFiles *files, char *text, size_t octets)
 {
-    (void)extension;
-    Gltf g = {.files = files, .said = said, .scene = s};
-    Status status = reader_read(&g.text, &g.octets, files, files->shown);
-    if (status != STATUS_OK) reader_fails(said, status, "it cannot be unpacked, or is larger than 256 MiB");
-    else status = read_document(&g);
+    Gltf g = {.files = files, .said = said, .scene = s, .text = text, .octets = octets};
+    const Status status = read_document(&g);
     gltf_shapes_close(&g);
     gltf_buffers_close(&g);
     free(g.drawn);
     free(g.world);
     free(g.in_scene);
     json_decref(g.root);
-    free(g.text);
+    return status;
+}
+
+Status import_gltf_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, const char *extension)
+{
+    char *text;
+    size_t octets;
+    (void)extension;
+    Status status = reader_read(&text, &octets, files, files->shown);
+    if (status != STATUS_OK) return reader_fails(said, status, "it cannot be unpacked, or is larger than 256 MiB");
+    status = import_gltf_text(s, said, files, text, octets);
+    free(text);
     return status;
 }
 

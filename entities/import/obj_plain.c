@@ -31,30 +31,9 @@ static void put(Out *out, const char *bytes, size_t count)
     out->octets += count;
 }
 
-typedef struct Word {
-    const char *at;
-    size_t length;
-} Word;
-
-/* The next word of [*at, end); length 0: none. */
-static Word next_word(const char **at, const char *end)
-{
-    const char *from = *at;
-    while (from < end && isspace((unsigned char)*from)) from++;
-    Word word = {from, 0};
-    while (from + word.length < end && !isspace((unsigned char)from[word.length])) word.length++;
-    *at = from + word.length;
-    return word;
-}
-
-static bool is_word(Word word, const char *text)
-{
-    return word.length == strlen(text) && memcmp(word.at, text, word.length) == 0;
-}
-
 /* Writes a decimal number without exponent, `+`, or a missing digit before or after its point. False: it is no number;
  * nan and inf are, as they stand. */
-static bool put_number(Out *out, Word word)
+static bool put_number(Out *out, ReaderWord word)
 {
     const char *at = word.at, *end = at + word.length;
     char digits[512];
@@ -106,10 +85,10 @@ static bool put_number(Out *out, Word word)
 /* `v` x y z [w | r g b ...], `vn` x y z: numbers beyond those are colours. */
 static bool put_numbers(Out *out, const char *name, const char *at, const char *end)
 {
-    Word word[8];
+    ReaderWord word[8];
     int count = 0;
     const bool normal = name[1] == 'n';
-    for (Word w; (w = next_word(&at, end)).length > 0 && w.at[0] != '#';)
+    for (ReaderWord w; (w = reader_word(&at, end)).length > 0 && w.at[0] != '#';)
         if (count < 8) word[count++] = w;
     if (count < 3) return false;
     if (count > 3) count = count == 4 && !normal ? 4 : 3;
@@ -143,7 +122,7 @@ static bool put_corners(Out *out, const char *name, const char *at, const char *
     bool normals = name[0] == 'f';
     for (int pass = 0; pass < 2; pass++, at = again) {
         if (pass) put(out, name, 1);
-        for (Word w; (w = next_word(&at, end)).length > 0 && w.at[0] != '#';) {
+        for (ReaderWord w; (w = reader_word(&at, end)).length > 0 && w.at[0] != '#';) {
             const char *c = w.at, *stop = w.at + w.length;
             long v, vt, vn = 0;
             char text[64];
@@ -192,23 +171,26 @@ Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT]
             while (stop < end && *stop != '\n' && *stop != '\r') stop++;
             const char *next = stop + (end - stop > 1 && stop[0] == '\r' && stop[1] == '\n' ? 2 : stop < end);
             while (stop > at && isspace((unsigned char)stop[-1])) stop--;
-            more = stop > at && stop[-1] == '\\' && *at != '#';
+            const char *begin = at;
+            while (begin < stop && isspace((unsigned char)*begin)) begin++;
+            more = stop > begin && stop[-1] == '\\' && (*begin != '#' || joined.octets > 0);
             put(&joined, at, (size_t)(stop - at - more));
             put(&joined, " ", more);
             at = next;
         }
         if (joined.no_memory) break;
         const char *s = joined.text ? joined.text : "", *tail = s + joined.octets;
-        const Word word = next_word(&s, tail);
+        while (tail > s && (isspace((unsigned char)tail[-1]) || tail[-1] == '\\')) tail--;
+        const ReaderWord word = reader_word(&s, tail);
         bool fine = true;
-        if (word.length == 0 || word.at[0] == '#' || is_word(word, "vt")) continue;
-        if (is_word(word, "v")) fine = put_numbers(&out, "v", s, tail);
-        else if (is_word(word, "vn")) fine = put_numbers(&out, "vn", s, tail);
-        else if (is_word(word, "f")) fine = put_corners(&out, "f", s, tail);
-        else if (is_word(word, "l")) fine = put_corners(&out, "l", s, tail);
+        if (word.length == 0 || word.at[0] == '#' || reader_word_is(word, "vt")) continue;
+        if (reader_word_is(word, "v")) fine = put_numbers(&out, "v", s, tail);
+        else if (reader_word_is(word, "vn")) fine = put_numbers(&out, "vn", s, tail);
+        else if (reader_word_is(word, "f")) fine = put_corners(&out, "f", s, tail);
+        else if (reader_word_is(word, "l")) fine = put_corners(&out, "l", s, tail);
         else {
-            lost[LOST_OTHER] += is_word(word, "surf") || is_word(word, "curv");
-            if (is_word(word, "mtllib")) look_for(files, said, s, tail);
+            lost[LOST_OTHER] += reader_word_is(word, "surf") || reader_word_is(word, "curv");
+            if (reader_word_is(word, "mtllib")) look_for(files, said, s, tail);
             put(&out, word.at, word.length);
             for (const char *c = s; c < tail; c++) put(&out, *c == '\t' ? " " : c, 1);
             put(&out, "\n", 1);
@@ -230,47 +212,4 @@ Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT]
     *text = out.text;
     *octets = out.octets - 1;
     return STATUS_OK;
-}
-
-/* ---- what comments say ------------------------------------------------------------------------------ */
-
-/* Longest first: `centimetres` has `metres` in it. */
-static const struct {
-    const char *word;
-    double unit_m;
-} units[] = {{"millimet", 0.001}, {"centimet", 0.01}, {"decimet", 0.1}, {"kilomet", 1000}, {"inches", 0.0254},
-             {"inch", 0.0254},    {"feet", 0.3048},   {"foot", 0.3048}, {"yard", 0.9144},  {"meter", 1}, {"metre", 1},
-             {"mm", 0.001},       {"cm", 0.01},       {"ft", 0.3048},   {"m", 1}};
-
-double import_comment_unit(char word[24], const char *text, size_t octets)
-{
-    const char *at = text, *end = text + (octets < 65536 ? octets : 65536);
-    for (int line = 0; at < end && line < 200; line++) {
-        const char *stop = memchr(at, '\n', (size_t)(end - at));
-        if (!stop) stop = end;
-        Word first = next_word(&at, stop);
-        const bool comment = first.length > 0 && (first.at[0] == '#' || is_word(first, "comment") ||
-                                                  is_word(first, "obj_info") || (line == 0 && is_word(first, "solid")));
-        const char *unit = NULL;
-        for (const char *c = first.at; comment && c + 4 <= stop && !unit; c++)
-            if (strncasecmp(c, "unit", 4) == 0) unit = c;
-        if (unit) {
-            char lower[200];
-            size_t n = 0;
-            for (const char *c = first.at; c < stop && n < sizeof lower - 1; c++)
-                lower[n++] = c >= unit && c < unit + 5 ? ' ' : isalpha((unsigned char)*c) ? (char)tolower((unsigned char)*c) : ' ';
-            lower[n] = 0;
-            const char *from = lower;
-            for (Word w; (w = next_word(&from, lower + n)).length > 0;)
-                for (size_t u = 0; u < sizeof units / sizeof *units; u++) {
-                    const size_t length = strlen(units[u].word);
-                    if (length > w.length || strncmp(w.at, units[u].word, length) != 0) continue;
-                    if (length < 4 && length != w.length) continue; /* `m` and `mm` are whole words */
-                    snprintf(word, 24, "%.*s", (int)w.length, w.at);
-                    return units[u].unit_m;
-                }
-        }
-        at = stop < end ? stop + 1 : end;
-    }
-    return 0;
 }

@@ -125,8 +125,7 @@ static bool in_range(int value, int low, int high) { return value >= low && valu
 
 static bool is_axis(const double a[3]) { return v3_dot(a, a) == 1 && fabs(a[0]) + fabs(a[1]) + fabs(a[2]) == 1; }
 
-/* False when an index or a count is not what a whole scene has. */
-static bool scene_is_sound(ImportScene *s)
+bool import_scene_is_sound(ImportScene *s)
 {
     int vertices = 0, triangles = 0;
     if (!is_axis(s->forward) || !is_axis(s->up) || v3_dot(s->forward, s->up) != 0) return false;
@@ -202,7 +201,7 @@ static Status take_scene(ImportScene *out, const char *bytes, size_t octets, con
         !take(s.mesh, (size_t)s.mesh_count * sizeof *s.mesh, &at, end) ||
         !take(s.vertex, (size_t)s.vertex_count * sizeof *s.vertex, &at, end) ||
         !take(s.normal, (size_t)s.vertex_count * sizeof *s.normal, &at, end) ||
-        !take(s.triangle, (size_t)s.triangle_count * sizeof *s.triangle, &at, end) || at != end || !scene_is_sound(&s))
+        !take(s.triangle, (size_t)s.triangle_count * sizeof *s.triangle, &at, end) || at != end || !import_scene_is_sound(&s))
         goto broken;
     log_said(&header, path);
     *out = s;
