@@ -1,7 +1,7 @@
 /* entities/import/reader_process.c: a reader of model files in a process of its own.
  *
- * Readers have crashed on broken files often enough: they run in a child, which hands the flat scene back in a memory
- * file: header, then arrays. The result is validated like untrusted input. */
+ * Readers have crashed on broken files often enough: they run in a child, which hands the flat scene back in memory that
+ * both have: header, then arrays. The result is validated like untrusted input. */
 #include "entities/import/reader.h"
 
 #include <errno.h>
@@ -10,7 +10,6 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <signal.h>
 #include <unistd.h>
@@ -48,20 +47,13 @@ void import_scene_close(ImportScene *s)
 
 /* ---- in the child -------------------------------------------------------------------------------- */
 
-/* True when all of it went out. */
-static bool put(int fd, const void *bytes, size_t octets)
+static char *put(char *at, const void *bytes, size_t octets)
 {
-    const char *at = bytes;
-    while (octets > 0) {
-        const ssize_t written = write(fd, at, octets);
-        if (written <= 0) return false;
-        at += written;
-        octets -= (size_t)written;
-    }
-    return true;
+    memcpy(at, bytes, octets);
+    return at + octets;
 }
 
-static void child_reads(int fd, Reader *read, const char *path, const char *extension)
+static void child_reads(char *out, Reader *read, const char *path, const char *extension)
 {
     static Header header; /* large for a stack */
     ReaderFiles files;
@@ -72,15 +64,16 @@ static void child_reads(int fd, Reader *read, const char *path, const char *exte
         header.status = reader_fails(&header.said, STATUS_NO_MEMORY, "out of memory");
     s->lost[LOST_EXTERNAL_REFERENCES] += *files.refused != 0;
     snprintf(header.refused, sizeof header.refused, "%s", files.refused);
-    bool written = put(fd, &header, sizeof header);
-    if (header.status == STATUS_OK)
-        written = written && put(fd, s->node, (size_t)s->node_count * sizeof *s->node) &&
-                  put(fd, s->material, (size_t)s->material_count * sizeof *s->material) &&
-                  put(fd, s->mesh, (size_t)s->mesh_count * sizeof *s->mesh) &&
-                  put(fd, s->vertex, (size_t)s->vertex_count * sizeof *s->vertex) &&
-                  put(fd, s->normal, (size_t)s->vertex_count * sizeof *s->normal) &&
-                  put(fd, s->triangle, (size_t)s->triangle_count * sizeof *s->triangle);
-    _exit(written ? 0 : 3); /* no clean-up: the process is the clean-up */
+    out = put(out, &header, sizeof header);
+    if (header.status == STATUS_OK) {
+        out = put(out, s->node, (size_t)s->node_count * sizeof *s->node);
+        out = put(out, s->material, (size_t)s->material_count * sizeof *s->material);
+        out = put(out, s->mesh, (size_t)s->mesh_count * sizeof *s->mesh);
+        out = put(out, s->vertex, (size_t)s->vertex_count * sizeof *s->vertex);
+        out = put(out, s->normal, (size_t)s->vertex_count * sizeof *s->normal);
+        put(out, s->triangle, (size_t)s->triangle_count * sizeof *s->triangle);
+    }
+    _exit(0); /* no clean-up: the process is the clean-up */
 }
 
 /* Limits time and memory; no core file, no terminal output, ends with its parent. */
@@ -201,7 +194,7 @@ static Status take_scene(ImportScene *out, const char *bytes, size_t octets, con
         !take(s.mesh, (size_t)s.mesh_count * sizeof *s.mesh, &at, end) ||
         !take(s.vertex, (size_t)s.vertex_count * sizeof *s.vertex, &at, end) ||
         !take(s.normal, (size_t)s.vertex_count * sizeof *s.normal, &at, end) ||
-        !take(s.triangle, (size_t)s.triangle_count * sizeof *s.triangle, &at, end) || at != end || !import_scene_is_sound(&s))
+        !take(s.triangle, (size_t)s.triangle_count * sizeof *s.triangle, &at, end) || !import_scene_is_sound(&s))
         goto broken;
     log_said(&header, path);
     *out = s;
@@ -215,16 +208,20 @@ broken:
 
 Status reader_run(ImportScene *out, Reader *read, const char *path, const char *extension)
 {
+    /* a whole scene of the most that is read; pages are taken as they are written */
+    const size_t most = sizeof(Header) + import_max_nodes * sizeof(ImportNode) + import_max_materials * sizeof(ImportMaterial) +
+                        import_max_meshes * sizeof(ImportMesh) + import_max_vertices * (sizeof(double[3]) + sizeof(float[3])) +
+                        import_max_triangles * sizeof(uint32_t[3]);
     Status status = STATUS_IO;
-    const int fd = memfd_create("model", MFD_CLOEXEC);
-    if (fd < 0) {
-        log_error("model: cannot read: file=%s: memfd_create: %s", path, strerror(errno));
-        return STATUS_IO;
+    char *shared = mmap(NULL, most, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (shared == MAP_FAILED) {
+        log_error("model: cannot read: file=%s: no memory for its reader: %s", path, strerror(errno));
+        return STATUS_NO_MEMORY;
     }
     const pid_t child = fork();
     if (child == 0) {
         child_limits();
-        child_reads(fd, read, path, extension);
+        child_reads(shared, read, path, extension);
     }
     int ended = 0;
     if (child < 0) {
@@ -248,18 +245,9 @@ Status reader_run(ImportScene *out, Reader *read, const char *path, const char *
                   WIFSIGNALED(ended) ? WTERMSIG(ended) : WEXITSTATUS(ended), import_max_memory / 1000000);
         goto done;
     }
-    struct stat info;
-    if (fstat(fd, &info) != 0) info.st_size = 0;
-    void *bytes = mmap(NULL, (size_t)info.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
-    if (bytes == MAP_FAILED) {
-        log_error("model: cannot read: file=%s: nothing came back from the reader: %s", path, strerror(errno));
-        status = STATUS_NO_MEMORY;
-        goto done;
-    }
-    status = take_scene(out, bytes, (size_t)info.st_size, path);
-    munmap(bytes, (size_t)info.st_size);
+    status = take_scene(out, shared, most, path);
 
 done:
-    close(fd);
+    munmap(shared, most);
     return status;
 }
