@@ -641,6 +641,7 @@ def test_other():
         check(f'{name} of {side} m: nothing odd', said[0] and 'odd_size' not in said[0] and 'scale' not in said[1], said[1])
 
 
-{'fbx': test_fbx, 'gltf': test_gltf, 'obj': test_obj, 'other': test_other}[sys.argv[3]]()
-print(f'{sys.argv[3]}: {checks} checks, {failures} failed')
-sys.exit(failures > 0 or checks == 0)
+if __name__ == '__main__':
+    {'fbx': test_fbx, 'gltf': test_gltf, 'obj': test_obj, 'other': test_other}[sys.argv[3]]()
+    print(f'{sys.argv[3]}: {checks} checks, {failures} failed')
+    sys.exit(failures > 0 or checks == 0)
