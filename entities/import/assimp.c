@@ -290,9 +290,14 @@ static void fbx_frame(ImportScene *s, const struct aiScene *source, const FileTe
     s->unit_m = 0.01 * (fine ? factor : 1);
     snprintf(s->unit_from, sizeof s->unit_from, text->has_unit ? "the file's UnitScaleFactor, %g cm" : "FBX's default, centimetres: the file says none",
              fine ? factor : 1);
-    if (!fbx_axis(up, source, "UpAxis", 1) || !fbx_axis(forward, source, "FrontAxis", 2) || v3_dot(up, forward) != 0) {
-        reader_warns(said, "UpAxis and FrontAxis are no two axes: taken as y up, z forward; `axes` in its sidecar says otherwise");
+    if (!fbx_axis(up, source, "UpAxis", 1)) {
+        reader_warns(said, "UpAxis is no axis: taken as y up, z forward; `axes` in its sidecar says otherwise");
         return;
+    }
+    if (!fbx_axis(forward, source, "FrontAxis", 2) || v3_dot(up, forward) != 0) {
+        memcpy(forward, up[2] != 0 ? (const double[3]){0, -1, 0} : (const double[3]){0, 0, 1}, sizeof forward);
+        reader_warns(said, "FrontAxis is no axis beside UpAxis: taken as %s; `axes` in its sidecar says otherwise",
+                     up[2] != 0 ? "-y" : "+z");
     }
     memcpy(s->up, up, sizeof up);
     memcpy(s->forward, forward, sizeof forward);

@@ -639,7 +639,19 @@ static void openflights_freedoms_are_joints(void **state)
     part_box(low, high, &m, part_called(&m, "tube"), value);
     CHECK_NEAR(high[0] - low[0], 0.5 * cos(20 * rad_per_deg) + 0.5 * sin(20 * rad_per_deg), 1e-6);
     assert_int_equal(model_validate(&m), STATUS_OK);
+    const double length_m = m.length_m;
     model_destroy(&m);
+
+    /* the same drawn in feet: octet 62 of the header */
+    static Flt feet;
+    feet = flt;
+    feet.at[62] = 4;
+    write_file(path, "feet.flt", feet.at, feet.count);
+    assert_int_equal(import_quietly(&m, &r, path), STATUS_OK);
+    CHECK_NEAR(m.length_m, 0.3048 * length_m, 1e-5);
+    CHECK(strstr(r.unit_from, "header") && r.scale_m == 1);
+    model_destroy(&m);
+    write_file(path, "tank.flt", flt.at, flt.count);
 
     /* the sidecar has the last word, and keeps the file's pivot */
     char yaml[128];

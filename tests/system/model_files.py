@@ -227,6 +227,8 @@ def test_fbx():
         bad = {**settings_of(z_forward, y_up, 1), key: value}
         warned(f'fbx: {key} {value} is said', put('a.fbx', fbx_text(fbx_tree(list(parts(z_forward, y_up, 0.01)), bad))), 'in its sidecar')
         reads(f'fbx: {key} {value}: the default', os.path.join(FOLDER, 'a.fbx'))
+    bad = {**settings_of(axis(1, -1), axis(2, 1), 1), 'FrontAxis': 2}
+    reads('fbx: z up, FrontAxis too', put('a.fbx', fbx_text(fbx_tree(list(parts(axis(1, -1), axis(2, 1), 0.01)), bad))))
 
 
 # ---- glTF -------------------------------------------------------------------------------------------------------------

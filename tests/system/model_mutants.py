@@ -51,7 +51,7 @@ def seeds():
 def spoil(data, kind, chance):
     data = bytearray(data)
     for _ in range(chance.choice((1, 1, 2, 4))):
-        how = chance.randrange(6)
+        how = chance.randrange(6) if chance.random() < 0.5 else 5
         head = chance.choice((len(data), min(len(data), 400)))  # as often in the header as anywhere
         at = chance.randrange(max(head, 1))
         if how == 0:
