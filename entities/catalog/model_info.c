@@ -117,9 +117,9 @@ static void judge_size(ModelInfo *info, const char *name)
     const char *slash = strrchr(name, '/');
     char path[4096], advice[200];
     Catalog *catalog;
-    SizeRange range = {0}, named;
-    log_suppress(true); /* a catalog that is broken is not of this model */
-    if (etc_path(path, sizeof path, "catalog.csv") && catalog_open(&catalog, path, 0.1) == STATUS_OK) {
+    SizeRange range = {.high_m = 100}, named;
+    log_suppress(true); /* a catalog that is broken is not of this model; what is smaller needs none */
+    if (largest_m > range.high_m && etc_path(path, sizeof path, "catalog.csv") && catalog_open(&catalog, path, 0.1) == STATUS_OK) {
         catalog_size_range(&range, catalog, -1, -1);
         catalog_close(catalog);
     }

@@ -25,12 +25,15 @@ typedef struct Files {
     ImportScene *scene;
     FileText     text;
     Status       status; /* of the model's own text */
+    char        *bytes;  /* that text; NULL: not read yet. assimp opens it several times */
+    size_t       octets;
 } Files;
 
 typedef struct OpenFile {
     struct aiFile file;
     char *bytes;
     size_t octets, at;
+    bool shared; /* with others that read it */
 } OpenFile;
 
 static size_t file_read(struct aiFile *file, char *out, size_t size, size_t count)
@@ -78,9 +81,9 @@ static bool find_after(char out[24], const char *bytes, size_t octets, const cha
 }
 
 /* The model's own octets, before assimp sees them. */
-static Status see_model(Files *f, OpenFile *file)
+static Status see_model(Files *file)
 {
-    FileText *t = &f->text;
+    FileText *t = &file->text;
     char      none[24];
     if (strcmp(t->extension, "fbx") == 0) {
         t->has_unit = find_after(none, file->bytes, file->octets, "UnitScaleFactor", "");
@@ -97,7 +100,7 @@ static Status see_model(Files *f, OpenFile *file)
         if (obj || stl || strcmp(t->extension, "ply") == 0)
             t->comment_m = import_comment_unit(t->comment, file->bytes, file->octets);
         if (obj)
-            return import_obj_plain(&file->bytes, &file->octets, f->scene->lost, f->said, f->files);
+            return import_obj_plain(&file->bytes, &file->octets, file->scene->lost, file->said, file->files);
     }
     return STATUS_OK;
 }
@@ -106,18 +109,21 @@ static struct aiFile *files_open(struct aiFileIO *io, const char *name, const ch
 {
     Files *files = (Files *)io->UserData;
     (void)mode;
+    const bool is_model = strcmp(name, files->files->shown) == 0;
     OpenFile *f = calloc(1, sizeof *f);
     Status status = f ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK) status = reader_read(&f->bytes, &f->octets, files->files, name);
-    if (status == STATUS_OK && strcmp(name, files->files->shown) == 0) {
-        if (files->status == STATUS_OK) files->status = see_model(files, f);
-        if ((status = files->status) != STATUS_OK) free(f->bytes);
+    if (status == STATUS_OK && !is_model) status = reader_read(&f->bytes, &f->octets, files->files, name);
+    if (status == STATUS_OK && is_model && !files->bytes) {
+        status = reader_read(&files->bytes, &files->octets, files->files, name);
+        if (status == STATUS_OK) status = files->status = see_model(files);
     }
+    if (status == STATUS_OK) status = is_model ? files->status : STATUS_OK;
     if (status != STATUS_OK) {
         files->files->no_memory = files->files->no_memory || status == STATUS_NO_MEMORY;
         free(f);
         return NULL;
     }
+    if (is_model) f->bytes = files->bytes, f->octets = files->octets, f->shared = true;
     f->file = (struct aiFile){file_read, file_write, file_tell, file_size, file_seek, file_flush, (char *)f};
     return &f->file;
 }
@@ -126,7 +132,7 @@ static void files_close(struct aiFileIO *io, struct aiFile *file)
 {
     (void)io;
     OpenFile *f = (OpenFile *)file;
-    free(f->bytes);
+    if (!f->shared) free(f->bytes);
     free(f);
 }
 

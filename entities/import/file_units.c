@@ -6,12 +6,15 @@
 #include <strings.h>
 #include <zlib.h>
 
+/* As isspace() has it, without a call: these are read by the million. */
+static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
 ReaderWord reader_word(const char **at, const char *end)
 {
     const char *from = *at;
-    while (from < end && isspace((unsigned char)*from)) from++;
+    while (from < end && is_blank(*from)) from++;
     ReaderWord word = {from, 0};
-    while (from + word.length < end && !isspace((unsigned char)from[word.length])) word.length++;
+    while (from + word.length < end && !is_blank(from[word.length])) word.length++;
     *at = from + word.length;
     return word;
 }

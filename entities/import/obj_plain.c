@@ -31,6 +31,17 @@ static void put(Out *out, const char *bytes, size_t count)
     out->octets += count;
 }
 
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+static void put_index(Out *out, long value)
+{
+    char text[16];
+    size_t at = sizeof text;
+    for (long rest = labs(value); rest > 0; rest /= 10) text[--at] = (char)('0' + rest % 10);
+    if (value < 0) text[--at] = '-';
+    put(out, text + at, sizeof text - at);
+}
+
 /* Writes a decimal number without exponent, `+`, or a missing digit before or after its point. False: it is no number;
  * nan and inf are, as they stand. */
 static bool put_number(Out *out, ReaderWord word)
@@ -39,13 +50,23 @@ static bool put_number(Out *out, ReaderWord word)
     char digits[512];
     int count = 0, before = 0, shift = 0;
     bool point = false;
+    const char *plain = at + (at < end && *at == '-'), *fraction = plain;
+    while (fraction < end && is_digit(*fraction)) fraction++;
+    if (fraction > plain && (fraction == end || (*fraction == '.' && end - fraction > 1))) {
+        const char *rest = fraction + (fraction < end);
+        while (rest < end && is_digit(*rest)) rest++;
+        if (rest == end) { /* as nearly all are */
+            put(out, word.at, word.length);
+            return true;
+        }
+    }
     const bool minus = at < end && *at == '-';
     if (at < end && (*at == '-' || *at == '+')) at++;
     if ((end - at == 3 && (strncasecmp(at, "nan", 3) == 0 || strncasecmp(at, "inf", 3) == 0))) {
         put(out, word.at, word.length);
         return true;
     }
-    for (; at < end && (isdigit((unsigned char)*at) || (*at == '.' && !point)); at++) {
+    for (; at < end && (is_digit(*at) || (*at == '.' && !point)); at++) {
         point = point || *at == '.';
         if (*at == '.') continue;
         if (count < (int)sizeof digits - 2 * most_shift) digits[count++] = *at;
@@ -108,7 +129,7 @@ static bool read_index(long *out, const char **at, const char *end)
     const char *from = *at + (*at < end && (**at == '-' || **at == '+'));
     long value = 0;
     int digits = 0;
-    for (; from < end && isdigit((unsigned char)*from) && value < 1000000000; from++, digits++)
+    for (; from < end && is_digit(*from) && value < 1000000000; from++, digits++)
         value = 10 * value + (*from - '0');
     *at = from;
     *out = minus ? -value : value;
@@ -125,7 +146,6 @@ static bool put_corners(Out *out, const char *name, const char *at, const char *
         for (ReaderWord w; (w = reader_word(&at, end)).length > 0 && w.at[0] != '#';) {
             const char *c = w.at, *stop = w.at + w.length;
             long v, vt, vn = 0;
-            char text[64];
             if (!read_index(&v, &c, stop)) return false;
             if (c < stop && *c == '/') {
                 c++;
@@ -137,8 +157,10 @@ static bool put_corners(Out *out, const char *name, const char *at, const char *
             }
             if (c != stop) return false;
             normals = normals && vn != 0;
-            const int n = normals ? snprintf(text, sizeof text, " %ld//%ld", v, vn) : snprintf(text, sizeof text, " %ld", v);
-            if (pass) put(out, text, (size_t)n);
+            if (!pass) continue;
+            put(out, " ", 1);
+            put_index(out, v);
+            if (normals) put(out, "//", 2), put_index(out, vn);
         }
     }
     put(out, "\n", 1);
@@ -165,6 +187,7 @@ Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT]
     for (int line = 1; at < end && status == STATUS_OK;) {
         /* a statement: lines that end with `\` go on */
         const int first = line;
+        const char *s = at, *tail = at;
         joined.octets = 0;
         for (bool more = true; more && at < end; line++) {
             const char *stop = at; /* LF, CR LF, or CR alone */
@@ -174,12 +197,15 @@ Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT]
             const char *begin = at;
             while (begin < stop && isspace((unsigned char)*begin)) begin++;
             more = stop > begin && stop[-1] == '\\' && (*begin != '#' || joined.octets > 0);
-            put(&joined, at, (size_t)(stop - at - more));
-            put(&joined, " ", more);
+            tail = stop;
+            if (more || joined.octets > 0) {
+                put(&joined, at, (size_t)(stop - at - more));
+                put(&joined, " ", 1);
+            }
             at = next;
         }
         if (joined.no_memory) break;
-        const char *s = joined.text ? joined.text : "", *tail = s + joined.octets;
+        if (joined.octets > 0) s = joined.text, tail = s + joined.octets;
         while (tail > s && (isspace((unsigned char)tail[-1]) || tail[-1] == '\\')) tail--;
         const ReaderWord word = reader_word(&s, tail);
         bool fine = true;
