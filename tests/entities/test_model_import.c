@@ -664,6 +664,19 @@ static void openflights_freedoms_are_joints(void **state)
     CHECK_NEAR(m.node[radar].p_parent[2], -1.5, 1e-9);
     model_destroy(&m);
 
+    /* an external reference, or a texture, at an address: nothing is fetched */
+    for (int opcode = 63; opcode <= 64; opcode++) {
+        static Flt far;
+        far = flt;
+        record(&far, opcode, 216, "http://127.0.0.1:9/far.flt");
+        write_file(path, "far.flt", far.at, far.count);
+        refused(path, STATUS_BAD_VALUE, "http://127.0.0.1:9/far.flt");
+        memcpy(far.at + far.record + 4, "there/is/none/of/this.flt\0", 27);
+        write_file(path, "near.flt", far.at, far.count);
+        assert_int_equal(import_quietly(&m, &r, path), STATUS_OK);
+        model_destroy(&m);
+    }
+
     write_file(path, "cut.flt", flt.at, 300);
     refused(path, STATUS_BAD_VALUE, "cut.flt");
     write_file(path, "not.flt", "hello", 5);

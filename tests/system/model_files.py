@@ -3,12 +3,14 @@ sizes are known: a hull 6 x 3 x 2 m with a nose ahead, a mirror on its right and
 beyond it. Whatever a file's unit, axes and packing, rays from ahead, from the right and from above must meet nose, mirror
 and fin where they are. WHAT: fbx, gltf, obj or other."""
 import base64
+import io
 import itertools
 import json
 import os
 import struct
 import subprocess
 import sys
+import zipfile
 
 PITVIPER, FOLDER = os.path.abspath(sys.argv[1]), sys.argv[2]
 failures = checks = 0
@@ -604,6 +606,7 @@ def test_other():
     for unit_m in (0.01, 0.0254, 1, 0.001):
         reads(f'dae: z up, {unit_m} m', put('a.dae', dae(axis(2, 1), axis(1, -1), unit_m)))
         reads(f'dae: y up, {unit_m} m', put('a.dae', dae(axis(1, 1), axis(2, 1), unit_m)))
+    reads('dae: x up', put('a.dae', dae(axis(0, 1), axis(2, 1), 0.01)))
     said = info(put('a.dae', dae(axis(2, 1), axis(1, -1), 0.01)))[0]['import']
     check('dae: the report', 'meter="0.01"' in said['scale_from'].replace('\\', '') and 'Z_UP' in said['axes_from'], said)
     reads('dae: says nothing', put('a.dae', dae(axis(1, 1), axis(2, 1), 1, '')))
@@ -630,6 +633,52 @@ def test_other():
     said = info(put('a.stl', stl()))[0]
     check('stl: as it is', said and [round(x, 5) for x in said['size_m']] == SIZE, said)
     warned('stl: its name names a unit', put('a.stl', stl('thing units=mm')), 'scale: 0.001')
+
+    # formats of printers say their unit, or mean millimetres: z up, x forward
+    def amf(unit_m, unit):
+        shapes = list(parts(axis(0, 1), axis(2, 1), unit_m))
+        objects = ''.join(f'<object id="{i}"><metadata type="name">{n}</metadata><mesh><vertices>' + ''.join(
+            '<vertex><coordinates><x>%r</x><y>%r</y><z>%r</z></coordinates></vertex>' % v for v in c) + '</vertices><volume>' + ''.join(
+            '<triangle><v1>%d</v1><v2>%d</v2><v3>%d</v3></triangle>' % f for f in t) + '</volume></mesh></object>' for i, (n, c, t) in enumerate(shapes))
+        return f'<?xml version="1.0" encoding="UTF-8"?><amf{unit} version="1.1">{objects}</amf>'
+
+    def three_mf(unit_m, unit, packed):
+        shapes = list(parts(axis(0, 1), axis(2, 1), unit_m))
+        objects = ''.join(f'<object id="{i + 1}" name="{n}" type="model"><mesh><vertices>' + ''.join('<vertex x="%r" y="%r" z="%r"/>' % v for v in c) +
+                          '</vertices><triangles>' + ''.join('<triangle v1="%d" v2="%d" v3="%d"/>' % f for f in t) + '</triangles></mesh></object>'
+                          for i, (n, c, t) in enumerate(shapes))
+        model = (f'<?xml version="1.0" encoding="UTF-8"?><model{unit} xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">'
+                 f'<resources>{objects}</resources><build>' + ''.join(f'<item objectid="{i + 1}"/>' for i in range(4)) + '</build></model>')
+        out = io.BytesIO()
+        with zipfile.ZipFile(out, 'w', zipfile.ZIP_DEFLATED if packed else zipfile.ZIP_STORED) as archive:
+            archive.writestr('[Content_Types].xml', '<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+                             '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+                             '<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>')
+            archive.writestr('_rels/.rels', '<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+                             '<Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>')
+            archive.writestr('3D/3dmodel.model', model)
+        return out.getvalue()
+    for unit_m, unit in ((0.0254, 'inch'), (1, 'meter'), (0.001, 'millimeter'), (0.001, ''), (0.01, 'centimeter'), (0.3048, 'foot')):
+        named = f' unit="{unit}"' if unit else ''
+        for packed in (True, False):
+            path = put('a.3mf', three_mf(unit_m, named, packed))
+            said = info(path)
+            check(f'3mf: {unit or "none"}', said[0] and all(abs(a - b) < 2e-3 for a, b in zip(said[0]['size_m'], SIZE)) and
+                  abs(said[0]['import']['scale_m'] - unit_m) < 1e-12, said)
+        if unit in ('inch', 'meter', 'millimeter', ''):
+            said = info(put('a.amf', amf(unit_m, named)))
+            check(f'amf: {unit or "none"}', said[0] and all(abs(a - b) < 2e-3 for a, b in zip(said[0]['size_m'], SIZE)), said)
+
+    def dxf(unit_m, code):
+        header = f'  0\nSECTION\n  2\nHEADER\n  9\n$INSUNITS\n 70\n{code:6d}\n  0\nENDSEC\n' if code is not None else ''
+        out = header + '  0\nSECTION\n  2\nENTITIES\n'
+        for _, c, t in parts(axis(1, -1), axis(2, 1), unit_m):
+            for f in t:
+                out += '  0\n3DFACE\n  8\nthing\n' + ''.join(f' 1{k}\n{c[v][0]!r}\n 2{k}\n{c[v][1]!r}\n 3{k}\n{c[v][2]!r}\n' for k, v in enumerate((*f, f[2])))
+        return out + '  0\nENDSEC\n  0\nEOF\n'
+    for unit_m, code in ((0.001, 4), (0.01, 5), (1, 6), (0.0254, 1), (0.3048, 2), (1, 0), (1, None)):
+        said = info(put('a.dxf', dxf(unit_m, code)))
+        check(f'dxf: $INSUNITS {code}', said[0] and all(abs(a - b) < 2e-3 for a, b in zip(said[0]['size_m'], SIZE)), said)
 
     # sizes
     def box(side):
