@@ -105,7 +105,8 @@ def stands(path):
 
 
 def reads(what, path):
-    check(what, not stands(path), stands(path))
+    wrong = stands(path)
+    check(what, not wrong, wrong)
 
 
 def twin(what, path):
