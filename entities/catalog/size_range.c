@@ -36,7 +36,8 @@ bool size_range_named(SizeRange *out, const char *name)
     const char *best = NULL;
     for (int i = 0; i < parametric_count(); i++) {
         const char *shape = parametric_name(i);
-        if (strcmp(shape, "unknown") != 0 && has_word(name, shape) && (!best || strlen(shape) > strlen(best))) best = shape;
+        if (strcmp(shape, "unknown") != 0 && has_word(name, shape) && (!best || strlen(shape) > strlen(best)))
+            best = shape;
     }
     Model model;
     *out = (SizeRange){0};
@@ -72,8 +73,8 @@ bool size_is_odd(char advice[200], double largest_m, const SizeRange *range, dou
     if (best < 0)
         snprintf(advice, 200, "no usual unit explains it: is it this model? `scale` in its sidecar changes it");
     else
-        snprintf(advice, 200, "`scale: %.4g`%s%s%s in its sidecar makes it %.3g m", import->scale_m * units[best].factor,
-                 units[best].unit ? " (drawn in " : "", units[best].unit ? units[best].unit : "", units[best].unit ? ")" : "",
-                 largest_m * units[best].factor);
+        snprintf(advice, 200, "`scale: %.4g`%s%s%s in its sidecar makes it %.3g m",
+                 import->scale_m * units[best].factor, units[best].unit ? " (drawn in " : "",
+                 units[best].unit ? units[best].unit : "", units[best].unit ? ")" : "", largest_m * units[best].factor);
     return true;
 }

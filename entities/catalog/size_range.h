@@ -1,5 +1,5 @@
-/* entities/catalog/size_range.h: which lengths things have, as the catalog knows them, and what to do about a model that is
- * far from them: a file whose unit was taken wrongly is a hundred times too large or small. */
+/* entities/catalog/size_range.h: which lengths things have, as the catalog knows them, and what to do about a model
+ * that is far from them: a file whose unit was taken wrongly is a hundred times too large or small. */
 #ifndef ENTITIES_CATALOG_SIZE_RANGE_H
 #define ENTITIES_CATALOG_SIZE_RANGE_H
 
@@ -7,8 +7,8 @@
 
 /* Of the largest side of each thing: the least and the most, and who they are. */
 typedef struct SizeRange {
-    double low_m, high_m;   /* high_m 0: there is none of the kind */
-    char   low[64], high[64];
+    double low_m, high_m; /* high_m 0: there is none of the kind */
+    char low[64], high[64];
 } SizeRange;
 
 /* Makes it hold a thing of that size; who: its name. */

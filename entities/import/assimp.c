@@ -13,20 +13,20 @@
 /* What the text of the model itself says, which assimp does not hand on. */
 typedef struct FileText {
     const char *extension;
-    bool        has_unit, has_up;            /* FBX, COLLADA */
-    char        unit[24], up[24];            /* COLLADA: as it says it */
-    double      stated_m, comment_m;         /* unit that the format, or a comment, names; 0: none */
-    char        stated[24], comment[24];
+    bool has_unit, has_up;      /* FBX, COLLADA */
+    char unit[24], up[24];      /* COLLADA: as it says it */
+    double stated_m, comment_m; /* unit that the format, or a comment, names; 0: none */
+    char stated[24], comment[24];
 } FileText;
 
 typedef struct Files {
     ReaderFiles *files;
-    ReaderSaid  *said;
+    ReaderSaid *said;
     ImportScene *scene;
-    FileText     text;
-    Status       status; /* of the model's own text */
-    char        *bytes;  /* that text; NULL: not read yet. assimp opens it several times */
-    size_t       octets;
+    FileText text;
+    Status status; /* of the model's own text */
+    char *bytes;   /* that text; NULL: not read yet. assimp opens it several times */
+    size_t octets;
 } Files;
 
 typedef struct OpenFile {
@@ -84,7 +84,7 @@ static bool find_after(char out[24], const char *bytes, size_t octets, const cha
 static Status see_model(Files *file)
 {
     FileText *t = &file->text;
-    char      none[24];
+    char none[24];
     if (strcmp(t->extension, "fbx") == 0) {
         t->has_unit = find_after(none, file->bytes, file->octets, "UnitScaleFactor", "");
         t->has_up = find_after(none, file->bytes, file->octets, "UpAxis", "");
@@ -99,8 +99,7 @@ static Status see_model(Files *file)
         const bool stl = strcmp(t->extension, "stl") == 0, obj = strcmp(t->extension, "obj") == 0;
         if (obj || stl || strcmp(t->extension, "ply") == 0)
             t->comment_m = import_comment_unit(t->comment, file->bytes, file->octets);
-        if (obj)
-            return import_obj_plain(&file->bytes, &file->octets, file->scene->lost, file->said, file->files);
+        if (obj) return import_obj_plain(&file->bytes, &file->octets, file->scene->lost, file->said, file->files);
     }
     return STATUS_OK;
 }
@@ -262,12 +261,15 @@ static double metadata(const struct aiScene *source, const char *key, double oth
         char text[32];
         double value;
         switch (m->mValues[i].mType) {
-        case AI_INT32: return *(const int32_t *)data;
-        case AI_DOUBLE: return *(const double *)data;
+        case AI_INT32:
+            return *(const int32_t *)data;
+        case AI_DOUBLE:
+            return *(const double *)data;
         case AI_FLOAT: /* 2.54f is meant as 2.54 */
             snprintf(text, sizeof text, "%.7g", (double)*(const float *)data);
             return text_to_double(&value, text) ? value : otherwise;
-        default: return otherwise;
+        default:
+            return otherwise;
         }
     }
     return otherwise;
@@ -292,9 +294,12 @@ static void fbx_frame(ImportScene *s, const struct aiScene *source, const FileTe
     double forward[3], up[3], right[3], coordinate[3];
     const double factor = metadata(source, "UnitScaleFactor", 1);
     const bool fine = factor > 1e-6 && factor < 1e9;
-    if (!fine) reader_warns(said, "UnitScaleFactor %g is no unit: taken as centimetres; `scale` in its sidecar says otherwise", factor);
+    if (!fine)
+        reader_warns(said, "UnitScaleFactor %g is no unit: taken as centimetres; `scale` in its sidecar says otherwise",
+                     factor);
     s->unit_m = 0.01 * (fine ? factor : 1);
-    snprintf(s->unit_from, sizeof s->unit_from, text->has_unit ? "the file's UnitScaleFactor, %g cm" : "FBX's default, centimetres: the file says none",
+    snprintf(s->unit_from, sizeof s->unit_from,
+             text->has_unit ? "the file's UnitScaleFactor, %g cm" : "FBX's default, centimetres: the file says none",
              fine ? factor : 1);
     if (!fbx_axis(up, source, "UpAxis", 1)) {
         reader_warns(said, "UpAxis is no axis: taken as y up, z forward; `axes` in its sidecar says otherwise");
@@ -333,19 +338,25 @@ static void frame(ImportScene *s, const struct aiScene *source, const FileText *
     if (strcmp(e, "dae") == 0) {
         if (text->has_unit)
             snprintf(s->unit_from, sizeof s->unit_from, "the file's <unit meter=\"%.20s\">, applied", text->unit);
-        else snprintf(s->unit_from, sizeof s->unit_from, "COLLADA's default, metres: the file says none");
+        else
+            snprintf(s->unit_from, sizeof s->unit_from, "COLLADA's default, metres: the file says none");
         if (text->has_up)
             snprintf(s->axes_from, sizeof s->axes_from, "the file's <up_axis> %.20s, turned to y up", text->up);
-        else snprintf(s->axes_from, sizeof s->axes_from, "COLLADA's default: the file says none");
+        else
+            snprintf(s->axes_from, sizeof s->axes_from, "COLLADA's default: the file says none");
     }
     if (text->stated_m > 0) {
         s->unit_m = text->stated_m;
-        if (text->stated[0]) snprintf(s->unit_from, sizeof s->unit_from, "the file's unit, %s", text->stated);
-        else snprintf(s->unit_from, sizeof s->unit_from, "the format's default, millimetres: the file says none");
+        if (text->stated[0])
+            snprintf(s->unit_from, sizeof s->unit_from, "the file's unit, %s", text->stated);
+        else
+            snprintf(s->unit_from, sizeof s->unit_from, "the format's default, millimetres: the file says none");
     }
     if (text->comment_m > 0 && text->comment_m != 1)
-        reader_warns(said, "a comment says `%s`, the format has no unit: taken as metres; `scale: %g` in its sidecar takes it so",
-                     text->comment, text->comment_m);
+        reader_warns(
+            said,
+            "a comment says `%s`, the format has no unit: taken as metres; `scale: %g` in its sidecar takes it so",
+            text->comment, text->comment_m);
 }
 
 Status import_assimp_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, const char *extension)
@@ -383,7 +394,7 @@ Status import_assimp_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, 
 
 Status import_assimp(ImportScene *out, const char *path, const char *extension)
 {
-    char   dotted[40];
+    char dotted[40];
     Status status = library_load(&assimp_library);
     if (status != STATUS_OK) return status;
     snprintf(dotted, sizeof dotted, ".%s", extension);

@@ -1,5 +1,5 @@
-/* entities/import/file_units.c: the unit of length that a file's own text names, where the library that reads the file does not
- * hand it on. */
+/* entities/import/file_units.c: the unit of length that a file's own text names, where the library that reads the file
+ * does not hand it on. */
 #include "entities/import/reader.h"
 
 #include <ctype.h>
@@ -31,8 +31,8 @@ static const struct {
     const char *word;
     double unit_m;
 } units[] = {{"millimet", 0.001}, {"centimet", 0.01}, {"decimet", 0.1}, {"kilomet", 1000}, {"inches", 0.0254},
-             {"inch", 0.0254},    {"feet", 0.3048},   {"foot", 0.3048}, {"yard", 0.9144},  {"meter", 1}, {"metre", 1},
-             {"mm", 0.001},       {"cm", 0.01},       {"ft", 0.3048},   {"m", 1}};
+             {"inch", 0.0254},    {"feet", 0.3048},   {"foot", 0.3048}, {"yard", 0.9144},  {"meter", 1},
+             {"metre", 1},        {"mm", 0.001},      {"cm", 0.01},     {"ft", 0.3048},    {"m", 1}};
 
 double import_comment_unit(char word[24], const char *text, size_t octets)
 {
@@ -41,8 +41,9 @@ double import_comment_unit(char word[24], const char *text, size_t octets)
         const char *stop = memchr(at, '\n', (size_t)(end - at));
         if (!stop) stop = end;
         ReaderWord first = reader_word(&at, stop);
-        const bool comment = first.length > 0 && (first.at[0] == '#' || reader_word_is(first, "comment") ||
-                                                  reader_word_is(first, "obj_info") || (line == 0 && reader_word_is(first, "solid")));
+        const bool comment =
+            first.length > 0 && (first.at[0] == '#' || reader_word_is(first, "comment") ||
+                                 reader_word_is(first, "obj_info") || (line == 0 && reader_word_is(first, "solid")));
         const char *unit = NULL;
         for (const char *c = first.at; comment && c + 4 <= stop && !unit; c++)
             if (strncasecmp(c, "unit", 4) == 0) unit = c;
@@ -50,7 +51,9 @@ double import_comment_unit(char word[24], const char *text, size_t octets)
             char lower[200];
             size_t n = 0;
             for (const char *c = first.at; c < stop && n < sizeof lower - 1; c++)
-                lower[n++] = c >= unit && c < unit + 5 ? ' ' : isalpha((unsigned char)*c) ? (char)tolower((unsigned char)*c) : ' ';
+                lower[n++] = c >= unit && c < unit + 5    ? ' '
+                             : isalpha((unsigned char)*c) ? (char)tolower((unsigned char)*c)
+                                                          : ' ';
             lower[n] = 0;
             const char *from = lower;
             for (ReaderWord w; (w = reader_word(&from, lower + n)).length > 0;)
@@ -69,7 +72,8 @@ double import_comment_unit(char word[24], const char *text, size_t octets)
 
 /* ---- what formats say ------------------------------------------------------------------------------- */
 
-/* A 3MF file's model is a part of a ZIP archive: the beginning of the first whose name ends with `.model`. Returns octets. */
+/* A 3MF file's model is a part of a ZIP archive: the beginning of the first whose name ends with `.model`. Returns
+ * octets. */
 static size_t unzip_model(char *out, size_t size, const char *bytes, size_t octets)
 {
     const uint8_t *b = (const uint8_t *)bytes;
@@ -87,7 +91,10 @@ static size_t unzip_model(char *out, size_t size, const char *bytes, size_t octe
             memcpy(out, from, rest < size ? rest : size);
             return rest < size ? rest : size;
         }
-        z_stream z = {.next_in = (Bytef *)(uintptr_t)from, .avail_in = (uInt)rest, .next_out = (Bytef *)out, .avail_out = (uInt)size};
+        z_stream z = {.next_in = (Bytef *)(uintptr_t)from,
+                      .avail_in = (uInt)rest,
+                      .next_out = (Bytef *)out,
+                      .avail_out = (uInt)size};
         if (method != 8 || inflateInit2(&z, -MAX_WBITS) != Z_OK) return 0;
         inflate(&z, Z_SYNC_FLUSH);
         inflateEnd(&z);
@@ -102,8 +109,8 @@ static double printed_unit(char word[24], const char *text, size_t octets)
     static const struct {
         const char *word;
         double unit_m;
-    } known[] = {{"micron", 1e-6}, {"millimeter", 0.001}, {"centimeter", 0.01}, {"inch", 0.0254}, {"foot", 0.3048},
-                 {"feet", 0.3048}, {"meter", 1}};
+    } known[] = {{"micron", 1e-6}, {"millimeter", 0.001}, {"centimeter", 0.01}, {"inch", 0.0254},
+                 {"foot", 0.3048}, {"feet", 0.3048},      {"meter", 1}};
     const char *element = memmem(text, octets, "<model", 6), *at;
     if (!element) element = memmem(text, octets, "<amf", 4);
     const char *end = element ? memchr(element, '>', octets - (size_t)(element - text)) : NULL;
@@ -121,7 +128,8 @@ static double printed_unit(char word[24], const char *text, size_t octets)
 /* $INSUNITS of a drawing's header; 0: none, or a drawing without unit. */
 static double drawing_unit(char word[24], const char *text, size_t octets)
 {
-    static const double unit_m[] = {0, 0.0254, 0.3048, 1609.344, 0.001, 0.01, 1, 1000, 0, 0, 0.9144, 0, 0, 1e-6, 0.1, 10, 100};
+    static const double unit_m[] = {0, 0.0254, 0.3048, 1609.344, 0.001, 0.01, 1,  1000, 0,
+                                    0, 0.9144, 0,      0,        1e-6,  0.1,  10, 100};
     const char *at = memmem(text, octets, "$INSUNITS", 9), *end = text + octets;
     char number[8] = "";
     long long code;
@@ -130,7 +138,8 @@ static double drawing_unit(char word[24], const char *text, size_t octets)
     const bool integer = reader_word_is(reader_word(&at, end), "70");
     const ReaderWord value = reader_word(&at, end);
     if (value.length < sizeof number) memcpy(number, value.at, value.length), number[value.length] = 0;
-    if (!integer || !text_to_long(&code, number) || code < 0 || code >= (long long)(sizeof unit_m / sizeof *unit_m)) return 0;
+    if (!integer || !text_to_long(&code, number) || code < 0 || code >= (long long)(sizeof unit_m / sizeof *unit_m))
+        return 0;
     snprintf(word, 24, "$INSUNITS %lld", code);
     return unit_m[code];
 }
@@ -139,7 +148,8 @@ double import_stated_unit(char word[24], const char *extension, const char *byte
 {
     static char model[1 << 14];
     if (strcmp(extension, "dxf") == 0) return drawing_unit(word, bytes, octets);
-    if (strcmp(extension, "amf") == 0 && (octets < 2 || memcmp(bytes, "PK", 2) != 0)) return printed_unit(word, bytes, octets);
+    if (strcmp(extension, "amf") == 0 && (octets < 2 || memcmp(bytes, "PK", 2) != 0))
+        return printed_unit(word, bytes, octets);
     if (strcmp(extension, "3mf") != 0 && strcmp(extension, "amf") != 0) return 0;
     const size_t got = unzip_model(model, sizeof model, bytes, octets);
     return printed_unit(word, model, got);

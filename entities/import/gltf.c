@@ -1,8 +1,8 @@
 /* entities/import/gltf.c: glTF 2.0, text (.gltf) and binary (.glb), in the reader's process: the document, its nodes,
  * materials and what is lost.
  *
- * assimp 5.2 reads glTF too, but takes quantised numbers for octets of a float, and passes over extensions that the file
- * says it cannot be read without. */
+ * assimp 5.2 reads glTF too, but takes quantised numbers for octets of a float, and passes over extensions that the
+ * file says it cannot be read without. */
 #include "entities/import/gltf.h"
 
 #include <stdlib.h>
@@ -24,7 +24,8 @@ void gltf_place(double out[12], const double a[12], const double b[12])
     double m[12];
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 4; j++)
-            m[4 * i + j] = a[4 * i] * b[j] + a[4 * i + 1] * b[4 + j] + a[4 * i + 2] * b[8 + j] + (j == 3 ? a[4 * i + 3] : 0);
+            m[4 * i + j] =
+                a[4 * i] * b[j] + a[4 * i + 1] * b[4 + j] + a[4 * i + 2] * b[8 + j] + (j == 3 ? a[4 * i + 3] : 0);
     memcpy(out, m, sizeof m);
 }
 
@@ -56,7 +57,8 @@ static Status node_place(double out[12], Gltf *g, const json_t *node)
         gltf_numbers(s, &wrong, node, "scale", 3);
         place_from_parts(out, t, q, s);
     }
-    return wrong ? reader_fails(g->said, STATUS_BAD_VALUE, "a node's matrix, translation, rotation or scale is no list of numbers")
+    return wrong ? reader_fails(g->said, STATUS_BAD_VALUE,
+                                "a node's matrix, translation, rotation or scale is no list of numbers")
                  : STATUS_OK;
 }
 
@@ -76,17 +78,23 @@ static Status add_node(int *out, Gltf *g, const char *name, int parent, const do
 /* EXT_mesh_gpu_instancing: nodes below `node`, one an instance. */
 static Status add_instances(GltfDrawn *drawn, Gltf *g, const json_t *attributes, int node)
 {
-    static const struct { const char *name; int components; } part[3] = {{"TRANSLATION", 3}, {"ROTATION", 4}, {"SCALE", 3}};
+    static const struct {
+        const char *name;
+        int components;
+    } part[3] = {{"TRANSLATION", 3}, {"ROTATION", 4}, {"SCALE", 3}};
     double *numbers[3] = {0};
     int count = -1;
     Status status = STATUS_OK;
     for (int k = 0; k < 3 && status == STATUS_OK; k++) {
         int n;
         if (!json_object_get(attributes, part[k].name)) continue;
-        status = gltf_accessor(&numbers[k], &n, g, gltf_index(attributes, part[k].name, json_array_size(json_object_get(g->root, "accessors"))),
-                               part[k].components, part[k].name);
+        status =
+            gltf_accessor(&numbers[k], &n, g,
+                          gltf_index(attributes, part[k].name, json_array_size(json_object_get(g->root, "accessors"))),
+                          part[k].components, part[k].name);
         if (status == STATUS_OK && count >= 0 && n != count)
-            status = reader_fails(g->said, STATUS_BAD_VALUE, "instances: as many of %s as of the others are needed", part[k].name);
+            status = reader_fails(g->said, STATUS_BAD_VALUE, "instances: as many of %s as of the others are needed",
+                                  part[k].name);
         count = n;
     }
     drawn->count = 0;
@@ -108,8 +116,10 @@ static Status add_instances(GltfDrawn *drawn, Gltf *g, const json_t *attributes,
 
 static Status walk(Gltf *g, const json_t *index, int parent, const double above[12], int depth)
 {
-    const json_t *node = json_is_integer(index) && json_integer_value(index) >= 0 && (size_t)json_integer_value(index) < g->nodes
-                             ? gltf_item(g, "nodes", (int)json_integer_value(index)) : NULL;
+    const json_t *node =
+        json_is_integer(index) && json_integer_value(index) >= 0 && (size_t)json_integer_value(index) < g->nodes
+            ? gltf_item(g, "nodes", (int)json_integer_value(index))
+            : NULL;
     const char *name = json_string_value(json_object_get(node, "name"));
     char unnamed[32];
     double m[12];
@@ -138,7 +148,8 @@ static Status walk(Gltf *g, const json_t *index, int parent, const double above[
     }
     double below[12]; /* another visit of this node may change its world */
     memcpy(below, g->world[own], sizeof below);
-    json_array_foreach(json_object_get(node, "children"), i, child) {
+    json_array_foreach(json_object_get(node, "children"), i, child)
+    {
         if (status != STATUS_OK) break;
         status = walk(g, child, at, below, depth + 1);
     }
@@ -150,7 +161,12 @@ static Status walk_scene(Gltf *g)
 {
     static const double here[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     const size_t scenes = json_array_size(json_object_get(g->root, "scenes"));
-    json_t *roots = json_incref(json_object_get(gltf_item(g, "scenes", json_object_get(g->root, "scene") ? gltf_index(g->root, "scene", scenes) : scenes > 0 ? 0 : -1), "nodes"));
+    json_t *roots =
+        json_incref(json_object_get(gltf_item(g, "scenes",
+                                              json_object_get(g->root, "scene") ? gltf_index(g->root, "scene", scenes)
+                                              : scenes > 0                      ? 0
+                                                                                : -1),
+                                    "nodes"));
     json_t *item, *node;
     size_t i, k;
     int root = -1;
@@ -160,20 +176,24 @@ static Status walk_scene(Gltf *g)
         roots = json_array();
         if (!child || !roots) status = STATUS_NO_MEMORY;
         if (child)
-            json_array_foreach(json_object_get(g->root, "nodes"), i, node)
-                json_array_foreach(json_object_get(node, "children"), k, item)
-                    if (json_integer_value(item) >= 0 && (size_t)json_integer_value(item) < g->nodes) child[json_integer_value(item)] = true;
+            json_array_foreach(json_object_get(g->root, "nodes"), i, node) json_array_foreach(
+                json_object_get(node, "children"), k,
+                item) if (json_integer_value(item) >= 0 && (size_t)json_integer_value(item) < g->nodes)
+                child[json_integer_value(item)] = true;
         for (i = 0; i < g->nodes && status == STATUS_OK; i++)
             if (!child[i] && json_array_append_new(roots, json_integer((json_int_t)i)) != 0) status = STATUS_NO_MEMORY;
         free(child);
     }
-    if (status == STATUS_OK && json_array_size(roots) == 0) status = reader_fails(g->said, STATUS_BAD_VALUE, "no nodes in its scene");
+    if (status == STATUS_OK && json_array_size(roots) == 0)
+        status = reader_fails(g->said, STATUS_BAD_VALUE, "no nodes in its scene");
     if (status == STATUS_OK && json_array_size(roots) > 1) status = add_node(&root, g, "ROOT", -1, here);
-    json_array_foreach(roots, i, item) {
+    json_array_foreach(roots, i, item)
+    {
         if (status != STATUS_OK) break;
         status = walk(g, item, root, here, root < 0 ? 1 : 2);
     }
-    if (status == STATUS_OK && g->scene->node_count == 0) status = reader_fails(g->said, STATUS_BAD_VALUE, "its only node is switched off");
+    if (status == STATUS_OK && g->scene->node_count == 0)
+        status = reader_fails(g->said, STATUS_BAD_VALUE, "its only node is switched off");
     json_decref(roots);
     return status;
 }
@@ -188,10 +208,13 @@ static void fill_material(ImportMaterial *out, const json_t *material)
     double rgba[4] = {1, 1, 1, 1};
     bool wrong = false;
     snprintf(out->name, sizeof out->name, "%s", name ? name : "");
-    if (specular) gltf_numbers(rgba, &wrong, specular, "diffuseFactor", 4);
-    else gltf_numbers(rgba, &wrong, metallic, "baseColorFactor", 4);
+    if (specular)
+        gltf_numbers(rgba, &wrong, specular, "diffuseFactor", 4);
+    else
+        gltf_numbers(rgba, &wrong, metallic, "baseColorFactor", 4);
     /* a texture on white gives no colour */
-    out->has_colour = !json_object_get(specular ? specular : metallic, specular ? "diffuseTexture" : "baseColorTexture");
+    out->has_colour =
+        !json_object_get(specular ? specular : metallic, specular ? "diffuseTexture" : "baseColorTexture");
     for (int i = 0; i < 3; i++) out->rgb[i] = (float)rgba[i];
 }
 
@@ -204,9 +227,10 @@ static void count_lost(Gltf *g)
     lost[LOST_LIGHTS] = (int)json_array_size(json_object_get(gltf_extension(g->root, "KHR_lights_punctual"), "lights"));
     lost[LOST_CAMERAS] = (int)json_array_size(json_object_get(g->root, "cameras"));
     lost[LOST_ANIMATIONS] = (int)json_array_size(json_object_get(g->root, "animations"));
-    json_array_foreach(json_object_get(g->root, "skins"), i, item) lost[LOST_BONES] += (int)json_array_size(json_object_get(item, "joints"));
-    json_array_foreach(json_object_get(g->root, "meshes"), i, item)
-        lost[LOST_MORPH_TARGETS] += (int)json_array_size(json_object_get(json_array_get(json_object_get(item, "primitives"), 0), "targets"));
+    json_array_foreach(json_object_get(g->root, "skins"), i, item) lost[LOST_BONES] +=
+        (int)json_array_size(json_object_get(item, "joints"));
+    json_array_foreach(json_object_get(g->root, "meshes"), i, item) lost[LOST_MORPH_TARGETS] +=
+        (int)json_array_size(json_object_get(json_array_get(json_object_get(item, "primitives"), 0), "targets"));
 }
 
 static bool fill_scene(Gltf *g)
@@ -225,11 +249,16 @@ static bool fill_scene(Gltf *g)
     s->vertex_count = s->triangle_count = 0;
     for (int m = 0; m < meshes && room; m++) {
         const GltfShape *shape = &g->shape[g->draw[m].shape];
-        s->mesh[m] = (ImportMesh){.node = g->draw[m].node, .material = shape->material, .first_vertex = s->vertex_count,
-                                  .vertex_count = shape->vertices, .first_triangle = s->triangle_count,
-                                  .triangle_count = shape->triangles, .has_normals = shape->normal != NULL};
+        s->mesh[m] = (ImportMesh){.node = g->draw[m].node,
+                                  .material = shape->material,
+                                  .first_vertex = s->vertex_count,
+                                  .vertex_count = shape->vertices,
+                                  .first_triangle = s->triangle_count,
+                                  .triangle_count = shape->triangles,
+                                  .has_normals = shape->normal != NULL};
         memcpy(s->vertex[s->vertex_count], shape->vertex, (size_t)shape->vertices * sizeof *shape->vertex);
-        if (shape->normal) memcpy(s->normal[s->vertex_count], shape->normal, (size_t)shape->vertices * sizeof *shape->normal);
+        if (shape->normal)
+            memcpy(s->normal[s->vertex_count], shape->normal, (size_t)shape->vertices * sizeof *shape->normal);
         memcpy(s->triangle[s->triangle_count], shape->triangle, (size_t)shape->triangles * sizeof *shape->triangle);
         s->vertex_count += shape->vertices;
         s->triangle_count += shape->triangles;
@@ -253,15 +282,19 @@ static Status take_apart(const char **json, size_t *octets, Gltf *g)
     if (g->octets < 4 || memcmp(g->text, "glTF", 4) != 0) return STATUS_OK;
     if (g->octets < 20) return reader_fails(g->said, STATUS_BAD_VALUE, "ends within its header");
     if (word_at(g->text + 4) != 2)
-        return reader_fails(g->said, STATUS_UNSUPPORTED, "binary glTF of version %u; version 2 is read: convert it", word_at(g->text + 4));
+        return reader_fails(g->said, STATUS_UNSUPPORTED, "binary glTF of version %u; version 2 is read: convert it",
+                            word_at(g->text + 4));
     for (size_t at = 12; g->octets - at >= 8;) {
         const size_t length = word_at(g->text + at), kind = word_at(g->text + at + 4);
         const bool first = at == 12;
         at += 8;
-        if (length > g->octets - at) return reader_fails(g->said, STATUS_BAD_VALUE, "ends within a chunk: is it whole?");
+        if (length > g->octets - at)
+            return reader_fails(g->said, STATUS_BAD_VALUE, "ends within a chunk: is it whole?");
         if (first && kind != 0x4e4f534a) return reader_fails(g->said, STATUS_BAD_VALUE, "its first chunk is no JSON");
-        if (first) *json = g->text + at, *octets = length;
-        else if (kind == 0x004e4942 && !g->binary) g->binary = g->text + at, g->binary_octets = length;
+        if (first)
+            *json = g->text + at, *octets = length;
+        else if (kind == 0x004e4942 && !g->binary)
+            g->binary = g->text + at, g->binary_octets = length;
         at += length;
     }
     return STATUS_OK;
@@ -283,7 +316,9 @@ static Status open_document(Gltf *g)
     const char *least = json_string_value(json_object_get(asset, "minVersion"));
     if (!version || strncmp(version, "2.", 2) != 0 || (least && strcmp(least, "2.0") != 0))
         return reader_fails(g->said, STATUS_UNSUPPORTED, "glTF of version %.20s; 2.0 is read: convert it",
-                            least && version ? least : version ? version : "unknown");
+                            least && version ? least
+                            : version        ? version
+                                             : "unknown");
     g->nodes = json_array_size(json_object_get(g->root, "nodes"));
     g->meshes = json_array_size(json_object_get(g->root, "meshes"));
     g->buffer_count = json_array_size(json_object_get(g->root, "buffers"));

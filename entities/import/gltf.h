@@ -1,5 +1,5 @@
-/* entities/import/gltf.h: a glTF 2.0 document as its reader's files see it. Indices and lengths of the document are checked
- * where they are used; everything may be wrong. */
+/* entities/import/gltf.h: a glTF 2.0 document as its reader's files see it. Indices and lengths of the document are
+ * checked where they are used; everything may be wrong. */
 #ifndef ENTITIES_IMPORT_GLTF_H
 #define ENTITIES_IMPORT_GLTF_H
 
@@ -41,15 +41,15 @@ typedef struct Gltf {
     size_t binary_octets;
     GltfBuffer *buffer;
     size_t buffer_count;
-    size_t nodes, meshes;  /* of the document */
-    double (*world)[12];   /* of its nodes: p_file = world (p_node, 1) */
-    bool *in_scene;        /* whether there is a world */
+    size_t nodes, meshes; /* of the document */
+    double (*world)[12];  /* of its nodes: p_file = world (p_node, 1) */
+    bool *in_scene;       /* whether there is a world */
     int node_room, drawn_room, drawn_count;
     GltfDrawn *drawn;
     int shape_count, shape_room, draw_count, draw_room;
     GltfShape *shape;
     GltfDraw *draw;
-    int (*cached)[2];      /* of meshes: their first shape and how many; -1: not read yet */
+    int (*cached)[2]; /* of meshes: their first shape and how many; -1: not read yet */
 } Gltf;
 
 /* Member `key` when it is an index below `count`, else -1. */

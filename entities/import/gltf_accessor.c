@@ -57,7 +57,9 @@ static Status read_buffer(Gltf *g, int index)
         json_t *extensions = json_object_get(object, "extensions");
         const char *packed = json_object_iter_key(json_object_iter(extensions));
         if (packed) /* stands for what the extension unpacks */
-            return reader_fails(g->said, STATUS_UNSUPPORTED, "buffer %d is packed by the extension %.80s, which is not read: export it without", index, packed);
+            return reader_fails(g->said, STATUS_UNSUPPORTED,
+                                "buffer %d is packed by the extension %.80s, which is not read: export it without",
+                                index, packed);
         if (index > 0 || !g->binary)
             return reader_fails(g->said, STATUS_BAD_VALUE, "buffer %d is neither in the file nor named", index);
         b->bytes = (char *)(uintptr_t)g->binary;
@@ -75,11 +77,13 @@ static Status read_buffer(Gltf *g, int index)
         status = reader_read(&b->bytes, &b->octets, g->files, path);
         b->owned = status == STATUS_OK;
         if (status != STATUS_OK && status != STATUS_NO_MEMORY)
-            return reader_fails(g->said, STATUS_BAD_VALUE, "buffer %d cannot be read: %.200s, in the model's folder", index, name);
+            return reader_fails(g->said, STATUS_BAD_VALUE, "buffer %d cannot be read: %.200s, in the model's folder",
+                                index, name);
     }
     if (status != STATUS_OK) return status;
     if (!json_is_integer(length) || json_integer_value(length) < 1 || (size_t)json_integer_value(length) > b->octets)
-        return reader_fails(g->said, STATUS_BAD_VALUE, "buffer %d has %zu octets, and should have more: is the file whole?", index, b->octets);
+        return reader_fails(g->said, STATUS_BAD_VALUE,
+                            "buffer %d has %zu octets, and should have more: is the file whole?", index, b->octets);
     b->octets = (size_t)json_integer_value(length);
     return STATUS_OK;
 }
@@ -99,30 +103,55 @@ static int64_t octets_of(const json_t *object, const char *key, int64_t otherwis
     const json_t *value = json_object_get(object, key);
     if (!value) return otherwise;
     return json_is_integer(value) && json_integer_value(value) >= 0 && json_integer_value(value) <= import_max_octets
-               ? json_integer_value(value) : -1;
+               ? json_integer_value(value)
+               : -1;
 }
 
 static int size_of(int64_t type)
 {
     switch (type) {
-    case 5120: case 5121: return 1;
-    case 5122: case 5123: return 2;
-    case 5125: case 5126: return 4;
-    default: return 0;
+    case 5120:
+    case 5121:
+        return 1;
+    case 5122:
+    case 5123:
+        return 2;
+    case 5125:
+    case 5126:
+        return 4;
+    default:
+        return 0;
     }
 }
 
 /* KHR_mesh_quantization: normalised numbers are fractions of the largest; the least of signed ones is -1 too. */
 static double number_at(const char *at, int64_t type, bool normalised)
 {
-    int8_t i8; uint8_t u8; int16_t i16; uint16_t u16; uint32_t u32; float f;
+    int8_t i8;
+    uint8_t u8;
+    int16_t i16;
+    uint16_t u16;
+    uint32_t u32;
+    float f;
     switch (type) {
-    case 5120: memcpy(&i8, at, 1); return normalised ? fmax(i8 / 127.0, -1) : i8;
-    case 5121: memcpy(&u8, at, 1); return normalised ? u8 / 255.0 : u8;
-    case 5122: memcpy(&i16, at, 2); return normalised ? fmax(i16 / 32767.0, -1) : i16;
-    case 5123: memcpy(&u16, at, 2); return normalised ? u16 / 65535.0 : u16;
-    case 5125: memcpy(&u32, at, 4); return u32;
-    default: memcpy(&f, at, 4); return f;
+    case 5120:
+        memcpy(&i8, at, 1);
+        return normalised ? fmax(i8 / 127.0, -1) : i8;
+    case 5121:
+        memcpy(&u8, at, 1);
+        return normalised ? u8 / 255.0 : u8;
+    case 5122:
+        memcpy(&i16, at, 2);
+        return normalised ? fmax(i16 / 32767.0, -1) : i16;
+    case 5123:
+        memcpy(&u16, at, 2);
+        return normalised ? u16 / 65535.0 : u16;
+    case 5125:
+        memcpy(&u32, at, 4);
+        return u32;
+    default:
+        memcpy(&f, at, 4);
+        return f;
     }
 }
 
@@ -138,35 +167,42 @@ static Status view_at(const char **base, size_t *stride, Gltf *g, int view, int6
         return reader_fails(g->said, STATUS_BAD_VALUE, "%s: bufferView %d is wrong", what, view);
     const Status status = read_buffer(g, buffer);
     if (status != STATUS_OK) return status;
-    if (from + length > (int64_t)g->buffer[buffer].octets || offset + step * (int64_t)(count - 1) + (int64_t)size > length)
-        return reader_fails(g->said, STATUS_BAD_VALUE, "%s: bufferView %d ends before its %zu elements do", what, view, count);
+    if (from + length > (int64_t)g->buffer[buffer].octets ||
+        offset + step * (int64_t)(count - 1) + (int64_t)size > length)
+        return reader_fails(g->said, STATUS_BAD_VALUE, "%s: bufferView %d ends before its %zu elements do", what, view,
+                            count);
     *base = g->buffer[buffer].bytes + from + offset;
     *stride = (size_t)step;
     return STATUS_OK;
 }
 
 /* Other numbers at some places: `indices` and `values`. */
-static Status sparse(double *out, size_t count, Gltf *g, const json_t *object, int components, int64_t type, bool normalised,
-                     const char *what)
+static Status sparse(double *out, size_t count, Gltf *g, const json_t *object, int components, int64_t type,
+                     bool normalised, const char *what)
 {
     const json_t *indices = json_object_get(object, "indices"), *values = json_object_get(object, "values");
     const size_t views = json_array_size(json_object_get(g->root, "bufferViews"));
     const int64_t n = octets_of(object, "count", -1), index_type = octets_of(indices, "componentType", -1);
-    const int index_view = gltf_index(indices, "bufferView", views), value_view = gltf_index(values, "bufferView", views);
+    const int index_view = gltf_index(indices, "bufferView", views),
+              value_view = gltf_index(values, "bufferView", views);
     const char *at, *from;
     size_t at_step, from_step;
-    if (n < 1 || (size_t)n > count || (index_type != 5121 && index_type != 5123 && index_type != 5125) || index_view < 0 || value_view < 0)
+    if (n < 1 || (size_t)n > count || (index_type != 5121 && index_type != 5123 && index_type != 5125) ||
+        index_view < 0 || value_view < 0)
         return reader_fails(g->said, STATUS_BAD_VALUE, "%s: its sparse numbers are wrong", what);
     const size_t size = (size_t)size_of(type) * (size_t)components;
-    Status status = view_at(&at, &at_step, g, index_view, octets_of(indices, "byteOffset", 0), (size_t)size_of(index_type),
-                            (size_t)n, false, what);
+    Status status = view_at(&at, &at_step, g, index_view, octets_of(indices, "byteOffset", 0),
+                            (size_t)size_of(index_type), (size_t)n, false, what);
     if (status == STATUS_OK)
-        status = view_at(&from, &from_step, g, value_view, octets_of(values, "byteOffset", 0), size, (size_t)n, false, what);
+        status =
+            view_at(&from, &from_step, g, value_view, octets_of(values, "byteOffset", 0), size, (size_t)n, false, what);
     for (size_t i = 0; i < (size_t)n && status == STATUS_OK; i++) {
         const double place = number_at(at + i * at_step, index_type, false);
-        if (place >= (double)count) return reader_fails(g->said, STATUS_BAD_VALUE, "%s: a sparse index is beyond its end", what);
+        if (place >= (double)count)
+            return reader_fails(g->said, STATUS_BAD_VALUE, "%s: a sparse index is beyond its end", what);
         for (int k = 0; k < components; k++)
-            out[(size_t)place * (size_t)components + (size_t)k] = number_at(from + i * from_step + k * size_of(type), type, normalised);
+            out[(size_t)place * (size_t)components + (size_t)k] =
+                number_at(from + i * from_step + k * size_of(type), type, normalised);
     }
     return status;
 }
@@ -187,7 +223,8 @@ Status gltf_accessor(double **out, int *count, Gltf *g, int accessor, int compon
     *out = NULL;
     if (!type || strcmp(type, components == 16 ? "MAT4" : type_name[components]) != 0 || size == 0 || n < 1 ||
         n > 3 * (int64_t)import_max_triangles)
-        return reader_fails(g->said, STATUS_BAD_VALUE, "%s: accessor %d is wrong, or has more than 24 M elements", what, accessor);
+        return reader_fails(g->said, STATUS_BAD_VALUE, "%s: accessor %d is wrong, or has more than 24 M elements", what,
+                            accessor);
     const bool normalised = json_is_true(json_object_get(object, "normalized")) && component < 5125;
     double *numbers = calloc((size_t)n * (size_t)components, sizeof *numbers);
     if (!numbers) return STATUS_NO_MEMORY;
@@ -200,9 +237,11 @@ Status gltf_accessor(double **out, int *count, Gltf *g, int accessor, int compon
                          (size_t)n, true, what);
         for (size_t i = 0; i < (size_t)n && status == STATUS_OK; i++)
             for (int k = 0; k < components; k++)
-                numbers[i * (size_t)components + (size_t)k] = number_at(base + i * stride + k * size, component, normalised);
+                numbers[i * (size_t)components + (size_t)k] =
+                    number_at(base + i * stride + k * size, component, normalised);
     }
-    if (status == STATUS_OK && extra) status = sparse(numbers, (size_t)n, g, extra, components, component, normalised, what);
+    if (status == STATUS_OK && extra)
+        status = sparse(numbers, (size_t)n, g, extra, components, component, normalised, what);
     if (status != STATUS_OK) {
         free(numbers);
         return status;

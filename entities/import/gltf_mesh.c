@@ -1,5 +1,5 @@
-/* entities/import/gltf_mesh.c: meshes of a glTF file as triangles: strips and fans taken apart, blended by their default
- * weights, posed by their skin as the file's nodes stand. */
+/* entities/import/gltf_mesh.c: meshes of a glTF file as triangles: strips and fans taken apart, blended by their
+ * default weights, posed by their skin as the file's nodes stand. */
 #include "entities/import/gltf.h"
 
 #include <stdlib.h>
@@ -10,8 +10,8 @@ enum { most_targets = 4096, most_joints = 65536, most_sets = 4 };
 typedef struct Pose {
     int weights;
     double weight[most_targets];
-    int joints;           /* 0: no skin */
-    double (*joint)[12];  /* p_node = joint (p_mesh, 1) */
+    int joints;          /* 0: no skin */
+    double (*joint)[12]; /* p_node = joint (p_mesh, 1) */
 } Pose;
 
 static Status wrong(Gltf *g, const char *what) { return reader_fails(g->said, STATUS_BAD_VALUE, "%s", what); }
@@ -48,8 +48,10 @@ static Status read_triangles(GltfShape *s, Gltf *g, const json_t *primitive, int
         for (int k = 0; k < 3; k++) {
             const int corner = corner_of(mode, t, k);
             const double v = index ? index[corner] : corner;
-            if (!(v >= 0 && v < s->vertices)) status = wrong(g, "an index is beyond its vertices");
-            else s->triangle[t][k] = (uint32_t)v;
+            if (!(v >= 0 && v < s->vertices))
+                status = wrong(g, "an index is beyond its vertices");
+            else
+                s->triangle[t][k] = (uint32_t)v;
         }
     free(index);
     return status;
@@ -93,7 +95,8 @@ static Status pose_vertices(bool *moved, GltfShape *s, Gltf *g, const json_t *at
         snprintf(name[1], sizeof name[1], "WEIGHTS_%d", sets);
         if (!json_object_get(attributes, name[0]) || !json_object_get(attributes, name[1])) break;
         status = gltf_accessor(&joint[sets], &count[0], g, attribute(g, attributes, name[0]), 4, name[0]);
-        if (status == STATUS_OK) status = gltf_accessor(&weight[sets], &count[1], g, attribute(g, attributes, name[1]), 4, name[1]);
+        if (status == STATUS_OK)
+            status = gltf_accessor(&weight[sets], &count[1], g, attribute(g, attributes, name[1]), 4, name[1]);
         if (status == STATUS_OK && (count[0] != s->vertices || count[1] != s->vertices))
             status = wrong(g, "a skin has another number of vertices");
     }
@@ -105,13 +108,18 @@ static Status pose_vertices(bool *moved, GltfShape *s, Gltf *g, const json_t *at
             const double w = weight[i / 4][4 * v + i % 4], j = joint[i / 4][4 * v + i % 4];
             double p[3];
             if (!(w > 0)) continue;
-            if (!(j >= 0 && j < pose->joints)) { status = wrong(g, "a skin's joint is beyond its list"); break; }
+            if (!(j >= 0 && j < pose->joints)) {
+                status = wrong(g, "a skin's joint is beyond its list");
+                break;
+            }
             mul_point(p, pose->joint[(int)j], s->vertex[v]);
             v3_add_scaled(sum, sum, w, p);
             total += w;
         }
-        if (total > 0) v3_scale(posed[v], 1 / total, sum);
-        else memcpy(posed[v], s->vertex[v], sizeof posed[v]);
+        if (total > 0)
+            v3_scale(posed[v], 1 / total, sum);
+        else
+            memcpy(posed[v], s->vertex[v], sizeof posed[v]);
         for (int i = 0; i < 3; i++) reach = fmax(reach, fabs(s->vertex[v][i]));
     }
     for (int v = 0; v < s->vertices && posed && status == STATUS_OK && !*moved; v++)
@@ -134,11 +142,14 @@ static Status read_vertices(GltfShape *s, Gltf *g, const json_t *primitive, cons
     if (s->vertices > import_max_vertices) return wrong(g, "more than 8 M vertices");
     status = blend(position, s->vertices, g, primitive, "POSITION", pose);
     if (status == STATUS_OK && pose->joints) status = pose_vertices(&moved, s, g, attributes, pose);
-    if (status != STATUS_OK || moved || !json_object_get(attributes, "NORMAL")) return status; /* turned ones: by crease */
+    if (status != STATUS_OK || moved || !json_object_get(attributes, "NORMAL"))
+        return status; /* turned ones: by crease */
     status = gltf_accessor(&normal, &normals, g, attribute(g, attributes, "NORMAL"), 3, "NORMAL");
-    if (status == STATUS_OK && normals != s->vertices) status = wrong(g, "NORMAL has another number of vertices than POSITION");
+    if (status == STATUS_OK && normals != s->vertices)
+        status = wrong(g, "NORMAL has another number of vertices than POSITION");
     if (status == STATUS_OK) status = blend(normal, normals, g, primitive, "NORMAL", pose);
-    if (status == STATUS_OK && !(s->normal = malloc(((size_t)normals + 1) * sizeof *s->normal))) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK && !(s->normal = malloc(((size_t)normals + 1) * sizeof *s->normal)))
+        status = STATUS_NO_MEMORY;
     for (int i = 0; i < 3 * normals && status == STATUS_OK; i++) s->normal[i / 3][i % 3] = (float)normal[i];
     free(normal);
     return status;
@@ -163,7 +174,8 @@ static Status read_shape(GltfShape *s, bool *drawn, Gltf *g, const json_t *primi
     }
     if (gltf_extension(primitive, "KHR_draco_mesh_compression") &&
         !gltf_accessor_is_stored(g, attribute(g, attributes, "POSITION")))
-        return reader_fails(g->said, STATUS_UNSUPPORTED, "a mesh is packed by the extension KHR_draco_mesh_compression, which "
+        return reader_fails(g->said, STATUS_UNSUPPORTED,
+                            "a mesh is packed by the extension KHR_draco_mesh_compression, which "
                             "is not read: export it without mesh compression");
     s->material = gltf_index(primitive, "material", json_array_size(json_object_get(g->root, "materials")));
     if (s->material < 0) s->material = g->scene->material_count - 1; /* the default, behind the file's own */
@@ -217,7 +229,8 @@ static bool invert(double out[12], const double m[12])
 
 static Status read_skin(Pose *pose, Gltf *g, const json_t *node, int document_node)
 {
-    const json_t *skin = gltf_item(g, "skins", gltf_index(node, "skin", json_array_size(json_object_get(g->root, "skins"))));
+    const json_t *skin =
+        gltf_item(g, "skins", gltf_index(node, "skin", json_array_size(json_object_get(g->root, "skins"))));
     const json_t *list = json_object_get(skin, "joints");
     const size_t count = json_array_size(list);
     double to_node[12], *inverse = NULL;
@@ -226,12 +239,14 @@ static Status read_skin(Pose *pose, Gltf *g, const json_t *node, int document_no
     if (count > most_joints) return wrong(g, "more than 65536 joints of a skin");
     if (!invert(to_node, g->world[document_node])) return STATUS_OK; /* drawn flat anyway */
     if (json_object_get(skin, "inverseBindMatrices")) {
-        const Status status = gltf_accessor(&inverse, &inverses, g, attribute(g, skin, "inverseBindMatrices"), 16, "inverseBindMatrices");
+        const Status status =
+            gltf_accessor(&inverse, &inverses, g, attribute(g, skin, "inverseBindMatrices"), 16, "inverseBindMatrices");
         if (status != STATUS_OK) return status;
     }
     pose->joint = calloc(count, sizeof *pose->joint);
     Status status = pose->joint ? STATUS_OK : STATUS_NO_MEMORY;
-    if (inverse && (size_t)inverses < count && status == STATUS_OK) status = wrong(g, "inverseBindMatrices are fewer than the skin's joints");
+    if (inverse && (size_t)inverses < count && status == STATUS_OK)
+        status = wrong(g, "inverseBindMatrices are fewer than the skin's joints");
     for (size_t j = 0; j < count && status == STATUS_OK; j++) {
         const json_t *value = json_array_get(list, j);
         const json_int_t joint = json_integer_value(value);
@@ -240,7 +255,8 @@ static Status read_skin(Pose *pose, Gltf *g, const json_t *node, int document_no
             status = wrong(g, "a skin's joint is no node of the scene");
             break;
         }
-        for (int i = 0; i < 12 && inverse; i++) bind[i] = inverse[16 * j + (size_t)(4 * (i % 4) + i / 4)]; /* by columns there */
+        for (int i = 0; i < 12 && inverse; i++)
+            bind[i] = inverse[16 * j + (size_t)(4 * (i % 4) + i / 4)]; /* by columns there */
         gltf_place(world, g->world[joint], bind);
         gltf_place(pose->joint[j], to_node, world);
     }
@@ -278,7 +294,8 @@ Status gltf_draw(Gltf *g, const GltfDrawn *drawn)
     const bool own = json_object_get(node, "weights") || json_object_get(node, "skin");
     Status status = STATUS_OK;
     if (!own && g->cached[mesh][0] >= 0) {
-        for (int k = 0; k < g->cached[mesh][1] && status == STATUS_OK; k++) status = add_draws(g, drawn, g->cached[mesh][0] + k);
+        for (int k = 0; k < g->cached[mesh][1] && status == STATUS_OK; k++)
+            status = add_draws(g, drawn, g->cached[mesh][0] + k);
         return status;
     }
     Pose *pose = calloc(1, sizeof *pose); /* large for a stack */
@@ -286,7 +303,8 @@ Status gltf_draw(Gltf *g, const GltfDrawn *drawn)
     const int first = g->shape_count;
     status = read_weights(pose, g, node, object);
     if (status == STATUS_OK) status = read_skin(pose, g, node, drawn->document_node);
-    json_array_foreach(json_object_get(object, "primitives"), i, primitive) {
+    json_array_foreach(json_object_get(object, "primitives"), i, primitive)
+    {
         GltfShape shape;
         bool any = false;
         if (status != STATUS_OK) break;

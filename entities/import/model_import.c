@@ -485,9 +485,10 @@ void model_import_say(const ModelImport *r, const Model *model)
     size_t n = 0;
     for (int i = 0; i < IMPORT_LOST_COUNT && n < sizeof lost; i++)
         if (r->lost[i] > 0)
-            n += (size_t)snprintf(lost + n, sizeof lost - n, "%s%d %s", n ? ", " : "", r->lost[i], import_lost_name((ImportLost)i));
-    log_info("model: %s: %.4g x %.4g x %.4g m, %d triangles; %.9g m a unit (%s), axes by %s; lost: %s; sidecar: %s%s", r->file, model->length_m,
-             model->width_m, model->height_m, model->triangle_count, r->scale_m, r->unit_from, r->axes_from, lost,
+            n += (size_t)snprintf(lost + n, sizeof lost - n, "%s%d %s", n ? ", " : "", r->lost[i],
+                                  import_lost_name((ImportLost)i));
+    log_info("model: %s: %.4g x %.4g x %.4g m, %d triangles; %.9g m a unit (%s), axes by %s; lost: %s; sidecar: %s%s",
+             r->file, model->length_m, model->width_m, model->height_m, model->triangle_count, r->scale_m, r->unit_from, r->axes_from, lost,
              r->sidecar[0] ? r->sidecar : "none", r->scale_assumed || r->axes_assumed ? " (`scale`, `axes` there say otherwise)" : "");
 }
 

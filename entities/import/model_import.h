@@ -1,10 +1,11 @@
 /* entities/import/model_import.h: imports 3D models from files.
  *
  * glTF 2.0; OBJ, FBX, AC3D, 3DS, ASE, PLY, STL and other formats of assimp, plain or as `.gz`; OpenFlight (`.flt`) through
- * osgconv of Debian's openscenegraph. Unit and axes are the file's where it or its format states them. Nodes and materials become parts, named after their nodes; joints come from the
- * file (OpenFlight's degrees of freedom) or the sidecar, see entities/import/sidecar.h. All other nodes are merged into
- * the moving node above them. Facets keep their own plane; shading normals are the file's, else by crease angle. The
- * reader runs in a separate process with limits on time and memory: a hostile file causes an error line only. */
+ * osgconv of Debian's openscenegraph. Unit and axes are the file's where it or its format states them. Nodes and materials
+ * become parts, named after their nodes; joints come from the file (OpenFlight's degrees of freedom) or the sidecar, see
+ * entities/import/sidecar.h. All other nodes are merged into the moving node above them. Facets keep their own plane;
+ * shading normals are the file's, else by crease angle. The reader runs in a separate process with limits on time and
+ * memory: a hostile file causes an error line only. */
 #ifndef ENTITIES_IMPORT_MODEL_IMPORT_H
 #define ENTITIES_IMPORT_MODEL_IMPORT_H
 

@@ -69,9 +69,12 @@ static bool put_number(Out *out, ReaderWord word)
     for (; at < end && (is_digit(*at) || (*at == '.' && !point)); at++) {
         point = point || *at == '.';
         if (*at == '.') continue;
-        if (count < (int)sizeof digits - 2 * most_shift) digits[count++] = *at;
-        else if (point) continue; /* digits that no double holds */
-        else return false;
+        if (count < (int)sizeof digits - 2 * most_shift)
+            digits[count++] = *at;
+        else if (point)
+            continue; /* digits that no double holds */
+        else
+            return false;
         before += !point;
     }
     if (count == 0) return false;
@@ -129,8 +132,7 @@ static bool read_index(long *out, const char **at, const char *end)
     const char *from = *at + (*at < end && (**at == '-' || **at == '+'));
     long value = 0;
     int digits = 0;
-    for (; from < end && is_digit(*from) && value < 1000000000; from++, digits++)
-        value = 10 * value + (*from - '0');
+    for (; from < end && is_digit(*from) && value < 1000000000; from++, digits++) value = 10 * value + (*from - '0');
     *at = from;
     *out = minus ? -value : value;
     return digits > 0 && value > 0;
@@ -175,7 +177,8 @@ static void look_for(ReaderFiles *files, ReaderSaid *said, const char *at, const
     if (!files || at == end) return;
     snprintf(path, sizeof path, "%.*s%.*s", (int)files->folder, files->shown, (int)(end - at), at);
     if (!*files->refused && reader_read(&bytes, &octets, files, path) != STATUS_OK && !*files->refused)
-        reader_warns(said, "its materials, %.*s, are not there: colours are lost", (int)(end - at < 100 ? end - at : 100), at);
+        reader_warns(said, "its materials, %.*s, are not there: colours are lost",
+                     (int)(end - at < 100 ? end - at : 100), at);
     free(bytes);
 }
 
@@ -210,10 +213,14 @@ Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT]
         const ReaderWord word = reader_word(&s, tail);
         bool fine = true;
         if (word.length == 0 || word.at[0] == '#' || reader_word_is(word, "vt")) continue;
-        if (reader_word_is(word, "v")) fine = put_numbers(&out, "v", s, tail);
-        else if (reader_word_is(word, "vn")) fine = put_numbers(&out, "vn", s, tail);
-        else if (reader_word_is(word, "f")) fine = put_corners(&out, "f", s, tail);
-        else if (reader_word_is(word, "l")) fine = put_corners(&out, "l", s, tail);
+        if (reader_word_is(word, "v"))
+            fine = put_numbers(&out, "v", s, tail);
+        else if (reader_word_is(word, "vn"))
+            fine = put_numbers(&out, "vn", s, tail);
+        else if (reader_word_is(word, "f"))
+            fine = put_corners(&out, "f", s, tail);
+        else if (reader_word_is(word, "l"))
+            fine = put_corners(&out, "l", s, tail);
         else {
             lost[LOST_OTHER] += reader_word_is(word, "surf") || reader_word_is(word, "curv");
             if (reader_word_is(word, "mtllib")) look_for(files, said, s, tail);

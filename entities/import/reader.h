@@ -1,5 +1,5 @@
-/* entities/import/reader.h: what the readers of model files share: they run in a process of their own, see only files of
- * the model's folder, and hand back a flat scene and what there is to say. */
+/* entities/import/reader.h: what the readers of model files share: they run in a process of their own, see only files
+ * of the model's folder, and hand back a flat scene and what there is to say. */
 #ifndef ENTITIES_IMPORT_READER_H
 #define ENTITIES_IMPORT_READER_H
 
@@ -7,16 +7,16 @@
 
 /* The model `tank.obj.gz` is `tank.obj` to a reader; files it names (materials, buffers) are in the same folder. */
 typedef struct ReaderFiles {
-    const char *path; /* as it is on disk */
-    char shown[1024]; /* without .gz */
-    size_t folder;    /* length of the folder's name with its slash */
+    const char *path;   /* as it is on disk */
+    char shown[1024];   /* without .gz */
+    size_t folder;      /* length of the folder's name with its slash */
     bool no_memory;     /* for a file of it */
     char refused[1100]; /* the first file outside the folder, or that is no file */
 } ReaderFiles;
 
 void reader_files(ReaderFiles *out, const char *path);
-/* Everything of a file, or of `name.gz`. name: with the folder, as `shown` has it. *out is NUL-terminated. Says nothing:
- * STATUS_IO also for what is refused. */
+/* Everything of a file, or of `name.gz`. name: with the folder, as `shown` has it. *out is NUL-terminated. Says
+ * nothing: STATUS_IO also for what is refused. */
 Status reader_read(char **out, size_t *octets, ReaderFiles *files, const char *name);
 
 /* Lines for the user, which the process that asked for the model logs. */

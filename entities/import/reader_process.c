@@ -1,7 +1,7 @@
 /* entities/import/reader_process.c: a reader of model files in a process of its own.
  *
- * Readers have crashed on broken files often enough: they run in a child, which hands the flat scene back in memory that
- * both have: header, then arrays. The result is validated like untrusted input. */
+ * Readers have crashed on broken files often enough: they run in a child, which hands the flat scene back in memory
+ * that both have: header, then arrays. The result is validated like untrusted input. */
 #include "entities/import/reader.h"
 
 #include <errno.h>
@@ -60,7 +60,8 @@ static void child_reads(char *out, Reader *read, const char *path, const char *e
     reader_files(&files, path);
     ImportScene *s = &header.scene;
     header.status = read(s, &header.said, &files, extension);
-    if (files.no_memory || header.status == STATUS_NO_MEMORY) /* without its materials, for example, it would be another */
+    if (files.no_memory ||
+        header.status == STATUS_NO_MEMORY) /* without its materials, for example, it would be another */
         header.status = reader_fails(&header.said, STATUS_NO_MEMORY, "out of memory");
     s->lost[LOST_EXTERNAL_REFERENCES] += *files.refused != 0;
     snprintf(header.refused, sizeof header.refused, "%s", files.refused);
@@ -174,7 +175,7 @@ static Status take_scene(ImportScene *out, const char *bytes, size_t octets, con
         text_escape(said, sizeof said, header.said.error, strlen(header.said.error));
         log_error("model: cannot be read: file=%s: %s", path, said);
         return header.status == STATUS_NO_MEMORY || header.status == STATUS_UNSUPPORTED ? (Status)header.status
-                                                                                         : STATUS_BAD_VALUE;
+                                                                                        : STATUS_BAD_VALUE;
     }
     if (!in_range(header.scene.node_count, 1, import_max_nodes) ||
         !in_range(header.scene.material_count, 0, import_max_materials) ||
@@ -209,8 +210,9 @@ broken:
 Status reader_run(ImportScene *out, Reader *read, const char *path, const char *extension)
 {
     /* a whole scene of the most that is read; pages are taken as they are written */
-    const size_t most = sizeof(Header) + import_max_nodes * sizeof(ImportNode) + import_max_materials * sizeof(ImportMaterial) +
-                        import_max_meshes * sizeof(ImportMesh) + import_max_vertices * (sizeof(double[3]) + sizeof(float[3])) +
+    const size_t most = sizeof(Header) + import_max_nodes * sizeof(ImportNode) +
+                        import_max_materials * sizeof(ImportMaterial) + import_max_meshes * sizeof(ImportMesh) +
+                        import_max_vertices * (sizeof(double[3]) + sizeof(float[3])) +
                         import_max_triangles * sizeof(uint32_t[3]);
     Status status = STATUS_IO;
     char *shared = mmap(NULL, most, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

@@ -73,7 +73,8 @@ static json_t *node_json(const Model *m, const ModelNode *node)
     set_text(out, "joint", turns ? "turns" : "slides");
     json_object_set_new(out, "axis", numbers(node->axis, 3));
     if (node->low <= node->high) {
-        const double limit[2] = {turns ? node->low / rad_per_deg : node->low, turns ? node->high / rad_per_deg : node->high};
+        const double limit[2] = {turns ? node->low / rad_per_deg : node->low,
+                                 turns ? node->high / rad_per_deg : node->high};
         json_object_set_new(out, turns ? "limits_deg" : "limits_m", numbers(limit, 2));
     }
     if (node->dis_class) {
@@ -103,8 +104,10 @@ bool model_record_print(FILE *to, const ModelInfo *info)
     const double size[3] = {m->length_m, m->width_m, m->height_m};
     json_t *out = json_object(), *edges = json_object(), *nodes = json_array(), *parts = json_array();
     set_text(out, "model", m->name);
-    if (info->imported) json_object_set_new(out, "import", import_json(&info->import));
-    else set_number(out, "sag_m", m->sag_m);
+    if (info->imported)
+        json_object_set_new(out, "import", import_json(&info->import));
+    else
+        set_number(out, "sag_m", m->sag_m);
     json_object_set_new(out, "size_m", numbers(size, 3));
     if (info->sized) {
         json_object_set_new(out, "size_fits", json_boolean(info->fit.fits));

@@ -9,27 +9,40 @@ const int fuzz_rounds = 20000;
 
 /* A triangle each of quantised, sparse, skinned, morphed and instanced numbers; a strip; GLB. */
 #define NUMBERS "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAAECAAECAAECAAAAAA=="
-#define HEAD "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],"
-#define VIEWS "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":16,\"byteStride\":4}],"
+#define HEAD    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],"
+#define VIEWS                                                                                                          \
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":16,"             \
+    "\"byteStride\":4}],"
 static const char *const seed[4] = {
-    HEAD "\"extensionsRequired\":[\"KHR_mesh_quantization\"],\"nodes\":[{\"mesh\":0,\"scale\":[2,2,2],\"rotation\":[0,1,0,1],"
-    "\"weights\":[0.5]},{\"name\":\"b\",\"children\":[2],\"extensions\":{\"ACME_x\":{}}},{\"mesh\":0,\"skin\":0}],"
-    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"JOINTS_0\":2,\"WEIGHTS_0\":2},\"targets\":[{\"POSITION\":1}],"
-    "\"mode\":5,\"material\":0}]}],\"skins\":[{\"joints\":[1,2,1,1]}],"
-    "\"materials\":[{\"name\":\"m\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0,0,1],\"baseColorTexture\":{\"index\":0}}}],"
-    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5120,"
-    "\"normalized\":true,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"VEC4\"}]," VIEWS
-    "\"buffers\":[{\"byteLength\":52,\"uri\":\"data:a;base64," NUMBERS "\"}]}",
-    HEAD "\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":0,\"SCALE\":0}}}},"
-    "{\"mesh\":0,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,5,0,0,1],\"extensions\":{\"KHR_node_visibility\":{\"visible\":false}}}],"
-    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":6},{\"attributes\":{\"POSITION\":0},\"mode\":1}]}],"
-    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":1,\"indices\":"
-    "{\"bufferView\":1,\"componentType\":5121},\"values\":{\"bufferView\":0}}},{\"bufferView\":1,\"componentType\":5121,\"count\":3,"
-    "\"type\":\"SCALAR\"}]," VIEWS "\"buffers\":[{\"byteLength\":52,\"uri\":\"data:a;base64," NUMBERS "\"}]}",
-    "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"children\":[0]}],\"meshes\":[{\"primitives\":[{\"attributes\":"
+    HEAD "\"extensionsRequired\":[\"KHR_mesh_quantization\"],\"nodes\":[{\"mesh\":0,\"scale\":[2,2,2],\"rotation\":[0,"
+         "1,0,1],"
+         "\"weights\":[0.5]},{\"name\":\"b\",\"children\":[2],\"extensions\":{\"ACME_x\":{}}},{\"mesh\":0,\"skin\":0}],"
+         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"JOINTS_0\":2,\"WEIGHTS_0\":2},"
+         "\"targets\":[{\"POSITION\":1}],"
+         "\"mode\":5,\"material\":0}]}],\"skins\":[{\"joints\":[1,2,1,1]}],"
+         "\"materials\":[{\"name\":\"m\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0,0,1],\"baseColorTexture\":{"
+         "\"index\":0}}}],"
+         "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":1,"
+         "\"componentType\":5120,"
+         "\"normalized\":true,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5121,\"count\":3,"
+         "\"type\":\"VEC4\"}]," VIEWS "\"buffers\":[{\"byteLength\":52,\"uri\":\"data:a;base64," NUMBERS "\"}]}",
+    HEAD "\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":0,"
+         "\"SCALE\":0}}}},"
+         "{\"mesh\":0,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,5,0,0,1],\"extensions\":{\"KHR_node_visibility\":{"
+         "\"visible\":false}}}],"
+         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":6},{\"attributes\":{"
+         "\"POSITION\":0},\"mode\":1}]}],"
+         "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":"
+         "1,\"indices\":"
+         "{\"bufferView\":1,\"componentType\":5121},\"values\":{\"bufferView\":0}}},{\"bufferView\":1,"
+         "\"componentType\":5121,\"count\":3,"
+         "\"type\":\"SCALAR\"}]," VIEWS "\"buffers\":[{\"byteLength\":52,\"uri\":\"data:a;base64," NUMBERS "\"}]}",
+    "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"children\":[0]}],\"meshes\":[{"
+    "\"primitives\":[{\"attributes\":"
     "{\"POSITION\":0}}]}],\"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}]}",
-    HEAD "\"nodes\":[{\"mesh\":0},{}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{\"bufferView\":0,"
-    "\"componentType\":5123,\"count\":3,\"type\":\"VEC3\"}]," VIEWS "\"buffers\":[{\"byteLength\":52}]}",
+    HEAD "\"nodes\":[{\"mesh\":0},{}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":["
+         "{\"bufferView\":0,"
+         "\"componentType\":5123,\"count\":3,\"type\":\"VEC3\"}]," VIEWS "\"buffers\":[{\"byteLength\":52}]}",
 };
 
 static void word(uint8_t *at, size_t value)

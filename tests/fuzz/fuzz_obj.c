@@ -1,5 +1,5 @@
-/* tests/fuzz/fuzz_obj.c: any octets as an OBJ file made plain, and as the texts in which a unit is looked for. Made plain
- * again nothing changes. Without a fuzzer run_corpus.c drives it. */
+/* tests/fuzz/fuzz_obj.c: any octets as an OBJ file made plain, and as the texts in which a unit is looked for. Made
+ * plain again nothing changes. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "entities/import/reader.h"
@@ -9,11 +9,13 @@
 const int fuzz_rounds = 20000;
 
 static const char *const seed[4] = {
-    "# units: mm\nmtllib a.mtl\no a\nv .6 -1 0\nv -.6e1 +.5 1.e-3 # x\nv 1 \\\n 2 \\\r\n 3 .5 .5 .5\nvt .1\nvn 0 1 0\nusemtl\tred\nf 1/1/1 -2//-1 "
+    "# units: mm\nmtllib a.mtl\no a\nv .6 -1 0\nv -.6e1 +.5 1.e-3 # x\nv 1 \\\n 2 \\\r\n 3 .5 .5 .5\nvt .1\nvn 0 1 "
+    "0\nusemtl\tred\nf 1/1/1 -2//-1 "
     "+03//1\r\nf 1 2 3\nl 1/1 2\rs off\ng b\ncurv 0 1\n",
     "  0\nSECTION\n  2\nHEADER\n  9\n$INSUNITS\n 70\n     4\n  0\nENDSEC\n",
     "<?xml version=\"1.0\"?><amf unit=\"inch\"><object/></amf>",
-    "PK\3\4aaaaAAaaaaaaaaaaaaaaaa\x07""aaaa.model<model unit=\"micron\">",
+    "PK\3\4aaaaAAaaaaaaaaaaaaaaaa\x07"
+    "aaaa.model<model unit=\"micron\">",
 };
 
 size_t fuzz_seed(uint8_t *out, uint32_t index)
@@ -50,7 +52,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (again) {
         memcpy(again, text, octets);
         more = octets;
-        if (import_obj_plain(&again, &more, lost, &said, NULL) != STATUS_OK || more != octets || memcmp(again, text, octets) != 0) abort();
+        if (import_obj_plain(&again, &more, lost, &said, NULL) != STATUS_OK || more != octets ||
+            memcmp(again, text, octets) != 0)
+            abort();
     }
     free(again);
     free(text);
