@@ -17,6 +17,7 @@
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
 #include "sensor/regress/regress.h"
+#include "sensor/settings/config.h"
 #include "sensor/settings/next_option.h"
 #include "terrain/probe.h"
 
@@ -63,11 +64,12 @@ static const Probe *next_probe(size_t state[2])
 static void probe_usage(FILE *to)
 {
     size_t state[2] = {0};
-    fputs("usage: pitviper probe WHAT [ARGUMENT ...] < rows.csv > results.csv\n\n"
+    fputs("usage: pitviper probe [-c FILE] WHAT [ARGUMENT ...] < rows.csv > results.csv\n\n"
           "Evaluates one model for rows of CSV with a header: writes each row with the results appended. Other "
           "columns pass\n"
           "through; a row that cannot be computed has the reason in column `error`. $: text column, ?: optional "
-          "column.\n", to);
+          "column.\n"
+          "-c FILE, or --config: settings, whose models.materials are read.\n", to);
     for (const Probe *probe; (probe = next_probe(state));)
         fprintf(to, "\n  %s%s%s\n      %s\n      in:  %s\n      out: %s\n", probe->name, probe->arguments ? " " : "",
                 probe->arguments ? probe->arguments : "", probe->help, probe->in, probe->out);
@@ -83,6 +85,12 @@ static int probe_command(int argc, char **argv)
             probe_usage(stdout);
             return 0;
         }
+    if (strcmp(argv[1], "-c") == 0 || strcmp(argv[1], "--config") == 0) {
+        if (argc < 4) return wrong_line("probe", "%s needs a file of settings, and after it a probe", argv[1]);
+        if (config_tables_of(argv[2]) != STATUS_OK) return 1;
+        argc -= 2, argv += 2;
+        meant = word_meant(argv[1]);
+    }
     for (const Probe *probe; (probe = next_probe(state));) {
         word_consider(&meant, probe->name);
         if (strcmp(argv[1], probe->name) != 0) continue;

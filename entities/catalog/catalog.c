@@ -1,6 +1,7 @@
 /* entities/catalog/catalog.c: entity type -> model, by the longest pattern of etc/catalog.csv. */
 #include "entities/catalog/catalog.h"
 #include "entities/catalog/model_fit.h"
+#include "entities/catalog/size_range.h"
 #include "entities/import/model_import.h"
 #include "entities/parametric/parametric.h"
 
@@ -77,7 +78,9 @@ static bool parse_type(int field[type_fields], const char *text)
 static Status open_file(CatalogModel *model, bool *imported, const char *source, double sag_m)
 {
     model->import = calloc(1, sizeof *model->import);
-    return model->import ? model_open(&model->first, model->import, imported, source, sag_m) : STATUS_NO_MEMORY;
+    const Status status = model->import ? model_open(&model->first, model->import, imported, source, sag_m) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK && *imported) model_import_say(model->import, &model->first);
+    return status;
 }
 
 /* Index of the model of that name or file and size. If it is new a file is read now, and so is a shape that no size of
@@ -233,6 +236,37 @@ void catalog_size(double size_m[3], const Catalog *catalog, int model)
     size_m[2] = factor[2] * (fmax(first->box_high[2], 0) - first->box_low[2]);
 }
 
+void catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int domain)
+{
+    *out = (SizeRange){0};
+    for (int r = 0; r < catalog_row_count(catalog); r++) {
+        CatalogRowInfo row;
+        double m[3];
+        char who[64];
+        catalog_row(&row, catalog, r);
+        if (row.own || model_is_path(row.source) || !catalog_has_shape(catalog, row.model)) continue;
+        if ((kind >= 0 && row.kind != kind) || (domain >= 0 && row.domain >= 0 && row.domain != domain)) continue;
+        catalog_size(m, catalog, row.model);
+        snprintf(who, sizeof who, "%.40s, line %d", row.note && *row.note ? row.note : row.source, row.line);
+        size_range_take(out, fmax(m[0], fmax(m[1], m[2])), who);
+    }
+}
+
+/* Reports a model from a file of whose type the program knows no size, when nothing of its kind is like it. */
+static void warn_odd_size(const Catalog *catalog, const CatalogRow *row, const CatalogModel *m)
+{
+    static const double slack = 3;
+    const double largest_m = size_of_model(&catalog->model[m->shape].first);
+    SizeRange range;
+    char advice[200];
+    catalog_size_range(&range, catalog, row->field[0], row->field[1]);
+    if (!size_is_odd(advice, largest_m, &range, slack, m->import)) return;
+    log_warn("catalog: %s:%d: %s is %.3g m large, but what etc/catalog.csv has of its kind is %.3g m (%s) to %.3g m (%s) large: %s; "
+             "if it is right, say so with length_m, width_m, height_m in the row",
+             row->own ? catalog->own_path : catalog->path, row->line, m->source, largest_m, range.low_m, range.low, range.high_m,
+             range.high, advice);
+}
+
 /* Reports a model from a file with another size than in its row, or, without one there, than in the built-in table of
  * types. */
 static void warn_sizes(const Catalog *catalog)
@@ -248,7 +282,10 @@ static void warn_sizes(const Catalog *catalog)
         if (!m->import) continue;
         const bool stated = want.length_m > 0 || want.width_m > 0 || want.height_m > 0;
         const CatalogRow *behind = stated ? NULL : row_behind(catalog, row);
-        if (!stated && !behind) continue;
+        if (!stated && !behind) {
+            warn_odd_size(catalog, row, m);
+            continue;
+        }
         if (behind) {
             catalog_size(size, catalog, behind->model);
             want = (ModelSize){size[0], size[1], size[2]};
@@ -259,6 +296,11 @@ static void warn_sizes(const Catalog *catalog)
         const Model *model = &catalog->model[m->shape].first;
         model_fit(&fit, model, m->import, &want, behind ? usual : said);
         if (fit.fits) continue;
+        const double want_m = fmax(want.length_m, fmax(want.width_m, want.height_m));
+        const SizeRange about = {.low_m = want_m, .high_m = want_m};
+        char advice[200];
+        if (fit.factor == 0 && size_is_odd(advice, size_of_model(model), &about, 3, m->import))
+            snprintf(fit.advice, sizeof fit.advice, "%s", advice);
         char text[3][24];
         const double figure[3] = {want.length_m, want.width_m, want.height_m};
         for (int k = 0; k < 3; k++) snprintf(text[k], sizeof text[k], figure[k] > 0 ? "%.3g" : "?", figure[k]);

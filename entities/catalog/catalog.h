@@ -4,6 +4,7 @@
 #define ENTITIES_CATALOG_CATALOG_H
 
 #include "dis/pdu.h"
+#include "entities/catalog/size_range.h"
 #include "entities/models/model.h"
 
 /* What the sender's position refers to. */
@@ -43,6 +44,8 @@ const Model *catalog_model(const Catalog *catalog, int model);
 bool   catalog_is_built(const Catalog *catalog, int model);
 /* Length, width and height (ModelSize) that a model has, or will have once it is built. */
 void   catalog_size(double size_m[3], const Catalog *catalog, int model);
+/* Sizes of the program's own rows of a kind and domain; < 0: of any. */
+void   catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int domain);
 
 /* A row, in search order. */
 typedef struct CatalogRowInfo {

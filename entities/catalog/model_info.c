@@ -1,28 +1,33 @@
 /* entities/catalog/model_info.c: what `pitviper model info` prints of one model. */
 #include "entities/catalog/model_info.h"
 
-#include "entities/catalog/model_fit.h"
-#include "entities/import/model_import.h"
+#include "entities/catalog/size_range.h"
 #include "entities/parametric/parametric.h"
 #include "entities/import/sidecar.h"
 
-#include <stdlib.h>
+
+const char *model_info_axis(char out[4], const ModelImport *import, int which)
+{
+    const double *m = import->r_body_from_file;
+    snprintf(out, 4, "?");
+    for (int i = 0; i < 3; i++) {
+        const double along = which == 0 ? m[i] : -m[6 + i];
+        if (fabs(along) > 0.5) snprintf(out, 4, "%c%c", along > 0 ? '+' : '-', "xyz"[i]);
+    }
+    return out;
+}
 
 static void print_import(const ModelImport *r)
 {
     static const char *const source[MATERIAL_SOURCE_COUNT] = {"the sidecar", "the name in the file",
                                                               "the nearest colour", "nothing: paint_olive"};
-    text_print(stdout, "file: %s\nsidecar: %s\n", r->file, r->sidecar[0] ? r->sidecar : "none");
-    const double *m = r->r_body_from_file;
-    char axes[2][3];
-    for (int k = 0; k < 2; k++)
-        for (int i = 0; i < 3; i++) {
-            const double along = k == 0 ? m[i] : -m[6 + i];
-            if (fabs(along) > 0.5) snprintf(axes[k], sizeof axes[k], "%c%c", along > 0 ? '+' : '-', "xyz"[i]);
-        }
-    text_print(stdout, "axes of the file: %s forward, %s up (%s)\n", axes[0], axes[1],
-           r->axes_assumed ? "the format's habit; `axes` in a sidecar says otherwise" : "from the sidecar");
-    text_print(stdout, "scale: %g m a unit\n", r->scale_m);
+    static const char otherwise[] = "in a sidecar says otherwise";
+    char axis[2][4];
+    text_print(stdout, "file: %s, %lld octets\nsidecar: %s\n", r->file, r->octets, r->sidecar[0] ? r->sidecar : "none");
+    text_print(stdout, "axes of the file: %s forward, %s up (%s%s%s)\n", model_info_axis(axis[0], r, 0),
+               model_info_axis(axis[1], r, 1), r->axes_from, r->axes_assumed ? "; `axes` " : "", r->axes_assumed ? otherwise : "");
+    text_print(stdout, "scale: %.9g m a unit (%s%s%s)\n", r->scale_m, r->unit_from, r->scale_assumed ? "; `scale` " : "",
+               r->scale_assumed ? otherwise : "");
     text_print(stdout, "origin in the file: %g %g %g\n", r->p_origin_file[0], r->p_origin_file[1], r->p_origin_file[2]);
     text_print(stdout, "in the file: %d nodes, %d meshes, %d materials\n", r->source_nodes, r->source_meshes,
                r->source_materials);
@@ -101,47 +106,84 @@ static void print_parts(const Model *m)
     }
 }
 
-int model_info(const char *name, const ModelSize *size, double sag_m)
+/* Beyond all of the catalog by half, or hardly a thing at all; else, where its name says what it is, off by a factor of 3. */
+static void judge_size(ModelInfo *info, const char *name)
 {
-    const bool sized = size->length_m > 0 || size->width_m > 0 || size->height_m > 0;
-    Model model;
-    ModelImport report = {0};
-    ModelEdges edges;
-    bool imported;
-    Status status = STATUS_OK;
-    imported = false;
-    if (sized && parametric_known(name))
-        status = parametric_build_size(&model, name, size, sag_m);
-    else
-        status = model_open(&model, &report, &imported, name, sag_m);
-    if (status == STATUS_NO_MEMORY) log_error("model: %s: %s", name, status_name(status));
-    if (status != STATUS_OK) return 1; /* all other errors were reported where they occurred */
-    if (model_edges(&edges, &model) != STATUS_OK) {
-        model_destroy(&model);
-        log_error("model: no memory: %s", name);
-        return 1;
+    static const double slack = 1.5, named_slack = 3;
+    const ModelImport *import = &info->import;
+    /* a file that says centimetres may be drawn in metres all the same: 8 cm are then 8 m */
+    const double least_m = import->scale_assumed && import->scale_m != 1 ? 0.3 : 0.05;
+    const double largest_m = size_of_model(&info->model);
+    const char *slash = strrchr(name, '/');
+    char path[4096], advice[200];
+    Catalog *catalog;
+    SizeRange range = {.high_m = 100}, named;
+    log_suppress(true); /* a catalog that is broken is not of this model; what is smaller needs none */
+    if (largest_m > range.high_m && etc_path(path, sizeof path, "catalog.csv") && catalog_open(&catalog, path, 0.1) == STATUS_OK) {
+        catalog_size_range(&range, catalog, -1, -1);
+        catalog_close(catalog);
     }
-    text_print(stdout, "model: %s\n", model.name);
-    if (imported)
-        print_import(&report);
-    else
-        text_print(stdout, "built in, facets within %g m of their surfaces\n", model.sag_m);
-    text_print(stdout, "size: %.3f x %.3f x %.3f m (length, width, height)\n", model.length_m, model.width_m,
-               model.height_m);
-    if (imported && sized) {
-        ModelFit fit;
-        model_fit(&fit, &model, &report, size, 1.1);
-        text_print(stdout, "size asked for: %s%s\n", fit.fits ? "as it is" : "not so: ", fit.advice);
+    log_suppress(false);
+    range.low_m = slack * least_m; /* which size_is_odd divides by slack */
+    if (size_range_named(&named, slash ? slash + 1 : name) && size_is_odd(advice, largest_m, &named, named_slack, &info->import))
+        snprintf(info->advice, sizeof info->advice, "it is %.3g m large, and `%s`, as it is called, %.3g m: %s", largest_m,
+                 named.high, named.high_m, advice);
+    else if (size_is_odd(advice, largest_m, &range, slack, &info->import))
+        snprintf(info->advice, sizeof info->advice, "it is %.3g m large, and %s %.3g m%s%s: %s", largest_m,
+                 largest_m > range.high_m ? "nothing of etc/catalog.csv is larger than" : "few things are smaller than",
+                 largest_m > range.high_m ? range.high_m : least_m, largest_m > range.high_m ? ", " : "",
+                 largest_m > range.high_m ? range.high : "", advice);
+    info->odd = info->advice[0] != 0;
+    if (info->odd) log_warn("model: %s: %s", info->import.file, info->advice);
+}
+
+Status model_info_open(ModelInfo *out, const char *name, const ModelSize *size, double sag_m)
+{
+    ModelInfo info = {.sized = size->length_m > 0 || size->width_m > 0 || size->height_m > 0};
+    Status status = info.sized && parametric_known(name)
+                        ? parametric_build_size(&info.model, name, size, sag_m)
+                        : model_open(&info.model, &info.import, &info.imported, name, sag_m);
+    if (status == STATUS_NO_MEMORY) log_error("model: %s: %s", name, status_name(status));
+    if (status != STATUS_OK) return status; /* all other errors were reported where they occurred */
+    info.sized = info.sized && info.imported;
+    if (model_edges(&info.edges, &info.model) != STATUS_OK) {
+        model_destroy(&info.model);
+        log_error("model: no memory: %s", name);
+        return STATUS_NO_MEMORY;
+    }
+    if (info.sized) model_fit(&info.fit, &info.model, &info.import, size, 1.1);
+    else if (info.imported) judge_size(&info, name);
+    *out = info;
+    return STATUS_OK;
+}
+
+void model_info_close(ModelInfo *info) { model_destroy(&info->model); }
+
+void model_info_print(const ModelInfo *info)
+{
+    const Model *m = &info->model;
+    const ModelEdges *edges = &info->edges;
+    text_print(stdout, "model: %s\n", m->name);
+    if (info->imported) print_import(&info->import);
+    else text_print(stdout, "built in, facets within %g m of their surfaces\n", m->sag_m);
+    text_print(stdout, "size: %.3f x %.3f x %.3f m (length, width, height)\n", m->length_m, m->width_m, m->height_m);
+    if (info->sized) text_print(stdout, "size asked for: %s%s\n", info->fit.fits ? "as it is" : "not so: ", info->fit.advice);
+    if (info->imported && m->width_m > 2 * m->length_m && m->length_m > 0) {
+        char axis[2][4];
+        const double *right = info->import.r_body_from_file + 3;
+        int side = 0;
+        for (int i = 1; i < 3; i++)
+            if (fabs(right[i]) > fabs(right[side])) side = i;
+        snprintf(axis[0], sizeof axis[0], "+%c", "xyz"[side]);
+        text_print(stdout, "wider than long: if it faces along its length, `axes: '%s %s'` in a sidecar turns it (- in place of + "
+                   "the other way)\n", axis[0], model_info_axis(axis[1], &info->import, 1));
     }
     text_print(stdout, "box: %.3f %.3f %.3f .. %.3f %.3f %.3f m (forward, right, down of the base's centre)\n",
-               model.box_low[0], model.box_low[1], model.box_low[2], model.box_high[0], model.box_high[1],
-               model.box_high[2]);
-    text_print(stdout, "radius: %.3f m, of every pose\n", model.radius_m);
-    text_print(stdout, "triangles: %d, vertices: %d\n", model.triangle_count, model.vertex_count);
+               m->box_low[0], m->box_low[1], m->box_low[2], m->box_high[0], m->box_high[1], m->box_high[2]);
+    text_print(stdout, "radius: %.3f m, of every pose\n", m->radius_m);
+    text_print(stdout, "triangles: %d, vertices: %d\n", m->triangle_count, m->vertex_count);
     text_print(stdout, "edges: %lld open, in %d parts; %lld shared by more than two triangles; %d parts inside out\n",
-               edges.open, edges.open_parts, edges.crowded, edges.inside_out_parts);
-    print_nodes(&model);
-    print_parts(&model);
-    model_destroy(&model);
-    return 0;
+               edges->open, edges->open_parts, edges->crowded, edges->inside_out_parts);
+    print_nodes(m);
+    print_parts(m);
 }

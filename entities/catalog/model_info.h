@@ -4,10 +4,28 @@
 #define ENTITIES_CATALOG_MODEL_INFO_H
 
 #include "entities/catalog/catalog.h"
+#include "entities/catalog/model_fit.h"
+#include "entities/import/model_import.h"
 
-/* Prints what a built-in model or a file holds; size: of a file it is compared with, 0: not given. Exit code: 0, or 1
- * when the model cannot be had, which is logged. */
-int model_info(const char *name, const ModelSize *size, double sag_m);
+/* A model and what there is to say of it. */
+typedef struct ModelInfo {
+    Model       model;
+    ModelImport import;      /* of a file */
+    bool        imported;
+    ModelEdges  edges;
+    bool        sized;       /* a size was asked for: whether a file has it */
+    ModelFit    fit;
+    bool        odd;         /* of a size that no thing of the catalog, or of its name, has */
+    char        advice[500]; /* on that */
+} ModelInfo;
+
+/* A built-in model or a file; size: what a built-in one is scaled to and a file is compared with, 0: not given. What is wrong
+ * is logged; an odd size is a warning. */
+Status model_info_open(ModelInfo *out, const char *name, const ModelSize *size, double sag_m);
+void   model_info_print(const ModelInfo *info);
+void   model_info_close(ModelInfo *info);
+/* `+x`: the file's axis that is forward (0) or up (1) of the model. */
+const char *model_info_axis(char out[4], const ModelImport *import, int which);
 /* Every built-in shape, then every row of the catalog that is not hidden by an earlier one, a line each. */
 Status model_list(FILE *to, const char *catalog_path);
 

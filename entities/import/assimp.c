@@ -1,40 +1,39 @@
-/* entities/import/assimp.c: files that assimp reads.
- *
- * assimp has crashed on broken files often enough that it reads in a child process, which hands the flat scene back in
- * a memory file: header, then arrays. The result is validated like untrusted input. */
+/* entities/import/assimp.c: files that assimp reads, in the reader's process. */
 #include "entities/import/assimp_library.h"
-#include "entities/import/model_import_private.h"
+#include "entities/import/reader.h"
 
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
-#include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <signal.h>
-#include <unistd.h>
 
-/* ---- in the child: assimp's files ---------------------------------------------------------------- */
+/* ---- assimp's files --------------------------------------------------------------------------------- */
 
-/* The model `tank.obj.gz` is `tank.obj` to assimp; files it names (materials, buffers) are in the same folder. */
+/* What the text of the model itself says, which assimp does not hand on. */
+typedef struct FileText {
+    const char *extension;
+    bool has_unit, has_up;      /* FBX, COLLADA */
+    char unit[24], up[24];      /* COLLADA: as it says it */
+    double stated_m, comment_m; /* unit that the format, or a comment, names; 0: none */
+    char stated[24], comment[24];
+} FileText;
+
 typedef struct Files {
-    const char *path; /* as it is on disk */
-    char shown[1024]; /* without .gz */
-    size_t folder;    /* length of the folder's name with its slash */
-    bool no_memory;     /* for a file of it */
-    char refused[1100]; /* a file outside the folder, or what is no file */
+    ReaderFiles *files;
+    ReaderSaid *said;
+    ImportScene *scene;
+    FileText text;
+    Status status; /* of the model's own text */
+    char *bytes;   /* that text; NULL: not read yet. assimp opens it several times */
+    size_t octets;
 } Files;
 
 typedef struct OpenFile {
     struct aiFile file;
     char *bytes;
     size_t octets, at;
+    bool shared; /* with others that read it */
 } OpenFile;
 
 static size_t file_read(struct aiFile *file, char *out, size_t size, size_t count)
@@ -68,35 +67,62 @@ static enum aiReturn file_seek(struct aiFile *file, size_t offset, enum aiOrigin
     return aiReturn_SUCCESS;
 }
 
-/* The first name; assimp asks for a file several times, and by more than one. */
-static void refuse(Files *files, const char *name)
+/* What follows `key` in the octets, up to one of `stop`. */
+static bool find_after(char out[24], const char *bytes, size_t octets, const char *key, const char *stop)
 {
-    if (!*files->refused) snprintf(files->refused, sizeof files->refused, "%s", name);
+    const char *at = memmem(bytes, octets, key, strlen(key));
+    if (!at) return false;
+    at += strlen(key);
+    size_t n = 0;
+    while (at + n < bytes + octets && n < 23 && !strchr(stop, at[n])) n++;
+    memcpy(out, at, n);
+    out[n] = 0;
+    return true;
+}
+
+/* The model's own octets, before assimp sees them. */
+static Status see_model(Files *file)
+{
+    FileText *t = &file->text;
+    char none[24];
+    if (strcmp(t->extension, "fbx") == 0) {
+        t->has_unit = find_after(none, file->bytes, file->octets, "UnitScaleFactor", "");
+        t->has_up = find_after(none, file->bytes, file->octets, "UpAxis", "");
+    } else if (strcmp(t->extension, "dae") == 0) {
+        const char *unit = memmem(file->bytes, file->octets, "<unit", 5);
+        const size_t left = unit ? file->octets - (size_t)(unit - file->bytes) : 0;
+        const char *end = unit ? memchr(unit, '>', left) : NULL;
+        t->has_unit = end && find_after(t->unit, unit, (size_t)(end - unit), "meter=\"", "\"");
+        t->has_up = find_after(t->up, file->bytes, file->octets, "<up_axis>", "< \t\r\n");
+    } else {
+        t->stated_m = import_stated_unit(t->stated, t->extension, file->bytes, file->octets);
+        const bool stl = strcmp(t->extension, "stl") == 0, obj = strcmp(t->extension, "obj") == 0;
+        if (obj || stl || strcmp(t->extension, "ply") == 0)
+            t->comment_m = import_comment_unit(t->comment, file->bytes, file->octets);
+        if (obj) return import_obj_plain(&file->bytes, &file->octets, file->scene->lost, file->said, file->files);
+    }
+    return STATUS_OK;
 }
 
 static struct aiFile *files_open(struct aiFileIO *io, const char *name, const char *mode)
 {
     Files *files = (Files *)io->UserData;
-    char packed[1100];
     (void)mode;
-    const bool is_model = strcmp(name, files->shown) == 0;
-    if (!is_model && (strncmp(name, files->shown, files->folder) != 0 || strstr(name + files->folder, ".."))) {
-        refuse(files, name);
-        return NULL;
-    }
+    const bool is_model = strcmp(name, files->files->shown) == 0;
     OpenFile *f = calloc(1, sizeof *f);
     Status status = f ? STATUS_OK : STATUS_NO_MEMORY;
-    snprintf(packed, sizeof packed, "%s.gz", name);
-    if (status == STATUS_OK) status = import_read_whole(&f->bytes, &f->octets, is_model ? files->path : name, true);
-    if (status != STATUS_OK && status != STATUS_NO_MEMORY && !is_model)
-        status = import_read_whole(&f->bytes, &f->octets, packed, true);
+    if (status == STATUS_OK && !is_model) status = reader_read(&f->bytes, &f->octets, files->files, name);
+    if (status == STATUS_OK && is_model && !files->bytes) {
+        status = reader_read(&files->bytes, &files->octets, files->files, name);
+        if (status == STATUS_OK) status = files->status = see_model(files);
+    }
+    if (status == STATUS_OK) status = is_model ? files->status : STATUS_OK;
     if (status != STATUS_OK) {
-        struct stat there;
-        files->no_memory = files->no_memory || status == STATUS_NO_MEMORY;
-        if (stat(name, &there) == 0 && !S_ISREG(there.st_mode)) refuse(files, name);
+        files->files->no_memory = files->files->no_memory || status == STATUS_NO_MEMORY;
         free(f);
         return NULL;
     }
+    if (is_model) f->bytes = files->bytes, f->octets = files->octets, f->shared = true;
     f->file = (struct aiFile){file_read, file_write, file_tell, file_size, file_seek, file_flush, (char *)f};
     return &f->file;
 }
@@ -105,18 +131,11 @@ static void files_close(struct aiFileIO *io, struct aiFile *file)
 {
     (void)io;
     OpenFile *f = (OpenFile *)file;
-    free(f->bytes);
+    if (!f->shared) free(f->bytes);
     free(f);
 }
 
-/* ---- in the child: aiScene -> a memory file -------------------------------------------------------- */
-
-typedef struct Header {
-    int status;
-    char said[256], refused[1100];
-    int node_count, material_count, mesh_count, vertex_count, triangle_count;
-    int lost[IMPORT_LOST_COUNT];
-} Header;
+/* ---- aiScene -> a flat scene ------------------------------------------------------------------------ */
 
 static void copy_name(char out[model_name_size], const struct aiString *name)
 {
@@ -208,17 +227,6 @@ static void fill_material(ImportMaterial *out, const struct aiMaterial *material
     if (out->has_colour) out->rgb[0] = colour.r, out->rgb[1] = colour.g, out->rgb[2] = colour.b;
 }
 
-static bool scene_room(ImportScene *s)
-{
-    s->node = calloc((size_t)s->node_count + 1, sizeof *s->node);
-    s->material = calloc((size_t)s->material_count + 1, sizeof *s->material);
-    s->mesh = calloc((size_t)s->mesh_count + 1, sizeof *s->mesh);
-    s->vertex = calloc((size_t)s->vertex_count + 1, sizeof *s->vertex);
-    s->normal = calloc((size_t)s->vertex_count + 1, sizeof *s->normal);
-    s->triangle = calloc((size_t)s->triangle_count + 1, sizeof *s->triangle);
-    return s->node && s->material && s->mesh && s->vertex && s->normal && s->triangle;
-}
-
 static int count_textures(const struct aiScene *source)
 {
     int count = 0;
@@ -236,217 +244,157 @@ static void count_lost(ImportScene *s, const struct aiScene *source)
     s->lost[LOST_ANIMATIONS] = (int)source->mNumAnimations;
     for (unsigned m = 0; m < source->mNumMeshes; m++) {
         s->lost[LOST_BONES] += (int)source->mMeshes[m]->mNumBones;
+        s->lost[LOST_MORPH_TARGETS] += (int)source->mMeshes[m]->mNumAnimMeshes;
         s->lost[LOST_POINTS_AND_LINES] += (source->mMeshes[m]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0;
     }
 }
 
-/* True when all of it went out. */
-static bool put(int fd, const void *bytes, size_t octets)
-{
-    const char *at = bytes;
-    while (octets > 0) {
-        const ssize_t written = write(fd, at, octets);
-        if (written <= 0) return false;
-        at += written;
-        octets -= (size_t)written;
-    }
-    return true;
-}
+/* ---- unit and axes ---------------------------------------------------------------------------------- */
 
-static void child_reads(int fd, const char *path)
+/* A number of the scene's own metadata; `otherwise` without it. */
+static double metadata(const struct aiScene *source, const char *key, double otherwise)
 {
-    Flat flat = {0};
-    Header header = {.status = STATUS_BAD_VALUE};
-    Files files = {.path = path};
-    snprintf(files.shown, sizeof files.shown, "%s", path);
-    const size_t length = strlen(files.shown);
-    if (length > 3 && strcasecmp(files.shown + length - 3, ".gz") == 0) files.shown[length - 3] = 0;
-    const char *slash = strrchr(files.shown, '/');
-    files.folder = slash ? (size_t)(slash - files.shown) + 1 : 0;
-
-    struct aiFileIO io = {files_open, files_close, (char *)&files};
-    flat.source = aiImportFileEx(files.shown,
-                                 aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_ValidateDataStructure, &io);
-    if (!flat.source) {
-        snprintf(header.said, sizeof header.said, "%s", aiGetErrorString());
-    } else if (flat.source->mNumMaterials > import_max_materials) {
-        flat.said = "more than 16384 materials";
-    } else if (!flat.source->mRootNode || !count_node(&flat, flat.source->mRootNode, 1)) {
-        if (!flat.said) flat.said = "no nodes";
-    } else {
-        ImportScene *s = &flat.scene;
-        s->material_count = (int)flat.source->mNumMaterials;
-        if (!scene_room(s)) {
-            files.no_memory = true;
-        } else {
-            s->node_count = s->mesh_count = s->vertex_count = s->triangle_count = 0;
-            fill_node(&flat, flat.source->mRootNode, -1);
-            for (int m = 0; m < s->material_count; m++) fill_material(&s->material[m], flat.source->mMaterials[m]);
-            count_lost(s, flat.source);
-            s->lost[LOST_EXTERNAL_REFERENCES] = *files.refused != 0;
-            snprintf(header.refused, sizeof header.refused, "%s", files.refused);
-            header.status = STATUS_OK;
+    const struct aiMetadata *m = source->mMetaData;
+    for (unsigned i = 0; m && i < m->mNumProperties; i++) {
+        if (strcmp(m->mKeys[i].data, key) != 0) continue;
+        const void *data = m->mValues[i].mData;
+        char text[32];
+        double value;
+        switch (m->mValues[i].mType) {
+        case AI_INT32:
+            return *(const int32_t *)data;
+        case AI_DOUBLE:
+            return *(const double *)data;
+        case AI_FLOAT: /* 2.54f is meant as 2.54 */
+            snprintf(text, sizeof text, "%.7g", (double)*(const float *)data);
+            return text_to_double(&value, text) ? value : otherwise;
+        default:
+            return otherwise;
         }
     }
-    if (files.no_memory) { /* without its materials, for example, it would be another model */
-        header.status = STATUS_NO_MEMORY;
-        flat.said = "out of memory";
-    }
-    if (flat.said) snprintf(header.said, sizeof header.said, "%s", flat.said);
-    const ImportScene *s = &flat.scene;
-    header.node_count = s->node_count;
-    header.material_count = s->material_count;
-    header.mesh_count = s->mesh_count;
-    header.vertex_count = s->vertex_count;
-    header.triangle_count = s->triangle_count;
-    memcpy(header.lost, s->lost, sizeof header.lost);
-    bool written = put(fd, &header, sizeof header);
-    if (header.status == STATUS_OK)
-        written = written && put(fd, s->node, (size_t)s->node_count * sizeof *s->node) &&
-                  put(fd, s->material, (size_t)s->material_count * sizeof *s->material) &&
-                  put(fd, s->mesh, (size_t)s->mesh_count * sizeof *s->mesh) &&
-                  put(fd, s->vertex, (size_t)s->vertex_count * sizeof *s->vertex) &&
-                  put(fd, s->normal, (size_t)s->vertex_count * sizeof *s->normal) &&
-                  put(fd, s->triangle, (size_t)s->triangle_count * sizeof *s->triangle);
-    _exit(written ? 0 : 3); /* no clean-up: the process is the clean-up */
+    return otherwise;
 }
 
-/* Limits time and memory; no core file, no terminal output, ends with its parent. */
-static void child_limits(void)
+/* An axis of FBX's settings, 0 .. 2 and a sign; false: no such axis. */
+static bool fbx_axis(double out[3], const struct aiScene *source, const char *axis, int otherwise)
 {
-    const struct rlimit no_core = {0, 0}, cpu = {import_max_seconds, import_max_seconds + 1};
-    setrlimit(RLIMIT_CORE, &no_core);
-    setrlimit(RLIMIT_CPU, &cpu);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* their shadows are terabytes of address space */
-    FILE *statm = fopen("/proc/self/statm", "r");
-    unsigned long pages = 0;
-    if (statm) {
-        if (fscanf(statm, "%lu", &pages) != 1) pages = 0;
-        fclose(statm);
-    }
-    if (pages > 0) {
-        const rlim_t most = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + import_max_memory;
-        const struct rlimit memory = {most, most};
-        setrlimit(RLIMIT_AS, &memory);
-    }
-#endif
-    const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
-    if (nowhere >= 0) {
-        dup2(nowhere, 0);
-        dup2(nowhere, 1);
-        dup2(nowhere, 2);
-    }
-}
-
-/* ---- in the parent: what came back ------------------------------------------------------------------ */
-
-static bool take(void *out, size_t octets, const char **at, const char *end)
-{
-    if ((size_t)(end - *at) < octets) return false;
-    memcpy(out, *at, octets);
-    *at += octets;
+    char sign[24];
+    snprintf(sign, sizeof sign, "%sSign", axis);
+    const int k = (int)metadata(source, axis, otherwise);
+    if (k < 0 || k > 2) return false;
+    memset(out, 0, 3 * sizeof *out);
+    out[k] = metadata(source, sign, 1) < 0 ? -1 : 1;
     return true;
 }
 
-static bool in_range(int value, int low, int high) { return value >= low && value <= high; }
-
-/* False when an index or a count is not what a whole scene has. */
-static bool scene_is_sound(ImportScene *s)
+/* FBX says centimetres a unit, which way is up, and which way a figure looks that faces who looks at it (FrontAxis);
+ * CoordAxis, to the right of who looks, only tells left-handed axes, which are mirrored. */
+static void fbx_frame(ImportScene *s, const struct aiScene *source, const FileText *text, ReaderSaid *said)
 {
-    int vertices = 0, triangles = 0;
-    for (int i = 0; i < s->node_count; i++) {
-        s->node[i].name[model_name_size - 1] = 0;
-        if (i == 0 ? s->node[i].parent != -1 : !in_range(s->node[i].parent, 0, i - 1)) return false;
+    double forward[3], up[3], right[3], coordinate[3];
+    const double factor = metadata(source, "UnitScaleFactor", 1);
+    const bool fine = factor > 1e-6 && factor < 1e9;
+    if (!fine)
+        reader_warns(said, "UnitScaleFactor %g is no unit: taken as centimetres; `scale` in its sidecar says otherwise",
+                     factor);
+    s->unit_m = 0.01 * (fine ? factor : 1);
+    snprintf(s->unit_from, sizeof s->unit_from,
+             text->has_unit ? "the file's UnitScaleFactor, %g cm" : "FBX's default, centimetres: the file says none",
+             fine ? factor : 1);
+    if (!fbx_axis(up, source, "UpAxis", 1)) {
+        reader_warns(said, "UpAxis is no axis: taken as y up, z forward; `axes` in its sidecar says otherwise");
+        return;
     }
-    for (int i = 0; i < s->material_count; i++) s->material[i].name[model_name_size - 1] = 0;
-    for (int i = 0; i < s->mesh_count; i++) {
-        const ImportMesh *m = &s->mesh[i];
-        if (!in_range(m->node, 0, s->node_count - 1) || !in_range(m->material, 0, s->material_count - 1)) return false;
-        if (m->first_vertex != vertices || !in_range(m->vertex_count, 0, s->vertex_count - vertices)) return false;
-        if (m->first_triangle != triangles || !in_range(m->triangle_count, 0, s->triangle_count - triangles))
-            return false;
-        vertices += m->vertex_count;
-        triangles += m->triangle_count;
-        for (int t = m->first_triangle; t < triangles; t++)
-            for (int k = 0; k < 3; k++)
-                if (s->triangle[t][k] >= (uint32_t)m->vertex_count) return false;
+    if (!fbx_axis(forward, source, "FrontAxis", 2) || v3_dot(up, forward) != 0) {
+        memcpy(forward, up[2] != 0 ? (const double[3]){0, -1, 0} : (const double[3]){0, 0, 1}, sizeof forward);
+        reader_warns(said, "FrontAxis is no axis beside UpAxis: taken as %s; `axes` in its sidecar says otherwise",
+                     up[2] != 0 ? "-y" : "+z");
     }
-    return vertices == s->vertex_count && triangles == s->triangle_count;
+    memcpy(s->up, up, sizeof up);
+    memcpy(s->forward, forward, sizeof forward);
+    v3_cross(right, up, forward);
+    s->mirrored = fbx_axis(coordinate, source, "CoordAxis", 0) && v3_dot(right, coordinate) < 0;
+    for (int i = 0; i < 12 && s->mirrored; i++) /* the root's row: one coordinate of the file changes its sign */
+        if (right[i / 4] != 0) s->node[0].m[i] = -s->node[0].m[i] + 0.0;
+    snprintf(s->axes_from, sizeof s->axes_from, "%s%s",
+             text->has_up ? "the file's UpAxis and FrontAxis" : "FBX's default: the file says none",
+             s->mirrored ? ", left-handed by its CoordAxis: mirrored" : "");
 }
 
-static Status take_scene(ImportScene *out, const char *bytes, size_t octets, const char *path)
+/* By the format: assimp turns most to y up; scanners and printers (PLY, STL) have z up. */
+static void frame(ImportScene *s, const struct aiScene *source, const FileText *text, ReaderSaid *said)
 {
-    const char *at = bytes, *end = bytes + octets;
-    Header header;
-    ImportScene s = {0};
-    if (!take(&header, sizeof header, &at, end)) goto broken;
-    if (header.status != STATUS_OK) {
-        char said[300];
-        header.said[sizeof header.said - 1] = 0;
-        text_escape(said, sizeof said, header.said, strlen(header.said));
-        log_error("model: cannot be read: file=%s: %s", path, said);
-        return header.status == STATUS_NO_MEMORY ? STATUS_NO_MEMORY : STATUS_BAD_VALUE;
-    }
-    if (!in_range(header.node_count, 1, import_max_nodes) ||
-        !in_range(header.material_count, 0, import_max_materials) ||
-        !in_range(header.mesh_count, 0, import_max_meshes) || !in_range(header.vertex_count, 0, import_max_vertices) ||
-        !in_range(header.triangle_count, 0, import_max_triangles))
-        goto broken;
-    s.node_count = header.node_count;
-    s.material_count = header.material_count;
-    s.mesh_count = header.mesh_count;
-    s.vertex_count = header.vertex_count;
-    s.triangle_count = header.triangle_count;
-    memcpy(s.lost, header.lost, sizeof s.lost);
-    if (!scene_room(&s)) {
-        import_scene_close(&s);
-        return STATUS_NO_MEMORY;
-    }
-    if (!take(s.node, (size_t)s.node_count * sizeof *s.node, &at, end) ||
-        !take(s.material, (size_t)s.material_count * sizeof *s.material, &at, end) ||
-        !take(s.mesh, (size_t)s.mesh_count * sizeof *s.mesh, &at, end) ||
-        !take(s.vertex, (size_t)s.vertex_count * sizeof *s.vertex, &at, end) ||
-        !take(s.normal, (size_t)s.vertex_count * sizeof *s.normal, &at, end) ||
-        !take(s.triangle, (size_t)s.triangle_count * sizeof *s.triangle, &at, end) || at != end || !scene_is_sound(&s))
-        goto broken;
-    header.refused[sizeof header.refused - 1] = 0;
-    if (*header.refused)
-        log_warn("model: %s names a file that is outside its folder or no regular file, and is left out: %s", path,
-                 header.refused);
-    *out = s;
-    return STATUS_OK;
-
-broken:
-    import_scene_close(&s);
-    log_error("model: cannot be read: file=%s: the reader came back with half a scene; is the file whole?", path);
-    return STATUS_BAD_VALUE;
-}
-
-void import_scene_close(ImportScene *s)
-{
-    free(s->node);
-    free(s->material);
-    free(s->mesh);
-    free(s->vertex);
-    free(s->normal);
-    free(s->triangle);
-    free(s->dof);
-    memset(s, 0, sizeof *s);
-}
-
-/* Default of forward and up axes: glTF's by its standard; assimp turns most others to y up as well; scanners and
- * printers (PLY, STL) have z up. */
-static void format_axes(ImportScene *s, const char *extension)
-{
-    const bool z_up = strcmp(extension, "ply") == 0 || strcmp(extension, "stl") == 0;
+    const char *e = text->extension;
+    const bool printed = strcmp(e, "3mf") == 0 || strcmp(e, "amf") == 0;
+    const bool z_up = printed || strcmp(e, "ply") == 0 || strcmp(e, "stl") == 0;
+    memset(s->forward, 0, sizeof s->forward);
+    memset(s->up, 0, sizeof s->up);
     s->forward[z_up ? 0 : 2] = 1;
     s->up[z_up ? 2 : 1] = 1;
+    s->unit_m = 1;
+    snprintf(s->unit_from, sizeof s->unit_from, "the format names no unit: metres");
+    snprintf(s->axes_from, sizeof s->axes_from, "the format's habit");
+    if (strcmp(e, "fbx") == 0) fbx_frame(s, source, text, said);
+    if (strcmp(e, "dae") == 0) {
+        if (text->has_unit)
+            snprintf(s->unit_from, sizeof s->unit_from, "the file's <unit meter=\"%.20s\">, applied", text->unit);
+        else
+            snprintf(s->unit_from, sizeof s->unit_from, "COLLADA's default, metres: the file says none");
+        if (text->has_up)
+            snprintf(s->axes_from, sizeof s->axes_from, "the file's <up_axis> %.20s, turned to y up", text->up);
+        else
+            snprintf(s->axes_from, sizeof s->axes_from, "COLLADA's default: the file says none");
+    }
+    if (text->stated_m > 0) {
+        s->unit_m = text->stated_m;
+        if (text->stated[0])
+            snprintf(s->unit_from, sizeof s->unit_from, "the file's unit, %s", text->stated);
+        else
+            snprintf(s->unit_from, sizeof s->unit_from, "the format's default, millimetres: the file says none");
+    }
+    if (text->comment_m > 0 && text->comment_m != 1)
+        reader_warns(
+            said,
+            "a comment says `%s`, the format has no unit: taken as metres; `scale: %g` in its sidecar takes it so",
+            text->comment, text->comment_m);
 }
+
+Status import_assimp_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, const char *extension)
+{
+    Flat flat = {0};
+    Files own = {.files = files, .said = said, .scene = s, .text = {.extension = extension}};
+    struct aiFileIO io = {files_open, files_close, (char *)&own};
+    struct aiPropertyStore *store = aiCreatePropertyStore();
+    if (!store) return STATUS_NO_MEMORY;
+    /* later versions turn FBX by themselves, but do not scale it */
+    aiSetImportPropertyInteger(store, "AI_CONFIG_IMPORT_FBX_IGNORE_UP_DIRECTION", 1);
+    flat.source = aiImportFileExWithProperties(
+        files->shown, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_ValidateDataStructure, &io, store);
+    if (own.status != STATUS_OK) return own.status;
+    if (!flat.source) return reader_fails(said, STATUS_BAD_VALUE, "%s", aiGetErrorString());
+    if (flat.source->mNumMaterials > import_max_materials)
+        return reader_fails(said, STATUS_BAD_VALUE, "more than 16384 materials");
+    if (!flat.source->mRootNode || !count_node(&flat, flat.source->mRootNode, 1))
+        return reader_fails(said, STATUS_BAD_VALUE, "%s", flat.said ? flat.said : "no nodes");
+    memcpy(flat.scene.lost, s->lost, sizeof s->lost);
+    *s = flat.scene;
+    s->material_count = (int)flat.source->mNumMaterials;
+    if (!import_scene_room(s)) return STATUS_NO_MEMORY;
+    flat.scene = *s;
+    flat.scene.node_count = flat.scene.mesh_count = flat.scene.vertex_count = flat.scene.triangle_count = 0;
+    fill_node(&flat, flat.source->mRootNode, -1);
+    *s = flat.scene;
+    for (int m = 0; m < s->material_count; m++) fill_material(&s->material[m], flat.source->mMaterials[m]);
+    count_lost(s, flat.source);
+    frame(s, flat.source, &own.text, said);
+    return STATUS_OK;
+}
+
+/* ---- in the parent ---------------------------------------------------------------------------------- */
 
 Status import_assimp(ImportScene *out, const char *path, const char *extension)
 {
-    char   dotted[40];
+    char dotted[40];
     Status status = library_load(&assimp_library);
     if (status != STATUS_OK) return status;
     snprintf(dotted, sizeof dotted, ".%s", extension);
@@ -456,52 +404,5 @@ Status import_assimp(ImportScene *out, const char *path, const char *extension)
             path, extension);
         return STATUS_UNSUPPORTED;
     }
-    status = STATUS_IO;
-    const int fd = memfd_create("model", MFD_CLOEXEC);
-    if (fd < 0) {
-        log_error("model: cannot read: file=%s: memfd_create: %s", path, strerror(errno));
-        return STATUS_IO;
-    }
-    const pid_t child = fork();
-    if (child == 0) {
-        child_limits();
-        child_reads(fd, path);
-    }
-    int ended = 0;
-    if (child < 0) {
-        log_error("model: cannot read: file=%s: fork: %s", path, strerror(errno));
-        goto done;
-    }
-    while (waitpid(child, &ended, 0) < 0)
-        if (errno != EINTR) {
-            log_error("model: cannot read: file=%s: waitpid: %s", path, strerror(errno));
-            goto done;
-        }
-    status = STATUS_BAD_VALUE;
-    if (WIFSIGNALED(ended) && (WTERMSIG(ended) == SIGXCPU || WTERMSIG(ended) == SIGKILL)) {
-        log_error("model: cannot be read: file=%s: the reader took more than %d s", path, import_max_seconds);
-        goto done;
-    }
-    if (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0) {
-        log_error("model: cannot be read: file=%s: the reader broke off (%s %d): the file is broken, or needs more "
-                  "than %d MB",
-                  path, WIFSIGNALED(ended) ? "signal" : "exit",
-                  WIFSIGNALED(ended) ? WTERMSIG(ended) : WEXITSTATUS(ended), import_max_memory / 1000000);
-        goto done;
-    }
-    struct stat info;
-    if (fstat(fd, &info) != 0) info.st_size = 0;
-    void *bytes = mmap(NULL, (size_t)info.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
-    if (bytes == MAP_FAILED) {
-        log_error("model: cannot read: file=%s: nothing came back from the reader: %s", path, strerror(errno));
-        status = STATUS_NO_MEMORY;
-        goto done;
-    }
-    status = take_scene(out, bytes, (size_t)info.st_size, path);
-    munmap(bytes, (size_t)info.st_size);
-    if (status == STATUS_OK) format_axes(out, extension);
-
-done:
-    close(fd);
-    return status;
+    return reader_run(out, import_assimp_read, path, extension);
 }

@@ -2,6 +2,7 @@
 #include "entities/import/assimp_library.h"
 
 #define ASSIMP(X)                                                                                                     \
-    X(aiGetErrorString) X(aiGetMaterialColor) X(aiGetMaterialString) X(aiGetMaterialTextureCount) X(aiImportFileEx)   \
-    X(aiIsExtensionSupported)
+    X(aiCreatePropertyStore) X(aiGetErrorString) X(aiGetMaterialColor) X(aiGetMaterialString)                          \
+    X(aiGetMaterialTextureCount) X(aiImportFileExWithProperties) X(aiIsExtensionSupported)                             \
+    X(aiSetImportPropertyInteger)
 LIBRARY(assimp_library, ASSIMP, "assimp", PITVIPER_ASSIMP_FILE, "libassimp5");

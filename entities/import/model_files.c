@@ -73,7 +73,10 @@ Status import_find_files(ModelImport *report, Sidecar *sidecar, const char *path
         log_error("model: cannot open: file=%s: %s", report->file, why);
         return STATUS_IO;
     }
-    if (stat(report->file, &info) == 0 && info.st_size <= import_max_octets) return STATUS_OK;
+    if (stat(report->file, &info) == 0 && info.st_size <= import_max_octets) {
+        report->octets = info.st_size;
+        return STATUS_OK;
+    }
     log_error("model: cannot read: file=%s: larger than 256 MiB", report->file);
     return STATUS_BAD_VALUE;
 }

@@ -8,7 +8,7 @@ const char *import_lost_name(ImportLost lost)
 {
     static const char *const name[IMPORT_LOST_COUNT] = {
         "textures",         "lights",           "cameras",      "animations",          "bones",
-        "points_and_lines", "levels_of_detail", "switched_off", "external_references", "freedom_offsets",
+        "morph_targets",    "points_and_lines", "levels_of_detail", "switched_off", "external_references", "freedom_offsets",
         "other_objects",
     };
     return (unsigned)lost < IMPORT_LOST_COUNT ? name[lost] : "?";
@@ -52,7 +52,12 @@ static void set_frame(Build *b)
         r->r_body_from_file[6 + i] = -up[i] + 0.0;
     }
     r->axes_assumed = !s->has_axes;
-    r->scale_m = s->scale_m > 0 ? s->scale_m : 1;
+    r->scale_assumed = !(s->scale_m > 0);
+    r->scale_m = r->scale_assumed ? b->scene->unit_m : s->scale_m;
+    r->mirrored = b->scene->mirrored;
+    static const char sidecar[sizeof r->unit_from] = "the sidecar";
+    memcpy(r->unit_from, r->scale_assumed ? b->scene->unit_from : sidecar, sizeof sidecar);
+    memcpy(r->axes_from, r->axes_assumed ? b->scene->axes_from : sidecar, sizeof sidecar);
 }
 
 /* The centre of the base: over the middle of what does not move (DIS measures an entity without its articulated
@@ -105,6 +110,7 @@ static Status set_origin(Build *b)
         const int k = low[1][0] <= high[1][0];
         const double base[3] = {0.5 * (low[k][0] + high[k][0]), 0.5 * (low[k][1] + high[k][1]), high[0][2]};
         m3_tmul_v3(b->report->p_origin_file, b->report->r_body_from_file, base);
+        for (int i = 0; i < 3; i++) b->report->p_origin_file[i] += 0.0; /* no -0 */
     }
     return STATUS_OK;
 }
@@ -446,8 +452,10 @@ Status model_import(Model *out, ModelImport *report, const char *path)
     Status status = import_find_files(&filled, &sidecar, path);
     if (status == STATUS_OK) {
         import_split_extension(extension, &stem, filled.file);
-        status = strcmp(extension, "flt") == 0 ? import_openflight(&scene, filled.file)
-                                               : import_assimp(&scene, filled.file, extension);
+        if (strcmp(extension, "flt") == 0) status = import_openflight(&scene, filled.file);
+        else if (strcmp(extension, "gltf") == 0 || strcmp(extension, "glb") == 0 || strcmp(extension, "vrm") == 0)
+            status = import_gltf(&scene, filled.file, extension);
+        else status = import_assimp(&scene, filled.file, extension);
     }
     if (status == STATUS_OK) status = import_paints_open(&paints);
     Build b = {.scene = &scene, .sidecar = &sidecar, .paints = &paints, .report = &filled};
@@ -463,15 +471,25 @@ Status model_import(Model *out, ModelImport *report, const char *path)
     import_paints_close(&paints);
     sidecar_close(&sidecar);
     if (status == STATUS_OK) {
-        log_detail("model: %s: %d nodes, %d parts, %d triangles, %.3f x %.3f x %.3f m; sidecar: %s", filled.file,
-                   b.model.node_count, b.model.part_count, b.model.triangle_count, b.model.length_m, b.model.width_m,
-                   b.model.height_m, filled.sidecar[0] ? filled.sidecar : "none");
         *out = b.model;
         if (report) *report = filled;
     } else {
         model_destroy(&b.model);
     }
     return status;
+}
+
+void model_import_say(const ModelImport *r, const Model *model)
+{
+    char lost[400] = "nothing";
+    size_t n = 0;
+    for (int i = 0; i < IMPORT_LOST_COUNT && n < sizeof lost; i++)
+        if (r->lost[i] > 0)
+            n += (size_t)snprintf(lost + n, sizeof lost - n, "%s%d %s", n ? ", " : "", r->lost[i],
+                                  import_lost_name((ImportLost)i));
+    log_info("model: %s: %.4g x %.4g x %.4g m, %d triangles; %.9g m a unit (%s), axes by %s; lost: %s; sidecar: %s%s",
+             r->file, model->length_m, model->width_m, model->height_m, model->triangle_count, r->scale_m, r->unit_from, r->axes_from, lost,
+             r->sidecar[0] ? r->sidecar : "none", r->scale_assumed || r->axes_assumed ? " (`scale`, `axes` there say otherwise)" : "");
 }
 
 Status model_say_unknown(const char *name)

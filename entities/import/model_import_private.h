@@ -57,12 +57,16 @@ typedef struct ImportScene {
     float (*normal)[3];      /* zero where the mesh has none */
     uint32_t (*triangle)[3]; /* from the mesh's first vertex */
     ImportDof *dof;
-    double forward[3], up[3]; /* from the format */
+    double forward[3], up[3]; /* from the file or its format; along axes */
+    double unit_m;            /* the same: metres a unit */
+    char unit_from[96], axes_from[96]; /* where they come from, for reports */
+    bool mirrored;            /* the file's axes are left-handed: one coordinate has changed its sign */
     int lost[IMPORT_LOST_COUNT];
 } ImportScene;
 
 /* On failure one logged line. path: to a regular file. extension: lower case, without `.gz`. */
 Status import_assimp(ImportScene *out, const char *path, const char *extension);
+Status import_gltf(ImportScene *out, const char *path, const char *extension);
 Status import_openflight(ImportScene *out, const char *path);
 /* The extension in lower case, without its dot and without `.gz`; stem: length of what is before it. */
 void   import_split_extension(char out[16], size_t *stem, const char *path);

@@ -417,7 +417,9 @@ Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets
 {
     OsgText x;
     Status  status = osg_text_open(&x, path, text, octets);
-    Walk    w = {.x = &x, .s = {.forward = {0, 1, 0}, .up = {0, 0, 1}}}; /* as OpenFlight has it */
+    Walk    w = {.x = &x, .s = {.forward = {0, 1, 0}, .up = {0, 0, 1}, .unit_m = 1, /* as OpenFlight has it */
+                                .unit_from = "the unit of the file's header, turned to metres by osgconv",
+                                .axes_from = "OpenFlight's habit"}};
     if (status == STATUS_BAD_VALUE) refuse(&w, "what osgconv wrote is not a whole scene");
     for (int e = 0; e < x.element_count && status == STATUS_OK; e++) {
         const char *kind = osg_word(&x, e, 0);

@@ -83,6 +83,36 @@ static Status convert(const char *from, const char *to, const char *path)
     return STATUS_OK;
 }
 
+/* osgconv fetches what a file names by address, with a plug-in of its own: such a file is refused. Records of OpenFlight: an
+ * opcode and a length of 16 bits, highest octet first; 63 is an external reference, 64 a texture, whose names follow. */
+static Status refuse_addresses(const char *path)
+{
+    enum { external = 63, texture = 64, name_octets = 200 };
+    char  *bytes;
+    size_t octets;
+    Status status = import_read_whole(&bytes, &octets, path, false);
+    if (status != STATUS_OK) return status;
+    for (size_t at = 0; at + 4 <= octets && status == STATUS_OK;) {
+        const uint8_t *head = (const uint8_t *)bytes + at;
+        const int      opcode = head[0] << 8 | head[1];
+        const size_t   length = (size_t)head[2] << 8 | head[3], rest = octets - at - 4;
+        char           name[name_octets + 1], shown[400];
+        if (length < 4) break; /* not OpenFlight: osgconv says so */
+        at += length;
+        if (opcode != external && opcode != texture) continue;
+        const size_t count = rest < name_octets ? rest : name_octets;
+        memcpy(name, head + 4, count);
+        name[count] = 0;
+        if (!strstr(name, "://")) continue;
+        text_escape(shown, sizeof shown, name, strlen(name));
+        log_error("model: cannot be read: file=%s: it names an address of the network, and nothing is fetched: put the file beside "
+                  "the model and name that: %s", path, shown);
+        status = STATUS_BAD_VALUE;
+    }
+    free(bytes);
+    return status;
+}
+
 Status import_openflight(ImportScene *out, const char *path)
 {
     const char *root = getenv("TMPDIR");
@@ -93,6 +123,8 @@ Status import_openflight(ImportScene *out, const char *path)
         log_error("model: cannot open: file=%s: %s", path, strerror(errno));
         return STATUS_IO;
     }
+    Status status = refuse_addresses(path);
+    if (status != STATUS_OK) return status;
     if ((size_t)snprintf(folder, sizeof folder, "%s/pitviper-flt-XXXXXX", root && *root ? root : "/tmp") >=
             sizeof folder ||
         !mkdtemp(folder)) {
@@ -100,7 +132,7 @@ Status import_openflight(ImportScene *out, const char *path)
         return STATUS_IO;
     }
     snprintf(text_path, sizeof text_path, "%s/model.osgt", folder);
-    Status status = convert(whole, text_path, path);
+    status = convert(whole, text_path, path);
     if (status == STATUS_OK) status = import_read_whole(&text, &octets, text_path, false);
     if (status == STATUS_OK) status = import_osgt(out, path, text, octets);
     free(text);

@@ -7,10 +7,11 @@
 Status radar_model_open(RadarModel *out, const char *name, const RadarMaterials *materials, double sag_m)
 {
     ModelImport report;
-    bool        imported;
+    bool        imported = false;
     *out = (RadarModel){0};
     Status status = shape_is_named(name) ? shape_build(&out->model, name, sag_m)
                                          : model_open(&out->model, &report, &imported, name, sag_m);
+    if (status == STATUS_OK && imported) model_import_say(&report, &out->model);
     if (status == STATUS_OK) status = radar_target_create(&out->target, &out->model, materials, "avx2");
     if (status != STATUS_OK) radar_model_close(out);
     return status;

@@ -3,6 +3,7 @@
 
 #include "sensor/commands/heat_day.h"
 #include "sensor/commands/output_files.h"
+#include "sensor/settings/config.h"
 #include "sensor/settings/next_option.h"
 
 #include <sys/stat.h>
@@ -10,7 +11,7 @@
 
 static const char help[] =
     "usage: pitviper heat NAME|FILE [-o FOLDER] [--at LAT LON] [--day DAY] [--drive FROM-TO] [--heading DEG]\n"
-    "                     [--step S] [--overwrite]\n"
+    "                     [--step S] [-c FILE] [--overwrite]\n"
     "\n"
     "A vehicle's temperatures over a clear day. It stands on level grass, its engine stopped unless --drive is given;\n"
     "the air is 288 K on average with a range of 10 K. Hours are of local mean solar time.\n"
@@ -27,10 +28,11 @@ static const char help[] =
     "  --drive FROM-TO    hours between which it drives, e.g. 06:00-07:30: 10 m/s, without leaving its place\n"
     "  --heading DEG      of its nose, clockwise from north, -360 .. 360 (270)\n"
     "  --step S           time step, a divisor of 600 s from 1 s (60)\n"
+    "  --config FILE      or -c: settings, whose models.materials are read\n"
     "  --overwrite        replace these files in FOLDER; without it that is an error\n";
 
 typedef struct HeatOptions {
-    const char   *name, *out, *day;
+    const char   *name, *out, *day, *config;
     double        lat_deg, lon_deg, begin_s;
     char          drive[48];
     HeatDayConfig course;
@@ -73,21 +75,22 @@ static bool read_drive(HeatOptions *o, const char *text)
 /* 0: valid; else exit with this code - 1. */
 static int parse(HeatOptions *o, int argc, char **argv)
 {
-    enum { OUT = 'o', AT = 256, DAY, DRIVE, HEADING, STEP, OVERWRITE, HELP };
+    enum { OUT = 'o', CONFIG = 'c', AT = 256, DAY, DRIVE, HEADING, STEP, OVERWRITE, HELP };
     static const struct option options[] = {
         {"out", 1, NULL, OUT},         {"at", 1, NULL, AT},     {"day", 1, NULL, DAY},
         {"drive", 1, NULL, DRIVE},     {"heading", 1, NULL, HEADING}, {"step", 1, NULL, STEP},
-        {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+        {"overwrite", 0, NULL, OVERWRITE}, {"config", 1, NULL, CONFIG}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     double heading_deg = 270;
     *o = (HeatOptions){.day = "2026-06-21", .lat_deg = 48, .lon_deg = 11, .course = {.step_s = 60}};
     optind = 0; /* restart getopt */
-    for (int option; (option = next_option(argc, argv, "o:", options)) != -1;) {
+    for (int option; (option = next_option(argc, argv, "c:o:", options)) != -1;) {
         const char *second = NULL;
         switch (option) {
         case OUT:
             if (!*optarg) return refuse("--out", "needs a folder");
             o->out = optarg;
             break;
+        case CONFIG: o->config = optarg; break;
         case AT: /* takes two words */
             second = optind < argc ? argv[optind++] : NULL;
             if (!in_range(&o->lat_deg, optarg, -90, 90) || !in_range(&o->lon_deg, second, -180, 180))
@@ -202,6 +205,7 @@ int heat_command(int argc, char **argv)
     thread_flush_denormals();
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
+    if (config_tables_of(o.config) != STATUS_OK) return 1;
     ModelStage             stage = {0};
     HeatDay                day = {0};
     HeatImages             images = {0};

@@ -1,12 +1,13 @@
 /* sensor/commands/inspect.c: `pitviper inspect`: its options, the log, and which of the two formats is printed. */
 #include "sensor/commands/inspect.h"
 #include "sensor/commands/inspect_private.h"
+#include "sensor/settings/config.h"
 #include "sensor/settings/next_option.h"
 
 #include <stdio.h>
 
 static const char usage_text[] =
-    "usage: pitviper inspect LOG [--pdus tsv [--full]] [--port N] [--exercise N]\n"
+    "usage: pitviper inspect LOG [--pdus tsv [--full]] [--port N] [--exercise N] [-c FILE]\n"
     "\n"
     "LOG is a pcap or pcapng capture, also compressed (gzip, zstd, bzip2, xz) or a pipe. Without --pdus: a summary of\n"
     "the exercise.\n"
@@ -16,10 +17,11 @@ static const char usage_text[] =
     "  --full        with --pdus tsv: also entity type, dead reckoning, capabilities,\n"
     "                alternative type and articulation (change:attached:parameter:value; ...)\n"
     "  --port N      UDP destination port; 0: any that carries DIS (default: 3000, any when nothing went there)\n"
-    "  --exercise N  only this exercise, 0 .. 255; default: all\n";
+    "  --exercise N  only this exercise, 0 .. 255; default: all\n"
+    "  --config FILE or -c: settings, whose models.catalog and models.materials are read\n";
 
 typedef struct Options {
-    const char *path;
+    const char *path, *config;
     bool        tsv, full;
     long long   port, exercise; /* exercise -1: all */
 } Options;
@@ -27,19 +29,20 @@ typedef struct Options {
 /* 0: go on; else exit with this code - 1. */
 static int read_options(Options *o, int argc, char **argv)
 {
-    enum { PDUS = 256, FULL, PORT, EXERCISE, HELP };
+    enum { CONFIG = 'c', PDUS = 256, FULL, PORT, EXERCISE, HELP };
     static const struct option options[] = {
         {"pdus", 1, NULL, PDUS}, {"full", 0, NULL, FULL}, {"port", 1, NULL, PORT}, {"exercise", 1, NULL, EXERCISE},
-        {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+        {"config", 1, NULL, CONFIG}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     *o = (Options){.port = dis_port_default, .exercise = -1};
     optind = 0; /* restart getopt */
-    for (int option; (option = next_option(argc, argv, "", options)) != -1;)
+    for (int option; (option = next_option(argc, argv, "c:", options)) != -1;)
         switch (option) {
         case PDUS:
             if (strcmp(optarg, "tsv") != 0) return 1 + wrong_line("inspect", "--pdus: '%s' is not tsv", optarg);
             o->tsv = true;
             break;
         case FULL: o->full = true; break;
+        case CONFIG: o->config = optarg; break;
         case PORT:
             if (!text_to_long(&o->port, optarg) || o->port < 0 || o->port > 65535)
                 return 1 + wrong_line("inspect", "--port: '%s' is not a whole number in 0 .. 65535", optarg);
@@ -62,7 +65,7 @@ int inspect_command(int argc, char **argv)
 {
     Options   options;
     const int stop = read_options(&options, argc, argv);
-    if (stop) return stop - 1;
+    if (stop || config_tables_of(options.config) != STATUS_OK) return stop ? stop - 1 : 1;
 
     DisLog log;
     Status status = dis_log_open(&log, options.path, (int)options.port);

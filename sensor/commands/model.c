@@ -4,6 +4,7 @@
 
 #include "entities/catalog/model_info.h"
 #include "entities/import/sidecar.h"
+#include "sensor/publish/model_record.h"
 #include "sensor/settings/config.h"
 #include "sensor/settings/next_option.h"
 
@@ -11,12 +12,13 @@
 
 static const char help[] =
     "usage: pitviper model list [-c FILE]\n"
-    "       pitviper model info NAME|FILE [--sag M] [--length M] [--width M] [--height M]\n"
+    "       pitviper model info NAME|FILE [--sag M] [--length M] [--width M] [--height M] [-c FILE] [--json]\n"
     "       pitviper model show NAME|FILE [--out PNG] [--sag M] [-c FILE]\n"
     "       pitviper model --keys\n"
     "\n"
     "list: every built-in shape and every row of the catalog: name, kind, size, source, articulated parts.\n"
-    "info: contents of a model: nodes and joints, parts, materials, heat, size, and what an import lost.\n"
+    "info: contents of a model: nodes and joints, parts, materials, heat, size; of a file its unit and axes, where they\n"
+    "come from, and what the import lost.\n"
     "show: an optical image of it from eight sides, with a scale: PNG.\n"
     "\n"
     "NAME: a built-in model (tank, truck, helicopter ...). FILE: OBJ, glTF, AC3D, 3DS, ASE, PLY, STL and others, also\n"
@@ -31,15 +33,17 @@ static const char help[] =
     "                     it has that size, and prints which axes or scale would give it\n"
     "  --out PNG          output of show (default: NAME.png in the current folder)\n"
     "  --config FILE      or -c: settings, whose models.catalog and models.materials are read\n"
+    "  --json             info as one JSON object\n"
     "  --keys             every key of a sidecar: type, unit, range, meaning\n";
 
 typedef struct ModelOptions {
     const char *name, *out, *config;
     double      sag_m;
     ModelSize   size;
+    bool        json;
 } ModelOptions;
 
-typedef enum Option { OUT = 256, CONFIG, SAG, LENGTH, WIDTH, HEIGHT, KEYS, HELP } Option;
+typedef enum Option { OUT = 256, CONFIG, SAG, LENGTH, WIDTH, HEIGHT, JSON, HELP } Option;
 
 /* allowed: bits of the options that apply to the action. 0: valid; else exit with this code - 1. argv[0] is the
  * action. */
@@ -47,7 +51,8 @@ static int parse(ModelOptions *o, unsigned allowed, int argc, char **argv)
 {
     static const struct option options[] = {
         {"out", 1, NULL, OUT},       {"config", 1, NULL, CONFIG}, {"sag", 1, NULL, SAG}, {"length", 1, NULL, LENGTH},
-        {"width", 1, NULL, WIDTH},   {"height", 1, NULL, HEIGHT}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+        {"width", 1, NULL, WIDTH},   {"height", 1, NULL, HEIGHT}, {"json", 0, NULL, JSON}, {"help", 0, NULL, HELP},
+        {NULL, 0, NULL, 0}};
     double *const figure[] = {&o->size.length_m, &o->size.width_m, &o->size.height_m};
     *o     = (ModelOptions){.sag_m = 0.005};
     optind = 0; /* restart getopt */
@@ -58,6 +63,7 @@ static int parse(ModelOptions *o, unsigned allowed, int argc, char **argv)
             return 1 + wrong_line("model", "--%s does not apply to %s", options[option - OUT].name, "this action");
         switch (option) {
         case OUT: o->out = optarg; break;
+        case JSON: o->json = true; break;
         case CONFIG: o->config = optarg; break;
         case SAG:
             if (!text_to_double(&o->sag_m, optarg) || o->sag_m < 1e-5 || o->sag_m > 0.1)
@@ -80,13 +86,6 @@ static int parse(ModelOptions *o, unsigned allowed, int argc, char **argv)
     return 0;
 }
 
-static Status take_config(const char *path)
-{
-    Config config = config_default();
-    Status status = path ? config_read(&config, path) : STATUS_OK;
-    return status == STATUS_OK ? config_own_tables(&config) : status;
-}
-
 static int list_command(int argc, char **argv)
 {
     ModelOptions o;
@@ -94,7 +93,7 @@ static int list_command(int argc, char **argv)
     const int    stop = parse(&o, 1u << (CONFIG - OUT), argc, argv);
     if (stop) return stop - 1;
     if (o.name) return wrong_line("model", "list takes no model, not '%s'", o.name);
-    if (take_config(o.config) != STATUS_OK || !etc_path(catalog, sizeof catalog, "catalog.csv")) return 1;
+    if (config_tables_of(o.config) != STATUS_OK || !etc_path(catalog, sizeof catalog, "catalog.csv")) return 1;
     return model_list(stdout, catalog) == STATUS_OK ? 0 : 1;
 }
 
@@ -107,7 +106,7 @@ static int show_command(int argc, char **argv)
     if (!o.name) return wrong_line("model", "show needs a model: a built-in name, or a file");
     if (o.out && strcasecmp(output_ending(o.out), ".png") != 0)
         return wrong_line("model", "%s: the picture's name ends with .png", o.out);
-    if (take_config(o.config) != STATUS_OK) return 1;
+    if (config_tables_of(o.config) != STATUS_OK) return 1;
     etc_own_set("catalog.csv", NULL); /* the model is shown whatever its entity types */
     const char *slash = strrchr(o.name, '/'), *last = slash ? slash + 1 : o.name;
     snprintf(out, sizeof out, "%.*s.png", (int)strcspn(last, "."), last);
@@ -117,11 +116,19 @@ static int show_command(int argc, char **argv)
 static int info_command(int argc, char **argv)
 {
     ModelOptions o;
-    const int    stop = parse(&o, 1u << (SAG - OUT) | 1u << (LENGTH - OUT) | 1u << (WIDTH - OUT) | 1u << (HEIGHT - OUT),
-                              argc, argv);
+    ModelInfo    info;
+    const int    stop = parse(&o, 1u << (SAG - OUT) | 1u << (LENGTH - OUT) | 1u << (WIDTH - OUT) | 1u << (HEIGHT - OUT) |
+                              1u << (CONFIG - OUT) | 1u << (JSON - OUT), argc, argv);
     if (stop) return stop - 1;
     if (!o.name) return wrong_line("model", "info needs a model: a built-in name, or a file");
-    return model_info(o.name, &o.size, o.sag_m);
+    if (config_tables_of(o.config) != STATUS_OK) return 1;
+    etc_own_set("catalog.csv", NULL); /* that model, whatever its entity types */
+    if (model_info_open(&info, o.name, &o.size, o.sag_m) != STATUS_OK) return 1;
+    const bool put = !o.json || model_record_print(stdout, &info);
+    if (!o.json) model_info_print(&info);
+    if (!put) log_error("model: no memory: %s", o.name);
+    model_info_close(&info);
+    return put ? 0 : 1;
 }
 
 static int keys_command(int argc, char **argv)

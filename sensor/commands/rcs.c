@@ -4,6 +4,7 @@
 
 #include "sensor/commands/rcs_library.h"
 #include "sensor/commands/rcs_sweep.h"
+#include "sensor/settings/config.h"
 #include "sensor/settings/next_option.h"
 #include "sensor/commands/output_files.h"
 
@@ -13,7 +14,8 @@
 static const char help[] =
     "usage: pitviper rcs NAME|FILE|SHAPE [-o FOLDER] [--frequency GHZ[,GHZ...]] [--azimuth FROM:TO:STEP]\n"
     "                    [--elevation DEG] [--range M] [--rays N] [--splits N] [--warp MM] [--no-edges]\n"
-    "                    [--no-polygons] [--joint NAME=VALUE ...] [--image DEG|none] [--cell M] [--overwrite]\n"
+    "                    [--no-polygons] [--joint NAME=VALUE ...] [--image DEG|none] [--cell M] [-c FILE]\n"
+    "                    [--overwrite]\n"
     "\n"
     "A target's radar cross section over azimuth, at full polarisation, by ray tubes, physical optics and edges. It\n"
     "stands alone: no ground.\n"
@@ -43,10 +45,11 @@ static const char help[] =
     "  --no-polygons        by ray tubes alone; else flat faces are in closed form on targets of at most 64 of them\n"
     "  --image DEG|none     azimuth at which the picture is taken (30)\n"
     "  --cell M             its resolution, 0.01 .. 10 (a sixtieth of the target, at least three wavelengths)\n"
+    "  --config FILE        or -c: settings, whose models.materials are read\n"
     "  --overwrite          replace these files in FOLDER; without it that is an error\n";
 
 typedef struct RcsOptions {
-    const char *out;
+    const char *out, *settings;
     RcsConfig   config;
     bool        overwrite;
 } RcsOptions;
@@ -113,7 +116,7 @@ static bool read_joint(RcsConfig *config, const char *text)
 /* 0: valid; else exit with this code - 1. */
 static int parse(RcsOptions *o, int argc, char **argv)
 {
-    enum { OUT = 'o', FREQUENCY = 256, AZIMUTH, ELEVATION, RANGE, RAYS, SPLITS, WARP, JOINT, CELL, IMAGE, NO_EDGES,
+    enum { OUT = 'o', CONFIG = 'c', FREQUENCY = 256, AZIMUTH, ELEVATION, RANGE, RAYS, SPLITS, WARP, JOINT, CELL, IMAGE, NO_EDGES,
            NO_POLYGONS, OVERWRITE, LIBRARY, HELP };
     static const struct option options[] = {
         {"out", 1, NULL, OUT},       {"frequency", 1, NULL, FREQUENCY}, {"azimuth", 1, NULL, AZIMUTH},
@@ -121,18 +124,19 @@ static int parse(RcsOptions *o, int argc, char **argv)
         {"splits", 1, NULL, SPLITS}, {"warp", 1, NULL, WARP},           {"joint", 1, NULL, JOINT},
         {"cell", 1, NULL, CELL},     {"image", 1, NULL, IMAGE},         {"no-edges", 0, NULL, NO_EDGES},
         {"no-polygons", 0, NULL, NO_POLYGONS}, {"overwrite", 0, NULL, OVERWRITE}, {"library", 1, NULL, LIBRARY},
-        {"help", 0, NULL, HELP},     {NULL, 0, NULL, 0}};
+        {"config", 1, NULL, CONFIG}, {"help", 0, NULL, HELP},           {NULL, 0, NULL, 0}};
     RcsConfig *c = &o->config;
     double     number;
     *o = (RcsOptions){.config = {.step_deg = 1, .looks = 361, .elevation_deg = 10, .range_m = INFINITY,
                                  .frequencies = 1, .frequency_hz = {10e9}, .image_deg = 30, .splits = -1}};
     optind = 0; /* restart getopt */
-    for (int option; (option = next_option(argc, argv, "o:", options)) != -1;)
+    for (int option; (option = next_option(argc, argv, "c:o:", options)) != -1;)
         switch (option) {
         case OUT:
             if (!*optarg) return refuse("--out", "needs a folder");
             o->out = optarg;
             break;
+        case CONFIG: o->settings = optarg; break;
         case FREQUENCY:
             if (!read_frequencies(c, optarg))
                 return refuse("--frequency", "needs 1 to 64 numbers in 0.1 .. 300 GHz, separated by commas");
@@ -253,6 +257,7 @@ int rcs_command(int argc, char **argv)
         if (strncmp(argv[i], "--library", 9) == 0 && (!argv[i][9] || argv[i][9] == '=')) return rcs_library_command(argc, argv);
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
+    if (config_tables_of(o.settings) != STATUS_OK) return 1;
     RcsSweep     sweep = {0};
     const double begun_s = wall_clock_s();
     Status       status = rcs_sweep_open(&sweep, &o.config);

@@ -4,13 +4,14 @@
 #include "entities/scenario/scenario.h"
 #include "sensor/radar/seeker_radar.h"
 #include "sensor/radar/signature_library.h"
+#include "sensor/settings/config.h"
 #include "sensor/settings/next_option.h"
 
 #include <stdlib.h>
 
 const char rcs_library_help[] =
     "usage: pitviper rcs MODEL --library FOLDER --preset NAME [--azimuth FROM:TO] [--elevation FROM:TO]\n"
-    "                    [--range FROM:TO] [--joint NAME=VALUE]... [--damage N] [--warp MM]\n"
+    "                    [--range FROM:TO] [--joint NAME=VALUE]... [--damage N] [--warp MM] [-c FILE]\n"
     "\n"
     "Computes the signatures of a target for a radar, one file for each bin of aspect (0.3 deg) and range (a factor of 1.19),\n"
     "for radar.library of a run. Existing files are kept: after an interruption the same command continues.\n"
@@ -22,12 +23,13 @@ const char rcs_library_help[] =
     "  --range FROM:TO      m (1000:3000)\n"
     "  --joint NAME=VALUE   of a node of the model, deg or m, as `model show` names it; at rest without\n"
     "  --damage N           0 .. 3 (0)\n"
-    "  --warp MM            as radar.warp_mm (1)\n";
+    "  --warp MM            as radar.warp_mm (1)\n"
+    "  --config FILE        or -c: settings, whose models.catalog and models.materials are read\n";
 
 enum { most_joints = 32 };
 
 typedef struct LibraryOptions {
-    const char *name, *folder, *preset;
+    const char *name, *folder, *preset, *settings;
     double      azimuth_deg[2], elevation_deg[2], range_m[2], warp_mm, damage;
     int         joints;
     const char *joint[most_joints];
@@ -73,21 +75,23 @@ static bool span_in(double out[2], const char *text, double low, double high)
 /* 0: valid; else exit with this code - 1. */
 static int parse(LibraryOptions *o, int argc, char **argv)
 {
-    enum { LIBRARY = 256, PRESET, AZIMUTH, ELEVATION, RANGE, WARP, DAMAGE, JOINT, HELP };
+    enum { CONFIG = 'c', LIBRARY = 256, PRESET, AZIMUTH, ELEVATION, RANGE, WARP, DAMAGE, JOINT, HELP };
     static const struct option options[] = {
         {"library", 1, NULL, LIBRARY},     {"preset", 1, NULL, PRESET}, {"azimuth", 1, NULL, AZIMUTH},
         {"elevation", 1, NULL, ELEVATION}, {"range", 1, NULL, RANGE},   {"warp", 1, NULL, WARP},
-        {"damage", 1, NULL, DAMAGE},       {"joint", 1, NULL, JOINT},   {"help", 0, NULL, HELP},
+        {"damage", 1, NULL, DAMAGE},       {"joint", 1, NULL, JOINT},   {"config", 1, NULL, CONFIG},
+        {"help", 0, NULL, HELP},
         {NULL, 0, NULL, 0}};
     *o = (LibraryOptions){.azimuth_deg = {0, 360}, .elevation_deg = {5, 10}, .range_m = {1000, 3000}, .warp_mm = 1};
     optind = 0; /* restart getopt */
-    for (int option; (option = next_option(argc, argv, "", options)) != -1;)
+    for (int option; (option = next_option(argc, argv, "c:", options)) != -1;)
         switch (option) {
         case LIBRARY:
             if (!*optarg) return refuse("--library", "needs a folder");
             o->folder = optarg;
             break;
         case PRESET: o->preset = optarg; break;
+        case CONFIG: o->settings = optarg; break;
         case AZIMUTH:
             if (!span_in(o->azimuth_deg, optarg, -720, 720))
                 return refuse("--azimuth", "needs FROM:TO in deg, rising, within 720");
@@ -236,7 +240,8 @@ int rcs_library_command(int argc, char **argv)
     const int   stop = parse(&w.o, argc, argv);
     if (stop) return stop - 1;
     w.begun_s = wall_clock_s();
-    Status status = open_work(&w);
+    Status status = config_tables_of(w.o.settings);
+    if (status == STATUS_OK) status = open_work(&w);
     if (status == STATUS_OK) status = all_bins(&w, true);
     if (status == STATUS_OK) status = all_bins(&w, false);
     log_status(NULL);

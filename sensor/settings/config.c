@@ -536,6 +536,13 @@ Status config_own_tables(const Config *config)
     return fits ? STATUS_OK : STATUS_BAD_VALUE;
 }
 
+Status config_tables_of(const char *path)
+{
+    Config       config = config_default();
+    const Status status = path ? config_read(&config, path) : STATUS_OK;
+    return status == STATUS_OK ? config_own_tables(&config) : status;
+}
+
 Status config_read(Config *config, const char *path) { return config_read_as(config, path, path); }
 
 Status config_read_as(Config *config, const char *path, const char *file)

@@ -183,6 +183,8 @@ const char *config_where(const Config *config, const char *key);
 const char *config_sheet(const Config *config);
 /* Makes the tables of this configuration take precedence (etc_own), for the whole process. */
 Status config_own_tables(const Config *config);
+/* The same from a file of settings, as commands with `--config` do that read nothing else of it; NULL: none. */
+Status config_tables_of(const char *path);
 /* Whether a file or the command line has set it; the key must exist. */
 bool   config_given(const Config *config, const char *key);
 /* Type of a key's value. */

@@ -639,7 +639,19 @@ static void openflights_freedoms_are_joints(void **state)
     part_box(low, high, &m, part_called(&m, "tube"), value);
     CHECK_NEAR(high[0] - low[0], 0.5 * cos(20 * rad_per_deg) + 0.5 * sin(20 * rad_per_deg), 1e-6);
     assert_int_equal(model_validate(&m), STATUS_OK);
+    const double length_m = m.length_m;
     model_destroy(&m);
+
+    /* the same drawn in feet: octet 62 of the header */
+    static Flt feet;
+    feet = flt;
+    feet.at[62] = 4;
+    write_file(path, "feet.flt", feet.at, feet.count);
+    assert_int_equal(import_quietly(&m, &r, path), STATUS_OK);
+    CHECK_NEAR(m.length_m, 0.3048 * length_m, 1e-5);
+    CHECK(strstr(r.unit_from, "header") && r.scale_m == 1);
+    model_destroy(&m);
+    write_file(path, "tank.flt", flt.at, flt.count);
 
     /* the sidecar has the last word, and keeps the file's pivot */
     char yaml[128];
@@ -651,6 +663,19 @@ static void openflights_freedoms_are_joints(void **state)
     CHECK_NEAR(m.node[radar].high, pi_rad / 2, 1e-12);
     CHECK_NEAR(m.node[radar].p_parent[2], -1.5, 1e-9);
     model_destroy(&m);
+
+    /* an external reference, or a texture, at an address: nothing is fetched */
+    for (int opcode = 63; opcode <= 64; opcode++) {
+        static Flt far;
+        far = flt;
+        record(&far, opcode, 216, "http://127.0.0.1:9/far.flt");
+        write_file(path, "far.flt", far.at, far.count);
+        refused(path, STATUS_BAD_VALUE, "http://127.0.0.1:9/far.flt");
+        memcpy(far.at + far.record + 4, "there/is/none/of/this.flt\0", 27);
+        write_file(path, "near.flt", far.at, far.count);
+        assert_int_equal(import_quietly(&m, &r, path), STATUS_OK);
+        model_destroy(&m);
+    }
 
     write_file(path, "cut.flt", flt.at, 300);
     refused(path, STATUS_BAD_VALUE, "cut.flt");

@@ -39,7 +39,7 @@ LIBRARIES = (
     ('cpl_*', 'terrain/elevation/reader/*'), ('ogr_*', 'terrain/elevation/reader/*'), ('erfa.h', 'terrain/*'),
     ('OpenImageIO/*', 'sensor/publish/image_module.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
     ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),
-    ('jansson.h', 'sensor/publish/*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep_file.c'),
+    ('jansson.h', 'sensor/publish/*'), ('jansson.h', 'entities/import/gltf*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep_file.c'),
 )
 
 # Files are opened for writing, and renamed, by pitviper_output.c alone, which follows no link; shared memory has names of its own; pitviper_confine.c forbids it.

@@ -47,6 +47,57 @@ check "names: each its own: nothing to warn of but the one without" not complain
 check "names: the one without" complained 'names.gltf: 1 of 4 meshes hang on nodes without a name'
 check "names: and counted" grep -q '1 nodes have none, 2 share theirs' "$tmp/stdout"
 
+# materials of one's own, by the settings, in every command that reads a model
+{ grep -m1 '^name' etc/materials.csv; grep '^canvas,' etc/materials.csv | sed 's/^canvas/my_canvas/'; } >"$tmp/own.csv"
+printf 'models: {materials: own.csv}\n' >"$tmp/node.yaml"
+box_obj crate 0 2 0 4 0 6 >"$tmp/crate.obj"
+printf 'axes: +x +z\nmaterials: {"*": my_canvas}\n' >"$tmp/crate.yaml"
+run model info "$tmp/crate.obj"
+check "own materials: not known without the settings" complained "crate.yaml:2: materials: 'my_canvas' is not a row"
+run model info "$tmp/crate.obj" --config "$tmp/node.yaml"
+check "own materials: info" said 'crate on hull, my_canvas,'
+run model show "$tmp/crate.obj" -c "$tmp/node.yaml" -o "$tmp/crate.png"
+check "own materials: show" [ $code = 0 ]
+run rcs "$tmp/crate.obj" -c "$tmp/node.yaml" --azimuth 0:10:10 --image none --frequency 3 -o "$tmp/rcs"
+check "own materials: rcs" [ $code = 0 ]
+run heat "$tmp/crate.obj" -c "$tmp/node.yaml" --step 600 -o "$tmp/heat"
+check "own materials: heat" [ $code = 0 ]
+printf 'ox_m,oy_m,oz_m,dx,dy,dz\n-9,0,-1,1,0,0\n' | "$pitviper" probe -c "$tmp/node.yaml" rays "$tmp/crate.obj" body >"$tmp/stdout" 2>"$tmp/stderr"
+check "own materials: probe rays" grep -q ',1,8,-1,0,0,crate,' "$tmp/stdout"
+exercise demo "$tmp/small.pcap"
+{ echo 'type,model,origin'; echo '1.1.225.1,crate.obj,base'; } >"$tmp/mine.csv"
+printf 'models: {materials: own.csv, catalog: mine.csv}\n' >"$tmp/both.yaml"
+run inspect "$tmp/small.pcap" -c "$tmp/both.yaml"
+check "own catalog: inspect" [ $code = 0 ]
+check "own catalog: what was read is said before use" complained 'model: .*crate.obj: 2 x 4 x 6 m, 12 triangles; 1 m a unit .*axes by the sidecar; lost: nothing'
+run model info "$tmp/crate.obj" -c "$tmp/none.yaml"
+check "settings that are not there: exit code" [ $code = 1 ]
+
+# --json is the report, field by field
+run model info "$tmp/crate.obj" -c "$tmp/node.yaml" --json
+check "info --json" python3 - "$tmp/stdout" <<'PY'
+import json, sys
+d = json.load(open(sys.argv[1]))
+i = d['import']
+assert d['model'] == 'crate' and d['size_m'] == [2, 4, 6] and d['triangles'] == 12 and d['edges']['open'] == 0, d
+assert i['scale_m'] == 1 and i['axes_from'] == 'the sidecar' and (i['forward'], i['up']) == ('+x', '+z') and i['octets'] > 100, i
+assert d['parts'][0]['material'] == 'my_canvas' and i['material_parts_by']['sidecar'] == 1 and 'odd_size' not in d, d
+PY
+run model info tank --json
+check "info --json: joints of a built-in model" python3 -c 'import json,sys; d = json.load(open(sys.argv[1])); n = {x["name"]: x for x in d["nodes"]}; assert n["turret"]["dis_class"] == 4096 and n["turret"]["joint"] == "turns" and "import" not in d' "$tmp/stdout"
+
+# a size that no such thing has: by the type's row, by its kind, and by what a thing may be
+box_obj crate 0 700 0 350 0 260 >"$tmp/large.obj"
+{ echo 'type,model,origin'; echo '1.1.222.1,large.obj,base'; echo '1,large.obj,base'; echo '2.9,large.obj,base'; } >"$tmp/mine.csv"
+printf 'axes: +x +z\n' >"$tmp/large.yaml"
+run model list -c "$tmp/both.yaml"
+check "size: of the type" complained 'mine.csv:2: .*large.obj is 700 x 350 x 260 m .*catalog.csv:[0-9]+ \(tank.*scale: 0.01. \(the file is in centimetres\)'
+check "size: of the kind" complained 'mine.csv:[34]: .*large.obj is 700 m large, but what etc/catalog.csv has of its kind'
+printf 'axes: +x +z\nscale: 0.01\n' >"$tmp/large.yaml"
+{ echo 'type,model,origin'; echo '1.1.222.1,large.obj,base'; } >"$tmp/mine.csv"
+run model list -c "$tmp/both.yaml"
+check "size: right" not complained 'large.obj is'
+
 for wrong in "" "frob" "info" "info tank truck" "info tank --sag 3" "info --frob"; do
     # shellcheck disable=SC2086
     run model $wrong

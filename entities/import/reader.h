@@ -1,0 +1,69 @@
+/* entities/import/reader.h: what the readers of model files share: they run in a process of their own, see only files
+ * of the model's folder, and hand back a flat scene and what there is to say. */
+#ifndef ENTITIES_IMPORT_READER_H
+#define ENTITIES_IMPORT_READER_H
+
+#include "entities/import/model_import_private.h"
+
+/* The model `tank.obj.gz` is `tank.obj` to a reader; files it names (materials, buffers) are in the same folder. */
+typedef struct ReaderFiles {
+    const char *path;   /* as it is on disk */
+    char shown[1024];   /* without .gz */
+    size_t folder;      /* length of the folder's name with its slash */
+    bool no_memory;     /* for a file of it */
+    char refused[1100]; /* the first file outside the folder, or that is no file */
+} ReaderFiles;
+
+void reader_files(ReaderFiles *out, const char *path);
+/* Everything of a file, or of `name.gz`. name: with the folder, as `shown` has it. *out is NUL-terminated. Says
+ * nothing: STATUS_IO also for what is refused. */
+Status reader_read(char **out, size_t *octets, ReaderFiles *files, const char *name);
+
+/* Lines for the user, which the process that asked for the model logs. */
+typedef struct ReaderSaid {
+    char error[600]; /* why there is no scene */
+    int warnings;
+    char warning[8][300];
+} ReaderSaid;
+
+/* Returns `status`, so that a reader can end with it. */
+__attribute__((format(printf, 3, 4))) Status reader_fails(ReaderSaid *said, Status status, const char *format, ...);
+/* Later ones than the eighth are not said. */
+__attribute__((format(printf, 2, 3))) void reader_warns(ReaderSaid *said, const char *format, ...);
+
+/* Fills a scene. A failure is in said->error. What was allocated may be left in *out. */
+typedef Status Reader(ImportScene *out, ReaderSaid *said, ReaderFiles *files, const char *extension);
+
+/* Runs `read` in a process with limits on time and memory, and checks what comes back as what a stranger wrote. On
+ * failure one logged line. */
+Status reader_run(ImportScene *out, Reader *read, const char *path, const char *extension);
+
+/* Room for the scene's counts; its arrays are zero. */
+bool import_scene_room(ImportScene *scene);
+
+Reader import_assimp_read, import_gltf_read;
+/* The same from memory; other files are still of `files`. */
+Status import_gltf_text(ImportScene *out, ReaderSaid *said, ReaderFiles *files, char *text, size_t octets);
+/* False when an index or a count is not what a whole scene has. */
+bool import_scene_is_sound(ImportScene *scene);
+
+/* The text of an OBJ file in the forms that assimp reads: numbers without sign and exponent and with a digit before the
+ * point, a statement a line, no texture coordinates (nothing uses them). *text is replaced. A statement that cannot be
+ * meant as it is fails, with its line. lost: counts that it adds to. */
+Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT], ReaderSaid *said, ReaderFiles *files);
+/* A word of a text: what is between blanks. */
+typedef struct ReaderWord {
+    const char *at;
+    size_t length;
+} ReaderWord;
+
+/* The next word of [*at, end), which it moves; length 0: none. */
+ReaderWord reader_word(const char **at, const char *end);
+bool reader_word_is(ReaderWord word, const char *text);
+
+/* The unit that 3MF, AMF and DXF name, in metres; 0: none. word: as it is said; empty: the format's default. */
+double import_stated_unit(char word[24], const char *extension, const char *bytes, size_t octets);
+/* The unit that comments of a text (OBJ, PLY, STL) name, in metres; 0: none. word: as it stands there. */
+double import_comment_unit(char word[24], const char *text, size_t octets);
+
+#endif
