@@ -190,3 +190,21 @@ bool confine_calls(char why[confine_why_size])
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return failed(why, "no_new_privs");
     return prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0 || failed(why, "seccomp");
 }
+
+bool confine_network(char why[confine_why_size])
+{
+    enum { other_abi = 0x40000000 }; /* x32: the same calls by other numbers */
+    Filter f = {.count = 0};
+    put(&f, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, arch), 0, 0);
+    put(&f, BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)this_machine, 1, 0);
+    put_return(&f, fails_with(EPERM));
+    put(&f, BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr), 0, 0);
+    put(&f, BPF_JMP | BPF_JGE | BPF_K, other_abi, 3, 0);
+    put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_socket, 2, 0);
+    put(&f, BPF_JMP | BPF_JEQ | BPF_K, SYS_io_uring_setup, 1, 0); /* makes sockets, too */
+    put_return(&f, SECCOMP_RET_ALLOW);
+    put_return(&f, fails_with(EPERM));
+    const struct sock_fprog program = {.len = (unsigned short)f.count, .filter = f.step};
+    if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return failed(why, "no_new_privs");
+    return prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0 || failed(why, "seccomp");
+}

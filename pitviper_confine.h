@@ -24,4 +24,8 @@ bool confine_files(char why[confine_why_size], const char *const *readable, int 
  * False: why says what the kernel refused. */
 bool confine_calls(char why[confine_why_size]);
 
+/* From here on no socket can be made (a seccomp filter), by this process and by programs that it becomes: for programs of
+ * others, which need what confine_calls refuses. Async-signal-safe but for `why`. */
+bool confine_network(char why[confine_why_size]);
+
 #endif

@@ -1,12 +1,12 @@
 /* entities/import/osgconv.c: OpenFlight into OpenSceneGraph's text, by osgconv in a process of its own, with limits on
  * time and memory. */
 #include "entities/import/model_import_private.h"
+#include "pitviper_confine.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -49,21 +49,21 @@ static Status convert(const char *from, const char *to, const char *path)
     char *argument[] = {program, option, options, (char *)(uintptr_t)from, (char *)(uintptr_t)to, NULL};
     pid_t child;
     int ended = 0;
-    posix_spawn_file_actions_t actions;
+    enum { not_there = 127 };
     char **environment = osg_environment();
-    if (!environment || posix_spawn_file_actions_init(&actions) != 0) {
-        free(environment);
-        return STATUS_NO_MEMORY;
+    if (!environment) return STATUS_NO_MEMORY;
+    child = fork();
+    if (child == 0) { /* without network: osgconv would fetch what a file names by address */
+        char why[confine_why_size];
+        const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
+        for (int fd = 0; fd < 3; fd++) dup2(nowhere, fd);
+        if (!confine_network(why)) _exit(not_there - 1);
+        execvpe(program, argument, environment);
+        _exit(errno == ENOENT ? not_there : not_there - 1);
     }
-    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-    const int failed = posix_spawnp(&child, program, &actions, NULL, argument, environment);
-    posix_spawn_file_actions_destroy(&actions);
     free(environment);
-    if (failed) {
-        log_error("model: cannot convert: file=%s: osgconv: %s%s", path, strerror(failed),
-                  failed == ENOENT ? "; OpenFlight needs it: apt-get install openscenegraph" : "");
+    if (child < 0) {
+        log_error("model: cannot convert: file=%s: fork: %s", path, strerror(errno));
         return STATUS_IO;
     }
     const struct rlimit memory = {2 * (rlim_t)import_max_memory, 2 * (rlim_t)import_max_memory}, no_core = {0, 0},
@@ -74,6 +74,10 @@ static Status convert(const char *from, const char *to, const char *path)
     if (!wait_for(&ended, child, import_max_seconds)) {
         log_error("model: cannot convert: file=%s: osgconv took more than %d s", path, import_max_seconds);
         return STATUS_BAD_VALUE;
+    }
+    if (WIFEXITED(ended) && WEXITSTATUS(ended) == not_there) {
+        log_error("model: cannot convert: file=%s: there is no osgconv; OpenFlight needs it: apt-get install openscenegraph", path);
+        return STATUS_IO;
     }
     if (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0 || access(to, R_OK) != 0) {
         log_error("model: cannot convert: file=%s: osgconv gave up (%s %d): is it whole, and OpenFlight?", path,

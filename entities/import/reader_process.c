@@ -3,6 +3,7 @@
  * Readers have crashed on broken files often enough: they run in a child, which hands the flat scene back in memory
  * that both have: header, then arrays. The result is validated like untrusted input. */
 #include "entities/import/reader.h"
+#include "pitviper_confine.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -223,6 +224,13 @@ Status reader_run(ImportScene *out, Reader *read, const char *path, const char *
     const pid_t child = fork();
     if (child == 0) {
         child_limits();
+        char why[confine_why_size], folder[1100];
+        const char *slash = strrchr(path, '/');
+        snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
+        const char *const readable[] = {folder, path}; /* the model itself may be a link */
+        confine_limits(import_max_memory);
+        confine_files(why, readable, 2); /* without Landlock reader_read's rule still holds */
+        if (!confine_calls(why)) _exit(4);
         child_reads(shared, read, path, extension);
     }
     int ended = 0;

@@ -607,7 +607,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     const char  *fault = terrain_options_fault(options);
     char        *sources = strdup(raster_sources());
     if (*options->sources_from) raster_sources_from(options->sources_from);
-    if (progress) work_stop_when(file_stop_asked);
+    if (m->watch.progress) work_stop_when(file_stop_asked);
     Status       status = fault ? STATUS_BAD_VALUE : STATUS_OK;
     if (fault) log_error("%s: %s", module, fault);
     if (status == STATUS_OK && !go_on(m, "levels around", 0, true)) status = STATUS_IO;

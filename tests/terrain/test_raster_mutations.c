@@ -216,7 +216,7 @@ static Status import(void)
     CHECK(terrain_options_set(&o, &why, "elevation", path) && terrain_options_set(&o, &why, "size", "0.3x0.3") &&
           terrain_options_set(&o, &why, "horizon", "1") && terrain_options_set(&o, &why, "most-gb", "0.02"));
     begun_s = wall_clock_s();
-    const Status status = terrain_import(&r, &o, store, NULL, for_a_while, NULL);
+    const Status status = terrain_import(&r, &o, store, NULL, &(TerrainWatch){.progress = for_a_while});
     CHECK(!r.stopped); /* in 30 s: beyond any doubt */
     if (status == STATUS_OK) CHECK(unlink(store) == 0);
     return status;
