@@ -24,6 +24,7 @@ typedef struct Making {
     LocalFrame       frame;
     ElevationFiles   files[2];        /* terrain model, surface model */
     ElevationStream *terrain, *surface, *first; /* first: whose levels are made */
+    RasterSet        opened; /* the first's files, until it has them */
     RasterSet        cover, photo, canopy_height, canopy_cover;
     CoverTable       table;
     int              cover_band;
@@ -69,7 +70,7 @@ static Status open_sources(Making *m)
     const TerrainOptions *o = m->o;
     Geodetic origin = {o->origin_deg[0] * rad_per_deg, o->origin_deg[1] * rad_per_deg, 0};
     Status   status = STATUS_OK;
-    if (isnan(o->origin_deg[0])) status = elevation_middle(&origin, *o->surface ? o->surface : o->elevation);
+    if (isnan(o->origin_deg[0])) status = elevation_middle(&origin, &m->opened, *o->surface ? o->surface : o->elevation);
     if (status == STATUS_OK) status = local_frame_at(&m->frame, &origin);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < 2; k++)
@@ -77,7 +78,8 @@ static Status open_sources(Making *m)
                                        .vertical = o->vertical,
                                        .spacing_m = o->spacing_m, .horizon_m = 1000 * o->horizon_km,
                                        .size_m = {1000 * o->size_km[0], 1000 * o->size_km[1]},
-                                       .keep_folder = m->folder};
+                                       .keep_folder = m->folder,
+                                       .opened = (k == 1) == (*o->surface != 0) ? &m->opened : NULL};
     if (*o->surface && status == STATUS_OK)
         status = elevation_stream_open(&m->surface, &m->files[1], &m->frame, NULL, m->pool);
     if (*o->elevation && status == STATUS_OK)
@@ -604,6 +606,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     *out = m->r;
     elevation_stream_close(m->terrain);
     elevation_stream_close(m->surface);
+    raster_set_close(&m->opened);
     raster_set_close(&m->cover);
     raster_set_close(&m->photo);
     raster_set_close(&m->canopy_height);

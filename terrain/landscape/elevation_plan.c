@@ -6,8 +6,14 @@ enum { outer_half_posts = 1024, last_half_posts = 2048 };
 
 Status elevation_import_open(Import *m)
 {
-    Status status = raster_set_open(&m->set, m->files->paths, key);
-    if (status != STATUS_OK) return status;
+    RasterSet *opened = m->files->opened;
+    if (opened && opened->count) {
+        m->set  = *opened;
+        *opened = (RasterSet){0};
+    } else {
+        const Status status = raster_set_open(&m->set, m->files->paths, key);
+        if (status != STATUS_OK) return status;
+    }
     if (m->set.count > import_most_grids) {
         log_error("%s: the files lie on %d different grids, more than %d; gdalbuildvrt joins them", key, m->set.count,
                   (int)import_most_grids);

@@ -228,7 +228,7 @@ Status elevation_stream_report(ElevationReport *out, const ElevationStream *s, c
     return status;
 }
 
-Status elevation_middle(Geodetic *out, const char *paths)
+Status elevation_middle(Geodetic *out, RasterSet *opened, const char *paths)
 {
     RasterSet set = {0};
     Status    status = raster_set_open(&set, paths, "terrain.elevation");
@@ -237,6 +237,7 @@ Status elevation_middle(Geodetic *out, const char *paths)
     raster_earth_from_px(&set.raster[0], 1, &x, &y);
     if (isfinite(x) && isfinite(y)) *out = (Geodetic){y, x, 0};
     else status = STATUS_BAD_VALUE;
-    raster_set_close(&set);
+    if (status == STATUS_OK) *opened = set;
+    else raster_set_close(&set);
     return status;
 }
