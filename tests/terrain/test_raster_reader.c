@@ -221,6 +221,7 @@ static void ends_by(int number, const char *wanted)
     CHECK(raster_set_open(&set, tiff, "test.key") == STATUS_OK && raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test.key") == STATUS_OK);
     const pid_t reader = lab_reader();
     CHECK(kill(reader, number) == 0);
+    raster_child_patience(0.3); /* no longer than a stopped one needs: opening takes longer on a busy machine */
     said_errors = 0;
     log_set_sink(count_errors, NULL);
     CHECK(raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test.key") == STATUS_IO);
@@ -230,6 +231,7 @@ static void ends_by(int number, const char *wanted)
     raster_px_from_earth(&set.raster[0], 1, &x, &y);
     CHECK(isnan(x) && isnan(y) && said_errors == 1);
     log_set_sink(NULL, NULL);
+    raster_child_patience(0);
     CHECK(kill(reader, 0) != 0); /* it is no more */
     raster_set_close(&set);
     CHECK(read_some(some, tiff) == STATUS_OK);
@@ -240,9 +242,7 @@ static void one_that_ends_or_hangs_is_one_error(void **state)
     (void)state;
     ends_by(SIGKILL, "broke off (signal 9)");
     ends_by(SIGSEGV, "broke off ("); /* a sanitizer makes an exit of it */
-    raster_child_patience(0.3);
     ends_by(SIGSTOP, "did nothing for 0 s");
-    raster_child_patience(0);
 }
 
 static void one_that_starts_them_may_end(void **state)
@@ -302,7 +302,7 @@ static void whatever_it_sends_the_program_goes_on(void **state)
     CHECK(out && bytes && valid);
     read_by("rasters_hostile");
     log_set_sink(check_listen, NULL);
-    raster_child_patience(0.2);
+    raster_child_patience(0.5);
     for (int n = 0; n < rounds; n++) {
         RasterSet set = {0};
         if (raster_set_open(&set, tiff, "test") != STATUS_OK) {
@@ -335,7 +335,7 @@ static void whatever_it_sends_the_program_goes_on(void **state)
     raster_child_patience(0);
     read_by(NULL);
     print_message("%d sets were opened, %d refused\n", opened, refused);
-    CHECK(opened > rounds / 20 && refused > rounds / 20);
+    CHECK(opened > 3 && refused > 3);
     free(out);
     free(bytes);
     free(valid);
