@@ -185,6 +185,9 @@ static void others_are_read_in_the_own_folder_alone(void **state)
     CHECK(read_some(some, vrt) != STATUS_OK && strstr(check_said, "ermission denied"));
     read_by("rasters_open");
     CHECK(read_some(some, vrt) == STATUS_OK); /* the twin */
+    read_by("rasters_by_name");
+    *check_said = 0;
+    CHECK(read_some(some, vrt) != STATUS_OK && strstr(check_said, "outside its folder"));
     read_by(NULL);
 
     raster_sources_from(other);
@@ -207,6 +210,12 @@ static void others_are_read_in_the_own_folder_alone(void **state)
     CHECK(read_some(some, text) == STATUS_OK);
     snprintf(text, sizeof text, "GTIFF_DIR:1:%s", tiff);
     CHECK(read_some(some, text) == STATUS_OK);
+    /* names of the folder that is the current one now */
+    char *before = realpath(".", NULL);
+    CHECK(before && chdir(folder) == 0);
+    const Status here = read_some(some, "a.tif");
+    CHECK(chdir(before) == 0 && here == STATUS_OK);
+    free(before);
     CHECK(unlink(deep) == 0 && unlink(hidden) == 0);
 }
 
