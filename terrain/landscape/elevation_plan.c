@@ -39,6 +39,17 @@ Status elevation_import_open(Import *m)
     return wants_geoid ? geoid_open(&m->geoid, m->files->geoid_path) : STATUS_OK;
 }
 
+double elevation_import_reads_px(const Import *m, int grid)
+{
+    const Raster *raster = &m->set.raster[grid];
+    double        px = raster->data_share;
+    for (int c = 0; c < 2; c++) {
+        const double size = c ? raster->height : raster->width;
+        px *= fmin(size, 2 * m->files->horizon_m / raster->posting_m[c] + 2);
+    }
+    return px;
+}
+
 static int round_out(double posts)
 {
     return (int)(posts < 0 ? floor(posts / level_ratio) : ceil(posts / level_ratio)) * level_ratio;

@@ -46,21 +46,10 @@ Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files,
     return status;
 }
 
-/* What of a raster is read once: within the horizon, and not known to hold nothing. */
-static double reads_px(const Import *m, const Raster *raster)
-{
-    double px = raster->data_share;
-    for (int c = 0; c < 2; c++) {
-        const double size = c ? raster->height : raster->width;
-        px *= fmin(size, 2 * m->files->horizon_m / raster->posting_m[c] + 2);
-    }
-    return px;
-}
-
 double elevation_stream_reads_px(const ElevationStream *s)
 {
     double px = 0;
-    for (int k = 0; k < s->m.set.count; k++) px += reads_px(&s->m, &s->m.set.raster[k]);
+    for (int k = 0; k < s->m.set.count; k++) px += elevation_import_reads_px(&s->m, k);
     return px;
 }
 
@@ -69,7 +58,7 @@ Status elevation_stream_begin(ElevationStream *s, double keep_octets)
     Import *m = &s->m;
     for (int k = 0; s->files.keep_folder && k < m->set.count; k++) {
         Raster      *raster = &m->set.raster[k];
-        const double octets = fmin(sizeof(float) * reads_px(m, raster), keep_octets);
+        const double octets = fmin(sizeof(float) * elevation_import_reads_px(m, k), keep_octets);
         if ((double)raster->width * raster->height <= keep_px) continue;
         raster_keep(raster, 1, s->files.keep_folder, octets);
         keep_octets -= octets;
