@@ -49,9 +49,9 @@ static int shared_memory(size_t octets)
 
 static struct {
     pthread_mutex_t lock;
-    pid_t           process;
+    pid_t           process, owner; /* owner: of two processes after a fork, the one that may speak to it */
     int             socket;
-} starter = {PTHREAD_MUTEX_INITIALIZER, 0, -1};
+} starter = {PTHREAD_MUTEX_INITIALIZER, 0, 0, -1};
 
 static int spawn(pid_t *process, const char *program, int orders)
 {
@@ -79,7 +79,7 @@ static int spawn(pid_t *process, const char *program, int orders)
 static void starter_gone(void)
 {
     if (starter.socket >= 0) close(starter.socket);
-    if (starter.process > 0) {
+    if (starter.process > 0 && starter.owner == getpid()) {
         kill(starter.process, SIGKILL);
         while (waitpid(starter.process, NULL, 0) < 0 && errno == EINTR) {}
     }
@@ -92,13 +92,14 @@ static int starter_ready(const char *program)
 {
     struct pollfd there = {.fd = starter.socket};
     int           pair[2];
-    if (starter.socket >= 0 && poll(&there, 1, 0) == 0) return 0;
+    if (starter.socket >= 0 && starter.owner == getpid() && poll(&there, 1, 0) == 0) return 0;
     starter_gone();
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) != 0) return errno;
     const int far = fcntl(pair[1], F_DUPFD_CLOEXEC, wire_orders + 1); /* away from the number that it gets there */
     int       error = far < 0 ? errno : 0;
     close(pair[1]);
     if (!error) error = spawn(&starter.process, program, far);
+    starter.owner = getpid();
     if (far >= 0) close(far);
     if (error) close(pair[0]);
     else starter.socket = pair[0];
@@ -203,7 +204,7 @@ static int end_process(RasterChild *child)
     int32_t how = 0;
     if (child->process <= 0) return 0;
     pthread_mutex_lock(&starter.lock);
-    if (starter.socket < 0 || !starter_asked(&how, WIRE_END, child->process, NULL)) how = 0;
+    if (starter.socket < 0 || starter.owner != getpid() || !starter_asked(&how, WIRE_END, child->process, NULL)) how = 0;
     pthread_mutex_unlock(&starter.lock);
     child->process = 0;
     return how;

@@ -4,6 +4,7 @@
 
 #include <limits.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum { most_side = 100000000, sources_size = 16384 };
 
@@ -163,7 +164,8 @@ static Status take_set(RasterSet *set, WireChannel *channel, int count, const ch
 
 Status raster_set_open(RasterSet *out, const char *paths, const char *key)
 {
-    const char *texts[3] = {paths, only_within, sources_from};
+    char        here[PATH_MAX];
+    const char *texts[] = {getcwd(here, sizeof here) ? here : "", paths, only_within, sources_from};
     RasterSet   set = {0};
     WireReply   reply;
     size_t      used = 0;
@@ -171,7 +173,7 @@ Status raster_set_open(RasterSet *out, const char *paths, const char *key)
     if (status != STATUS_OK) return status;
     WireChannel *channel = raster_child_take(set.child);
     begin(channel, WIRE_OPEN, NULL, key);
-    for (int k = 0; k < 3 && status == STATUS_OK; k++) {
+    for (size_t k = 0; k < sizeof texts / sizeof *texts && status == STATUS_OK; k++) {
         const size_t octets = strlen(texts[k]) + 1;
         if (octets > wire_data_octets - used) status = STATUS_BAD_VALUE;
         else memcpy(channel->data + used, texts[k], octets);

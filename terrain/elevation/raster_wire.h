@@ -33,7 +33,7 @@ typedef struct WireOrder {
 } WireOrder;
 
 typedef enum WireAsk {
-    WIRE_OPEN,          /* data: three texts, each with its 0: paths, folder, folders (raster_set_open). count: rasters */
+    WIRE_OPEN,          /* data: texts, each with its 0: the current folder, paths, folder, folders (raster_set.c). count: rasters */
     WIRE_RASTER,        /* data: WireRaster of `raster` */
     WIRE_SHEETS,        /* data: as many as fit of the sheets of `raster` from `first` on; count: how many */
     WIRE_PX_FROM_EARTH, /* data: x[count], y[count], replaced */

@@ -23,6 +23,7 @@ typedef struct Making {
     LocalFrame       frame;
     ElevationFiles   files[2];        /* terrain model, surface model */
     ElevationStream *terrain, *surface, *first; /* first: whose levels are made */
+    RasterSet        opened; /* the first's files, until it has them */
     RasterSet        cover, photo, canopy_height, canopy_cover;
     CoverTable       table;
     int              cover_band;
@@ -76,7 +77,7 @@ static Status open_sources(Making *m)
         log_error("%s: the names of the files are too long; name their folder instead", module);
         return STATUS_BAD_VALUE;
     }
-    if (isnan(o->origin_deg[0])) status = elevation_middle(&origin, m->list[*o->surface != 0]);
+    if (isnan(o->origin_deg[0])) status = elevation_middle(&origin, &m->opened, m->list[*o->surface != 0]);
     if (status == STATUS_OK) status = local_frame_at(&m->frame, &origin);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < 2; k++)
@@ -85,7 +86,8 @@ static Status open_sources(Making *m)
                                        .spacing_m = o->spacing_m, .horizon_m = 1000 * o->horizon_km,
                                        .size_m = {1000 * o->size_km[0], 1000 * o->size_km[1]},
                                        .keep_folder = m->folder,
-                                       .heard = m->watch.heard, .heard_user = m->watch.user};
+                                       .heard = m->watch.heard, .heard_user = m->watch.user,
+                                       .opened = (k == 1) == (*o->surface != 0) ? &m->opened : NULL};
     if (*o->surface && status == STATUS_OK)
         status = elevation_stream_open(&m->surface, &m->files[1], &m->frame, NULL, m->pool);
     if (*o->elevation && status == STATUS_OK)
@@ -624,6 +626,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     *out = m->r;
     elevation_stream_close(m->terrain);
     elevation_stream_close(m->surface);
+    raster_set_close(&m->opened);
     raster_set_close(&m->cover);
     raster_set_close(&m->photo);
     raster_set_close(&m->canopy_height);

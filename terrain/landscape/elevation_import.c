@@ -2,6 +2,17 @@
 #include "terrain/landscape/elevation_import_private.h"
 
 enum { most_side_0 = 6 << 10 }; /* 36 M posts */
+static const double most_read_gb = 1024; /* decoded: an hour; a file of 300 octets may ask for a million times as much */
+
+static Status refuse_vast(const Import *m)
+{
+    double px = 0;
+    for (int k = 0; k < m->set.count; k++) px += elevation_import_reads_px(m, k);
+    if (1e-9 * sizeof(float) * px <= most_read_gb) return STATUS_OK;
+    log_error("terrain.elevation: %s and what else is named: %.0f GB to decode, more than %.0f; gdal_translate -srcwin cuts out what is "
+              "needed, -tr makes its pixels larger", m->set.raster[0].sheet[0].path, 1e-9 * sizeof(float) * px, most_read_gb);
+    return STATUS_BAD_VALUE;
+}
 
 Status elevation_import(Elevation *out, ElevationReport *report, const ElevationFiles *files, const LocalFrame *frame,
                         const GroundFix *fix, int fix_count)
@@ -15,6 +26,7 @@ Status elevation_import(Elevation *out, ElevationReport *report, const Elevation
     curve_of_frame(&m.curve, frame);
     Status status = elevation_import_open(&m);
     if (status == STATUS_OK) status = elevation_import_choose(&m, &r);
+    if (status == STATUS_OK) status = refuse_vast(&m);
     if (status != STATUS_OK) goto done;
     elevation_import_plan(&m, most_side_0);
     m.geoid_m = m.geoid.n_m ? geoid_height_m(&m.geoid, frame->origin.lat_rad, frame->origin.lon_rad) : 0;

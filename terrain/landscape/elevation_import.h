@@ -18,6 +18,7 @@ typedef enum ElevationVertical {
 
 typedef struct ElevationFiles {
     const char       *paths;      /* files and folders, separated by commas */
+    struct RasterSet *opened;     /* the same, opened already: taken over; NULL, or empty: they are opened */
     const char       *geoid_path; /* empty: EGM96 of proj-data */
     ElevationVertical vertical;
     double            spacing_m;  /* of level 0; 0: the posting of the finest data at the origin */

@@ -62,6 +62,8 @@ typedef struct Samples {
 Status elevation_import_open(Import *m);
 Status elevation_import_choose(Import *m, ElevationReport *report);
 void   elevation_import_plan(Import *m, int most_side);
+/* Pixels of a grid that are read once, at most: within the horizon, and not known to hold nothing. */
+double elevation_import_reads_px(const Import *m, int grid);
 
 /* elevation_posts.c: lattice of a view; windows of the grids' pixels that it needs; heights above the ellipsoid (STATUS_IO: a stop was requested).
  * View_window: false: the grid has nothing near. */

@@ -6,8 +6,14 @@ enum { outer_half_posts = 1024, last_half_posts = 2048 };
 
 Status elevation_import_open(Import *m)
 {
-    Status status = raster_set_open(&m->set, m->files->paths, key);
-    if (status != STATUS_OK) return status;
+    RasterSet *opened = m->files->opened;
+    if (opened && opened->count) {
+        m->set  = *opened;
+        *opened = (RasterSet){0};
+    } else {
+        const Status status = raster_set_open(&m->set, m->files->paths, key);
+        if (status != STATUS_OK) return status;
+    }
     if (m->set.count > import_most_grids) {
         log_error("%s: the files lie on %d different grids, more than %d; gdalbuildvrt joins them", key, m->set.count,
                   (int)import_most_grids);
@@ -37,6 +43,17 @@ Status elevation_import_open(Import *m)
         g->long_m  = 30000; /* until its edge has been seen */
     }
     return wants_geoid ? geoid_open(&m->geoid, m->files->geoid_path) : STATUS_OK;
+}
+
+double elevation_import_reads_px(const Import *m, int grid)
+{
+    const Raster *raster = &m->set.raster[grid];
+    double        px = raster->data_share;
+    for (int c = 0; c < 2; c++) {
+        const double size = c ? raster->height : raster->width;
+        px *= fmin(size, 2 * m->files->horizon_m / raster->posting_m[c] + 2);
+    }
+    return px;
 }
 
 static int round_out(double posts)

@@ -46,21 +46,10 @@ Status elevation_stream_open(ElevationStream **out, const ElevationFiles *files,
     return status;
 }
 
-/* What of a raster is read once: within the horizon, and not known to hold nothing. */
-static double reads_px(const Import *m, const Raster *raster)
-{
-    double px = raster->data_share;
-    for (int c = 0; c < 2; c++) {
-        const double size = c ? raster->height : raster->width;
-        px *= fmin(size, 2 * m->files->horizon_m / raster->posting_m[c] + 2);
-    }
-    return px;
-}
-
 double elevation_stream_reads_px(const ElevationStream *s)
 {
     double px = 0;
-    for (int k = 0; k < s->m.set.count; k++) px += reads_px(&s->m, &s->m.set.raster[k]);
+    for (int k = 0; k < s->m.set.count; k++) px += elevation_import_reads_px(&s->m, k);
     return px;
 }
 
@@ -69,7 +58,7 @@ Status elevation_stream_begin(ElevationStream *s, double keep_octets)
     Import *m = &s->m;
     for (int k = 0; s->files.keep_folder && k < m->set.count; k++) {
         Raster      *raster = &m->set.raster[k];
-        const double octets = fmin(sizeof(float) * reads_px(m, raster), keep_octets);
+        const double octets = fmin(sizeof(float) * elevation_import_reads_px(m, k), keep_octets);
         if ((double)raster->width * raster->height <= keep_px) continue;
         raster_keep(raster, 1, s->files.keep_folder, octets);
         keep_octets -= octets;
@@ -228,7 +217,7 @@ Status elevation_stream_report(ElevationReport *out, const ElevationStream *s, c
     return status;
 }
 
-Status elevation_middle(Geodetic *out, const char *paths)
+Status elevation_middle(Geodetic *out, RasterSet *opened, const char *paths)
 {
     RasterSet set = {0};
     Status    status = raster_set_open(&set, paths, "terrain.elevation");
@@ -237,6 +226,7 @@ Status elevation_middle(Geodetic *out, const char *paths)
     raster_earth_from_px(&set.raster[0], 1, &x, &y);
     if (isfinite(x) && isfinite(y)) *out = (Geodetic){y, x, 0};
     else status = STATUS_BAD_VALUE;
-    raster_set_close(&set);
+    if (status == STATUS_OK) *opened = set;
+    else raster_set_close(&set);
     return status;
 }

@@ -42,7 +42,7 @@ double elevation_stream_around(const ElevationStream *stream, double x_m, double
 /* What is known of the files so far; with the stored surface (NULL: not yet) also the error. */
 Status elevation_stream_report(ElevationReport *out, const ElevationStream *stream, const Elevation *stored);
 
-/* Middle of the finest of the files, without a stream. */
-Status elevation_middle(Geodetic *out, const char *paths);
+/* Middle of the finest of the files, without a stream; opened: the files, for ElevationFiles. */
+Status elevation_middle(Geodetic *out, RasterSet *opened, const char *paths);
 
 #endif

@@ -63,6 +63,7 @@ phase=0
 written() { [ -e "$tmp/t.store.tmp" ] && [ "$(du -k "$tmp/t.store.tmp" | cut -f1)" -gt 2000 ]; }
 for wait in 'said ^to.do' 'test -e '"$tmp/t.store.tmp" written; do
     phase=$((phase + 1))
+    : >"$tmp/stdout" # of the run before
     "$pitviper" terrain import "$tmp/s1M.tif" -o "$tmp/t.store" --size 1x1 >"$tmp/stdout" 2>"$tmp/stderr" &
     pid=$!
     until_true $wait
@@ -74,6 +75,7 @@ for wait in 'said ^to.do' 'test -e '"$tmp/t.store.tmp" written; do
     check "phase $phase: no half store" [ -z "$(ls "$tmp" | grep '^t\.store')" ]
 done
 # what was started for it ends with it, also when it is killed
+: >"$tmp/stdout"
 "$pitviper" terrain import "$tmp/s1M.tif" -o "$tmp/k.store" --size 1x1 --horizon 60 >"$tmp/stdout" 2>"$tmp/stderr" &
 pid=$!
 until_true said '^to do'

@@ -69,7 +69,7 @@ static void answer(WireChannel *c)
         c->log[0] = (char)('0' + chance(6));
     }
     if (chance(40) == 0) _exit(7);
-    if (chance(60) == 0) pause();
+    if (chance(150) == 0) pause();
 }
 
 static void serve(const int descriptor[wire_descriptors])

@@ -368,6 +368,12 @@ static void what_is_wrong_is_said_with_the_next_step(void **state)
     files.paths = path;
     expect_refused(&files, &frame, "2147483647 x 4 pixels, more than 100000000 a side");
     remove(path);
+    /* 300 octets that ask for 10^16 pixels about the origin */
+    text_file(path, "<VRTDataset rasterXSize=\"99999999\" rasterYSize=\"99999999\"><SRS>EPSG:4326</SRS><GeoTransform>-123.5,1e-8,0,44.5,0,"
+                    "-1e-8</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\"/></VRTDataset>");
+    files.paths = path;
+    expect_refused(&files, &frame, "GB to decode, more than 1024; gdal_translate -srcwin");
+    remove(path);
     snprintf(cut, sizeof cut, "/tmp/pitviper-folder-%d", (int)getpid());
     CHECK(mkdir(cut, 0700) == 0);
     files.paths = cut;

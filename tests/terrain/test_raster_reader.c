@@ -175,7 +175,8 @@ static void others_are_read_in_the_own_folder_alone(void **state)
         save_vrt(outside[k]);
         *check_said = 0;
         CHECK(read_some(some, vrt) != STATUS_OK && strstr(check_said, vrt));
-        if (k < 2 && !strstr(check_said, "terrain.sources_from")) fail_msg("no remedy: %s", check_said);
+        if (!strstr(check_said, "terrain.sources_from") || !strstr(check_said, k == 2 ? "is no file" : "outside its folder"))
+            fail_msg("no cause or remedy: %s", check_said);
     }
     save_vrt(far_tiff);
     CHECK(rename(vrt, hidden) == 0);
@@ -184,6 +185,9 @@ static void others_are_read_in_the_own_folder_alone(void **state)
     CHECK(read_some(some, vrt) != STATUS_OK && strstr(check_said, "ermission denied"));
     read_by("rasters_open");
     CHECK(read_some(some, vrt) == STATUS_OK); /* the twin */
+    read_by("rasters_by_name");
+    *check_said = 0;
+    CHECK(read_some(some, vrt) != STATUS_OK && strstr(check_said, "outside its folder"));
     read_by(NULL);
 
     raster_sources_from(other);
@@ -206,6 +210,12 @@ static void others_are_read_in_the_own_folder_alone(void **state)
     CHECK(read_some(some, text) == STATUS_OK);
     snprintf(text, sizeof text, "GTIFF_DIR:1:%s", tiff);
     CHECK(read_some(some, text) == STATUS_OK);
+    /* names of the folder that is the current one now */
+    char *before = realpath(".", NULL);
+    CHECK(before && chdir(folder) == 0);
+    const Status here = read_some(some, "a.tif");
+    CHECK(chdir(before) == 0 && here == STATUS_OK);
+    free(before);
     CHECK(unlink(deep) == 0 && unlink(hidden) == 0);
 }
 
@@ -220,6 +230,7 @@ static void ends_by(int number, const char *wanted)
     CHECK(raster_set_open(&set, tiff, "test.key") == STATUS_OK && raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test.key") == STATUS_OK);
     const pid_t reader = lab_reader();
     CHECK(kill(reader, number) == 0);
+    raster_child_patience(0.3); /* no longer than a stopped one needs: opening takes longer on a busy machine */
     said_errors = 0;
     log_set_sink(count_errors, NULL);
     CHECK(raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test.key") == STATUS_IO);
@@ -229,6 +240,7 @@ static void ends_by(int number, const char *wanted)
     raster_px_from_earth(&set.raster[0], 1, &x, &y);
     CHECK(isnan(x) && isnan(y) && said_errors == 1);
     log_set_sink(NULL, NULL);
+    raster_child_patience(0);
     CHECK(kill(reader, 0) != 0); /* it is no more */
     raster_set_close(&set);
     CHECK(read_some(some, tiff) == STATUS_OK);
@@ -238,10 +250,8 @@ static void one_that_ends_or_hangs_is_one_error(void **state)
 {
     (void)state;
     ends_by(SIGKILL, "broke off (signal 9)");
-    ends_by(SIGSEGV, "broke off (signal 11)");
-    raster_child_patience(0.3);
+    ends_by(SIGSEGV, "broke off ("); /* a sanitizer makes an exit of it */
     ends_by(SIGSTOP, "did nothing for 0 s");
-    raster_child_patience(0);
 }
 
 static void one_that_starts_them_may_end(void **state)
@@ -256,6 +266,25 @@ static void one_that_starts_them_may_end(void **state)
     log_set_sink(NULL, NULL);
     raster_set_close(&set);
     CHECK(read_some(some, tiff) == STATUS_OK && some[1] == lab_height(1, 0));
+}
+
+/* A process of its own after a fork has readers of its own. */
+static void a_fork_has_its_own(void **state)
+{
+    (void)state;
+    RasterSet set = {0};
+    float     some[4];
+    int       how;
+    CHECK(raster_set_open(&set, tiff, "test") == STATUS_OK);
+    const pid_t starter = lab_starter(), process = fork();
+    CHECK(process >= 0);
+    if (process == 0) {
+        const bool good = read_some(some, tiff) == STATUS_OK && lab_starter() > 0 && lab_starter() != starter;
+        _exit(good ? 0 : 1);
+    }
+    CHECK(waitpid(process, &how, 0) == process && WIFEXITED(how) && WEXITSTATUS(how) == 0);
+    CHECK(raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test") == STATUS_OK && lab_starter() == starter);
+    raster_set_close(&set);
 }
 
 static void none_is_left(void **state)
@@ -282,7 +311,7 @@ static void whatever_it_sends_the_program_goes_on(void **state)
     CHECK(out && bytes && valid);
     read_by("rasters_hostile");
     log_set_sink(check_listen, NULL);
-    raster_child_patience(0.2);
+    raster_child_patience(0.5);
     for (int n = 0; n < rounds; n++) {
         RasterSet set = {0};
         if (raster_set_open(&set, tiff, "test") != STATUS_OK) {
@@ -315,7 +344,7 @@ static void whatever_it_sends_the_program_goes_on(void **state)
     raster_child_patience(0);
     read_by(NULL);
     print_message("%d sets were opened, %d refused\n", opened, refused);
-    CHECK(opened > rounds / 20 && refused > rounds / 20);
+    CHECK(opened > 3 && refused > 3);
     free(out);
     free(bytes);
     free(valid);
@@ -414,6 +443,7 @@ int main(void)
         cmocka_unit_test(others_are_read_in_the_own_folder_alone),
         cmocka_unit_test(one_that_ends_or_hangs_is_one_error),
         cmocka_unit_test(one_that_starts_them_may_end),
+        cmocka_unit_test(a_fork_has_its_own),
         cmocka_unit_test(none_is_left),
         cmocka_unit_test(whatever_it_sends_the_program_goes_on),
         cmocka_unit_test(gaps_are_known_without_reading),

@@ -91,9 +91,11 @@ static void *serve_channel(void *number);
 
 static Status open_set(WireChannel *c, const char *key)
 {
-    const char *paths = (const char *)c->data, *within = paths + strlen(paths) + 1, *from = within + strlen(within) + 1;
+    const char *here_now = (const char *)c->data, *paths = here_now + strlen(here_now) + 1;
+    const char *within = paths + strlen(paths) + 1, *from = within + strlen(within) + 1;
     char       *copy = strdup(paths);
     if (!copy) return STATUS_NO_MEMORY;
+    if (*here_now && chdir(here_now) != 0) log_detail("%s: %s: %s", key, here_now, strerror(errno)); /* names may be absolute */
     Status status = reader_prepare();
     reader_source_begin(within, from);
     if (status == STATUS_OK) status = confine(copy, *within, key);

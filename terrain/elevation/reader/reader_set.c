@@ -20,8 +20,10 @@ enum { most_sheets = 4096, path_size = wire_path_size, most_side = 100000000 };
 Status reader_prepare(void)
 {
     static const GIntBig most_cache = 256 << 20; /* octets; by default a twentieth of the memory */
-    const Status status = library_load(&gdal_library);
-    if (status != STATUS_OK) return status;
+    static bool    done; /* by the process that this one was forked from */
+    const Status   status = library_load(&gdal_library);
+    if (status != STATUS_OK || done) return status;
+    done = true;
     CPLSetErrorHandler(CPLQuietErrorHandler);
     /* A file may name others (VRT): none makes this process ask a server, which could not be reached. */
     CPLSetConfigOption("GDAL_SKIP", "HTTP,WMS,WMTS,WCS,DAAS,EEDA,EEDAI,PLMosaic,NGW,OGCAPI,STACTA,STACIT,PostGISRaster");

@@ -29,6 +29,12 @@ static bool is_there(const char *path)
     return stat(path, &about) == 0;
 }
 
+static bool is_file(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISREG(about.st_mode);
+}
+
 /* The file that one of GDAL's own names leads to: /vsizip/ARCHIVE/NAME, NETCDF:"FILE":VARIABLE. False: none. */
 static bool file_of_name(char out[PATH_MAX], const char *name)
 {
@@ -39,8 +45,9 @@ static bool file_of_name(char out[PATH_MAX], const char *name)
         at = slash + 1;
     }
     if ((size_t)snprintf(out, PATH_MAX, "%s", at) >= PATH_MAX) return false;
+    if (at == name && is_there(name)) return true;
     for (;;) { /* in an archive */
-        if (is_there(out)) return true;
+        if (is_file(out)) return true;
         char *slash = strrchr(out, '/');
         if (!slash || slash == out) break;
         *slash = 0;
