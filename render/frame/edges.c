@@ -174,7 +174,8 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
     static const int beside[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     const View      *view  = &job->request->view;
     const int        width = x1 - x0;
-    uint32_t         across[side + 1], above[side], below[side]; /* across[k]: pixels x0 + k - 1 and x0 + k */
+    uint32_t         across[side + 1] = {0}, above[side] = {0}, below[side] = {0}; /* across[k]: pixels x0 + k - 1 and x0 + k */
+    uint32_t         alike[side];
     uint16_t         corner[corner_capacity];
     const bool       grounds = job->scene.world->landscape && job->request->samples == 1 &&
                          job->request->bands & ~(1u << BAND_RADAR);
@@ -184,18 +185,19 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
     for (int y = y0; y < y1; y++) {
         find_plain(across + left + 1 - x0, job, pixel_index(job, left, y), pixel_index(job, left + 1, y), right - left);
         if (y + 1 < view->height) find_plain(below, job, pixel_index(job, x0, y), pixel_index(job, x0, y + 1), width);
+        for (int k = 0; k < width; k++) alike[k] = across[k] & across[k + 1] & above[k] & below[k];
         for (int x = x0; x < x1; x++) {
             const int       k = x - x0;
+            const size_t    px = pixel_index(job, x, y);
             const uint32_t *plain[4] = {&across[k], &across[k + 1], &above[k], &below[k]};
-            unsigned        flag = job->refine[pixel_index(job, x, y)];
-            bool            leafy = picture_shows_plant(job->picture, pixel_index(job, x, y));
-            for (int n = 0; n < 4 && !(flag & refine_all); n++) {
+            unsigned        flag = job->refine[px];
+            bool            leafy = picture_shows_plant(job->picture, px);
+            for (int n = 0; n < 4 && !alike[k] && !(flag & refine_all); n++) {
                 const int xb = x + beside[n][0], yb = y + beside[n][1];
                 if (xb < 0 || yb < 0 || xb >= view->width || yb >= view->height || *plain[n]) continue;
                 leafy |= picture_shows_plant(job->picture, pixel_index(job, xb, yb));
                 flag |= edge_between(job, x, y, xb, yb, flag & refine_leaves);
             }
-            const size_t px = pixel_index(job, x, y);
             if (grounds && !(flag & refine_all) && job->picture->cover[px] != SURFACE_NONE &&
                 corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
                 flag |= refine_ground;

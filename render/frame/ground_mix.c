@@ -19,30 +19,44 @@ static double plane_through(const double n[3], const double d_hit[3], double ran
 
 /* ---- which pixels ---------------------------------------------------------------------------- */
 
+/* Where the corners x0 .. x1 of row y are on the ground; NaN: no ground there. */
+static void place_corners(double *x_m, double *y_m, const Job *job, int x0, int x1, int y)
+{
+    enum { most = tile_side_samples + 1 };
+    const View    *view = &job->request->view;
+    const Picture *p = job->picture;
+    const int      columns = x1 - x0 + 1, py = y < view->height ? y : view->height - 1;
+    double         column_px[2][most], row_px[2][most], hit[3][most], way[3][most], n[3][most], hit_m[most];
+    bool           ground[most];
+    for (int k = 0; k < columns; k++) {
+        /* the pixel below and to the right of the corner gives the plane of the ground; at the picture's end the last */
+        const int    x = x0 + k, px = x < view->width ? x : view->width - 1;
+        const size_t at = pixel_index(job, px, py);
+        column_px[0][k] = px + 0.5, row_px[0][k] = py + 0.5;
+        column_px[1][k] = x, row_px[1][k] = y;
+        for (int c = 0; c < 3; c++) n[c][k] = (double)p->normal[c][at];
+        hit_m[k]  = (double)p->range_m[at];
+        ground[k] = p->cover[at] != SURFACE_NONE;
+    }
+    view_rays((double *const[3]){hit[0], hit[1], hit[2]}, view, columns, column_px[0], row_px[0]);
+    view_rays((double *const[3]){way[0], way[1], way[2]}, view, columns, column_px[1], row_px[1]);
+    for (int k = 0; k < columns; k++) { /* plane_through */
+        const double above = n[0][k] * hit[0][k] + n[1][k] * hit[1][k] + n[2][k] * hit[2][k];
+        const double along = n[0][k] * way[0][k] + n[1][k] * way[1][k] + n[2][k] * way[2][k];
+        const double at_m = hit_m[k] * above / along, range_m = at_m < 2 * hit_m[k] && at_m > 0.5 * hit_m[k] ? at_m : hit_m[k];
+        x_m[k] = ground[k] ? view->p_enu[0] + range_m * way[0][k] : NAN;
+        y_m[k] = ground[k] ? view->p_enu[1] + range_m * way[1][k] : NAN;
+    }
+}
+
 void corner_materials(uint16_t out[corner_capacity], const Job *job, int x0, int y0, int x1, int y1)
 {
-    const View      *view = &job->request->view;
-    const Picture   *p = job->picture;
     const Materials *materials = &job->scene.world->materials;
     const int        columns = x1 - x0 + 1;
     double           x_m[tile_side_samples + 1], y_m[tile_side_samples + 1];
     uint8_t          surface[tile_side_samples + 1];
     for (int y = y0; y <= y1; y++) {
-        for (int x = x0; x <= x1; x++) {
-            /* the pixel below and to the right of the corner gives the plane of the ground; at the picture's end the
-             * last */
-            const int    px = x < view->width ? x : view->width - 1, py = y < view->height ? y : view->height - 1;
-            const size_t at = pixel_index(job, px, py);
-            const double n[3] = {p->normal[0][at], p->normal[1][at], p->normal[2][at]};
-            double       d_hit[3], d[3];
-            x_m[x - x0] = y_m[x - x0] = NAN;
-            if (p->cover[at] == SURFACE_NONE) continue;
-            view_ray(d_hit, view, px + 0.5, py + 0.5);
-            view_ray(d, view, x, y);
-            const double range_m = plane_through(n, d_hit, p->range_m[at], d);
-            x_m[x - x0] = view->p_enu[0] + range_m * d[0];
-            y_m[x - x0] = view->p_enu[1] + range_m * d[1];
-        }
+        place_corners(x_m, y_m, job, x0, x1, y);
         landscape_surfaces(surface, job->scene.world->landscape, columns, x_m, y_m);
         for (int k = 0; k < columns; k++)
             out[(y - y0) * columns + k] =

@@ -52,6 +52,7 @@ typedef struct Job {
     TargetPixels        *boxes;     /* [snapshot count]: projected and projected_box only */
     bool                *is_small;  /* [snapshot count]: sampled on its own grid; the pixels' samples do not see it */
     /* small targets */
+    int                  grid_side;  /* cells a side of a grid at least: target_samples, or as many as fit */
     TargetGrid           *footprint; /* [small targets], by entity */
     int                  footprints;
     int                 *target_grid_order; /* [small targets]: the order in which they are sampled */

@@ -25,13 +25,7 @@ void pixels_rays(Rays *rays, const PixelBlock *block, const View *view)
             dz[i] = r[6] * x + r[7] * y + r[8] * z;
         }
     }
-    for (int i = view_has_lens(view) ? count : 0; i < count; i++) {
-        const double x_cam = (column_px[i] - centre_x) / focal_px, y_cam = (row_px[i] - centre_y) / focal_px;
-        const double n = 1 / sqrt(x_cam * x_cam + y_cam * y_cam + 1), x = n * x_cam, y = n * y_cam, z = n * 1;
-        dx[i] = r[0] * x + r[1] * y + r[2] * z;
-        dy[i] = r[3] * x + r[4] * y + r[5] * z;
-        dz[i] = r[6] * x + r[7] * y + r[8] * z;
-    }
+    if (!view_has_lens(view)) view_rays((double *const[3]){dx, dy, dz}, view, count, column_px, row_px);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++) rays->o_enu[k][i] = view->p_enu[k];
         rays->far_m[i] = INFINITY;
@@ -40,13 +34,17 @@ void pixels_rays(Rays *rays, const PixelBlock *block, const View *view)
     rays->columns = block->columns;
 }
 
+static void span(double *from, double *to, const uint16_t *at, int count)
+{
+    uint16_t low = UINT16_MAX, high = 0;
+    for (int p = 0; p < count; p++) low = at[p] < low ? at[p] : low, high = at[p] > high ? at[p] : high;
+    *from = count > 0 ? low : INFINITY, *to = count > 0 ? high + 1.0 : -INFINITY;
+}
+
 void pixels_box(double box_px[4], const PixelBlock *block)
 {
-    box_px[0] = box_px[1] = INFINITY, box_px[2] = box_px[3] = -INFINITY;
-    for (int p = 0; p < block->pixels; p++) {
-        box_px[0] = fmin(box_px[0], block->x[p]), box_px[2] = fmax(box_px[2], block->x[p] + 1.0);
-        box_px[1] = fmin(box_px[1], block->y[p]), box_px[3] = fmax(box_px[3], block->y[p] + 1.0);
-    }
+    span(&box_px[0], &box_px[2], block->x, block->pixels);
+    span(&box_px[1], &box_px[3], block->y, block->pixels);
 }
 
 void pixels_keys(uint64_t *key, const PixelBlock *block, const Hits *hits, int width)

@@ -33,15 +33,48 @@ static void cells_of(int *columns, int *rows, const Job *job, int index)
     const int per_px = looks_for_edges(job->request) ? job->request->edge_samples : job->request->samples;
     *columns = *rows = 0;
     if (!(w > 0 && h > 0)) return;
-    *columns = (int)fmax(job->request->target_samples, ceil(w) * per_px);
-    *rows    = (int)fmax(job->request->target_samples, ceil(h) * per_px);
+    *columns = (int)fmax(job->grid_side, ceil(w) * per_px);
+    *rows    = (int)fmax(job->grid_side, ceil(h) * per_px);
 }
 
 /* ---- a limit for many targets ------------------------------------------------------------------ */
 
 /* The grids of a frame have at most so many cells for each of its pixels, or 2^17 (56 targets of 48 x 48) where that
- * is more. Beyond that limit targets are sampled by pixels and their edges, as larger ones are. */
-enum { cells_per_pixel = 4, cells_always = 1 << 17 };
+ * is more. Grids finer than the default's become coarser to stay within the limit: without one, a target errs four times as
+ * much as with 48 x 48. Where those are too many, targets are sampled by pixels and their edges, as larger ones are. */
+enum { cells_per_pixel = 4, cells_always = 1 << 17, usual_side = 48 };
+
+static int64_t cells_allowed(const Job *job)
+{
+    const View *view = &job->request->view;
+    return (int64_t)fmax(cells_always, (double)cells_per_pixel * view->width * view->height);
+}
+
+static int64_t cells_wanted(const Job *job)
+{
+    int64_t cells = 0;
+    int     columns, rows;
+    for (int i = 0; i < job->scene.snapshot->count; i++) {
+        if (!job->is_small[i]) continue;
+        cells_of(&columns, &rows, job, i);
+        cells += (int64_t)columns * rows;
+    }
+    return cells;
+}
+
+/* The finest grids that fit, down to the usual ones. */
+static void choose_side(Job *job)
+{
+    int low = usual_side, high = job->request->target_samples;
+    job->grid_side = high;
+    if (high <= low || cells_wanted(job) <= cells_allowed(job)) return;
+    while (high - low > 1) {
+        job->grid_side = (low + high) / 2;
+        if (cells_wanted(job) <= cells_allowed(job)) low = job->grid_side;
+        else high = job->grid_side;
+    }
+    job->grid_side = low;
+}
 
 typedef struct SmallPlace {
     double square_px; /* from the image's centre */
@@ -59,15 +92,10 @@ static int nearer_the_axis(const void *left, const void *right)
 static Status limit_cells(int *count, Job *job, Arena *arena)
 {
     const View   *view = &job->request->view;
-    const int64_t most = (int64_t)fmax(cells_always, (double)cells_per_pixel * view->width * view->height);
+    const int64_t most = cells_allowed(job);
     int64_t       cells = 0;
     int           columns, rows, places = 0;
-    for (int i = 0; i < job->scene.snapshot->count; i++) {
-        if (!job->is_small[i]) continue;
-        cells_of(&columns, &rows, job, i);
-        cells += (int64_t)columns * rows;
-    }
-    if (cells <= most) return STATUS_OK;
+    if (cells_wanted(job) <= most) return STATUS_OK;
     SmallPlace *place = arena_alloc(arena, (size_t)*count, sizeof *place);
     if (!place) return STATUS_NO_MEMORY;
     for (int i = 0; i < job->scene.snapshot->count; i++) {
@@ -77,7 +105,6 @@ static Status limit_cells(int *count, Job *job, Arena *arena)
         place[places++] = (SmallPlace){dx * dx + dy * dy, i};
     }
     qsort(place, (size_t)places, sizeof *place, nearer_the_axis);
-    cells = 0;
     for (int k = 0; k < places; k++) {
         cells_of(&columns, &rows, job, place[k].index);
         cells += (int64_t)columns * rows;
@@ -127,6 +154,7 @@ Status target_grids_plan(Job *job, Arena *arena)
     int          count = 0;
     for (int i = 0; i < job->scene.snapshot->count; i++) count += job->is_small[i] = is_small(&job->boxes[i]);
     if (count == 0) return STATUS_OK;
+    choose_side(job);
     const Status limited = limit_cells(&count, job, arena);
     if (limited != STATUS_OK) return limited;
     job->footprint = arena_alloc(arena, (size_t)count, sizeof *job->footprint);

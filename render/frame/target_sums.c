@@ -268,7 +268,7 @@ void target_sums_profile(TargetSums *sums, const SumRules *rules, const RenderRe
             const double bin = floor((s->returns.slant_m[b][i] - request->profile_near_m) / request->profile_bin_m);
             if (!(bin >= 0 && bin < request->profile_bins)) continue;
             sums->profile[(int)bin * radar_bounces + b] +=
-                llrint(area_px[i] * fmin(power, rules->profile_limit) / rules->profile_quantum);
+                llrint(area_px[i] * (power < rules->profile_limit ? power : rules->profile_limit) / rules->profile_quantum);
         }
 }
 

@@ -68,9 +68,11 @@ void ground_first_hits_together(double *range_m, GroundHit *hit, const Ground *g
 bool ground_is_clear(const Ground *ground, const double from[2][3], const double to[2][3]);
 bool ground_is_clear_towards(const Ground *ground, const double from[2][3], const double d_enu[3]);
 
-/* Upward unit normal of the triangle that was hit, and the one interpolated between central differences at
- * its posts, for shading. */
-void ground_normals(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m,
-                    double y_m);
+/* Upward unit normals at the hits hit[list[k]], k < count <= ground_normals_lanes: those of the triangles that were met,
+ * and those interpolated between central differences at their posts, for shading. Results of lane k depend on its hit
+ * alone; lanes from count on repeat the first. x_m, y_m: of the hits, as hit. */
+enum { ground_normals_lanes = 4 };
+void ground_normals(double n_geo[3][ground_normals_lanes], double n_enu[3][ground_normals_lanes], const Ground *ground,
+                    const GroundHit *hit, const int *list, int count, const double *x_m, const double *y_m);
 
 #endif

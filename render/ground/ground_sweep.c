@@ -99,8 +99,9 @@ static void sweep_level(Strip *s, const GroundLevel *g, const Axis *axis, double
                 k--;
                 continue;
             }
+            const double start_m = a / g->cells_per_m;
             do {
-                s->start_m[b] = fmin(s->start_m[b], a / g->cells_per_m);
+                s->start_m[b] = start_m < s->start_m[b] ? start_m : s->start_m[b];
                 if (++b == buckets) return;
                 q = q_low + b * q_step;
             } while (!(q * (q < 0 ? next : a) > limit));

@@ -84,18 +84,18 @@ int    heat_slots(float d_enu[3][heat_day_slots], const Heat *heat);
 double heat_spent_s(const Heat *heat, int *steps); /* wall clock in steps since the spin-up, and how many */
 size_t heat_bytes(const Heat *heat);
 
-/* Coordinates of a unit normal on the square of facets, -1 .. 1; below the horizon: the wall of that side. */
-static inline void heat_facet(double uv[2], const double n_enu[3])
-{
-    const double sum = fabs(n_enu[0]) + fabs(n_enu[1]) + fmax(n_enu[2], 0), over = sum > 0 ? 1 / sum : 0;
-    uv[0] = (n_enu[0] + n_enu[1]) * over;
-    uv[1] = (n_enu[0] - n_enu[1]) * over;
-}
-
 /* Temperatures of ground of a kind and normal, K, at the height of the weather's thermometer. share: of the direct sun of
  * the past, weighted by what is left of it, that was taken; 0: none, 1: all. open: share of its sky that is open. dark: its
  * absorptance over that of its kind. */
 double heat_ground_k(const HeatNow *now, int kind, const double n_enu[3], double taken, double open, double dark);
+
+/* The same of several places side by side: a lane's temperature depends on its place alone. */
+enum { heat_lanes = 4 };
+typedef struct HeatPlaces {
+    int    kind[heat_lanes];
+    double n_enu[3][heat_lanes], taken[heat_lanes], open[heat_lanes], dark[heat_lanes];
+} HeatPlaces;
+void heat_grounds_k(double temp_k[heat_lanes], const HeatNow *now, const HeatPlaces *place);
 
 /* Bark of this material, radius and normal, K, at the height of the weather's thermometer. open: share of sun and sky that
  * reached it. Of other materials: the first; NAN where there is none. */

@@ -11,27 +11,18 @@ typedef struct HeatScene {
     const MarkHeat  *marks;  /* NULL: none */
 } HeatScene;
 
-/* Temperature of ground of a class at a place, K, at the height of the weather's thermometer, and how far the sun of the past
- * lifted it. dark: its absorptance over that of its kind. */
-static inline double heat_scene_ground_k(double *lifted_k, const HeatScene *scene, int surface, const double p_enu[3],
-                                         const double n_enu[3], double dark)
-{
-    const HeatNow *now = scene->now;
-    const int      kind = now->kind_of[surface];
-    uint8_t        shadow[shadow_most_slots];
-    double         open = 1, taken = 0;
-    if (scene->shadow) {
-        shadow_map_at(shadow, &open, scene->shadow, p_enu[0], p_enu[1]);
-        taken = heat_taken(now, kind, n_enu, shadow);
-    }
-    double       temp_k = heat_ground_k(now, kind, n_enu, taken, open, dark);
-    MarkedGround mark;
-    *lifted_k = fmax(temp_k - (double)now->table.dark_k[kind][heat_ups - 1], 0);
-    if (!scene->marks || !mark_heat_at(&mark, scene->marks, kind, p_enu, n_enu, 1 - taken)) return temp_k;
-    if (mark.loose > 0 && ground_kind_loosens(kind))
-        temp_k += mark.loose * (heat_ground_k(now, SURFACE_PLOUGHED, n_enu, taken, open, dark) - temp_k);
-    if (mark.burnt > 0) temp_k += mark.burnt * (heat_ground_k(now, ground_burnt, n_enu, taken, open, 1) - temp_k);
-    return temp_k + mark.add_k;
-}
+/* Places of the ground side by side: class, place, normal, and absorptance over that of the kind. */
+typedef struct GroundPlaces {
+    int    surface[heat_lanes];
+    double p_enu[3][heat_lanes], n_enu[3][heat_lanes], dark[heat_lanes];
+} GroundPlaces;
+
+/* Temperatures of the ground, K, at the height of the weather's thermometer, and how far the sun of the past lifted them. A
+ * lane's depends on its place alone. */
+void heat_scene_grounds_k(double temp_k[heat_lanes], double lifted_k[heat_lanes], const HeatScene *scene, const GroundPlaces *at);
+
+/* The same of one place. */
+double heat_scene_ground_k(double *lifted_k, const HeatScene *scene, int surface, const double p_enu[3], const double n_enu[3],
+                           double dark);
 
 #endif

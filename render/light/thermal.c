@@ -36,23 +36,6 @@ static F32x8 air_k8(const Air *air, const Hits *hits, int first)
     return f32x8_lerp(low, high, at - f32x8_of_ints(node)) + f32x8_set(air->light.weather.air_temp_k);
 }
 
-/* Ground, with the class's noise in kelvins (etc/ground_detail.csv), twice that of the night where the sun has lifted it by
- * 16 K, an estimate. The noise stands for what differs within a class: moisture, cover, reflectance. Darkness is
- * therefore taken from the photograph alone, which shows what the noise does not contain: half of its relative
- * brightness becomes relative absorptance (a guess), within 0.6 .. 1.4. Snow is no warmer than it melts, the sea no
- * colder than it freezes. */
-static double ground_k(const HeatScene *heat, double warmer_k, int surface, const double p_enu[3], const double n_enu[3],
-                       double photo, double warmth_k)
-{
-    static const double melts_k = 273.15, sea_freezes_k = 271.35;
-    double       lifted_k;
-    const double dark = 1.5 - 0.5 * clamp(photo, 0.6, 1.4);
-    double       temp_k = heat_scene_ground_k(&lifted_k, heat, surface, p_enu, n_enu, dark) + warmer_k;
-    temp_k += warmth_k * (1 + lifted_k / 16);
-    if (surface == SURFACE_SNOW) return fmin(temp_k, melts_k);
-    return surface == SURFACE_WATER ? fmax(temp_k, sea_freezes_k) : temp_k;
-}
-
 /* Leaves by the sun of now, wood by that of the day (air->heat; NULL: as the air). */
 static double plant_k(const Air *air, const Material *m, int material, double air_k, const Hits *hits, int i, const float *sun)
 {
@@ -63,10 +46,42 @@ static double plant_k(const Air *air, const Material *m, int material, double ai
     return heat_branch_k(air->heat->now, material, (double)hits->radius_m[i], n, open) + air_k - air->light.weather.air_temp_k;
 }
 
+/* Ground at the listed hits, of which temp_k holds that of the air; with the class's noise in kelvins
+ * (etc/ground_detail.csv), twice that of the night where the sun has lifted it by 16 K, an estimate. The noise stands for
+ * what differs within a class: moisture, cover, reflectance. Darkness is therefore taken from the photograph alone, which
+ * shows what the noise does not contain: half of its relative brightness becomes relative absorptance (a guess), within
+ * 0.6 .. 1.4. Snow is no warmer than it melts, the sea no colder than it freezes. */
+static void grounds_k(float *temp_k, const Air *air, const Hits *hits, const int *list, int count, const float *photo,
+                      const float *warmth_k)
+{
+    static const double melts_k = 273.15, sea_freezes_k = 271.35;
+    for (int first = 0; first < count; first += heat_lanes) {
+        const int    some = count - first < heat_lanes ? count - first : heat_lanes;
+        GroundPlaces at;
+        double       here_k[heat_lanes], lifted_k[heat_lanes];
+        for (int k = 0; k < heat_lanes; k++) {
+            const int i = list[first + (k < some ? k : 0)];
+            for (int c = 0; c < 3; c++) at.p_enu[c][k] = hits->p_enu[c][i], at.n_enu[c][k] = (double)hits->n_enu[c][i];
+            at.surface[k] = hits->surface[i];
+            at.dark[k] = 1.5 - 0.5 * clamp((double)photo[i], 0.6, 1.4);
+        }
+        heat_scene_grounds_k(here_k, lifted_k, air->heat, &at);
+        for (int k = 0; k < some; k++) {
+            const int i = list[first + k];
+            double    ground_k = here_k[k] + ((double)temp_k[i] - air->light.weather.air_temp_k);
+            ground_k += (double)warmth_k[i] * (1 + lifted_k[k] / 16);
+            if (hits->surface[i] == SURFACE_SNOW && !(ground_k < melts_k)) ground_k = melts_k;
+            if (hits->surface[i] == SURFACE_WATER && !(ground_k > sea_freezes_k)) ground_k = sea_freezes_k;
+            temp_k[i] = (float)ground_k;
+        }
+    }
+}
+
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const PartTemps *parts,
                          const Hits *hits, const uint16_t *material, const float *sun,
                          const float *photo, const float *warmth_k)
 {
+    int ground[hits_capacity], grounds = 0;
     for (int first = 0; first < hits->count; first += 8) {
         const int some = hits->count - first < 8 ? hits->count - first : 8;
         float     air_k[8];
@@ -84,13 +99,12 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
             } else if (!air->heat || hits->surface[i] == SURFACE_NONE) {
                 temp_k[i] = (float)(here_k + (double)warmth_k[i]);
             } else {
-                const double p[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
-                const double n[3] = {(double)hits->n_enu[0][i], (double)hits->n_enu[1][i], (double)hits->n_enu[2][i]};
-                temp_k[i] = (float)ground_k(air->heat, here_k - air->light.weather.air_temp_k, hits->surface[i], p, n,
-                                            (double)photo[i], (double)warmth_k[i]);
+                temp_k[i] = air_k[k];
+                ground[grounds++] = i;
             }
         }
     }
+    grounds_k(temp_k, air, hits, ground, grounds, photo, warmth_k);
 }
 
 /* ---- radiance ----------------------------------------------------------------------------- */

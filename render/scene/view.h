@@ -33,6 +33,9 @@ static inline void view_ray(double d_enu[3], const View *view, double column_px,
     m3_mul_v3(d_enu, view->r_enu_from_cam, d_cam);
 }
 
+/* The same of `count` points. */
+void view_rays(double *const d_enu[3], const View *view, int count, const double *column_px, const double *row_px);
+
 /* Image position of a point in front of the eye (p_cam[2] > 0). */
 static inline void view_project(double image_px[2], const View *view, const double p_cam[3])
 {

@@ -1,6 +1,8 @@
 /* render/visibility/visibility.c: first hits of rays, and shadows of the sun. */
 #include "render/visibility/visibility_private.h"
 
+#include "pitviper_simd.h"
+
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag out:
  * no branches. */
 void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
@@ -56,36 +58,59 @@ void visibility_store_normals(Hits *hits, int i, const double n_geo[3], const do
     }
 }
 
-static void clear_hit(Hits *hits, int i)
+/* What a ray that meets nothing has, but for places, normals and entities: those are written one by one. */
+static void clear_hits(Hits *hits)
 {
-    for (int c = 0; c < 3; c++) {
-        hits->p_enu[c][i] = 0;
-        hits->n_geo[c][i] = hits->n_enu[c][i] = 0;
-    }
-    hits->kind[i]     = hit_sky;
-    hits->material[i] = 0;
-    hits->facet[i]    = 0;
-    hits->entity[i]  = 0;
-    hits->part[i]    = 0;
-    hits->model[i]   = 0;
-    hits->inside[i]  = 0;
-    hits->surface[i] = 0;
-    hits->plant[i]   = 0;
-    hits->albedo[i]  = 1;
-    hits->radius_m[i] = 0;
-    hits->open_up[i] = hits->open_down[i] = 1;
+    const size_t n = (size_t)hits->count;
+    memset(hits->kind, hit_sky, n * sizeof *hits->kind);
+    memset(hits->material, 0, n * sizeof *hits->material);
+    memset(hits->facet, 0, n * sizeof *hits->facet);
+    memset(hits->part, 0, n * sizeof *hits->part);
+    memset(hits->model, 0, n * sizeof *hits->model);
+    memset(hits->inside, 0, n * sizeof *hits->inside);
+    memset(hits->surface, 0, n * sizeof *hits->surface);
+    memset(hits->plant, 0, n * sizeof *hits->plant);
+    memset(hits->radius_m, 0, n * sizeof *hits->radius_m);
+    for (int i = 0; i < hits->count; i++) hits->albedo[i] = hits->open_up[i] = hits->open_down[i] = 1;
 }
 
-static void complete_ground_hit(Hits *hits, int i, const Visibility *v, const GroundHit *hit, const double d[3])
+/* Normals of four hits in a row, stored at once. False: some normal faces away from its ray. */
+static bool store_four_normals(Hits *hits, int i, double n_geo[3][4], double n_enu[3][4], const double *const d[3])
 {
-    const double x_m = hits->p_enu[0][i], y_m = hits->p_enu[1][i];
-    double       n_geo[3], n_enu[3];
-    ground_normals(n_geo, n_enu, &v->ground, hit, x_m, y_m);
-    if (v3_dot(n_geo, d) > 0) { /* stopped inside the solid ground */
-        v3_scale(n_geo, -1, n_geo);
-        v3_scale(n_enu, -1, n_enu);
+    F64x4 geo[3], enu[3], way[3];
+    for (int c = 0; c < 3; c++) geo[c] = f64x4_loadu(n_geo[c]), enu[c] = f64x4_loadu(n_enu[c]), way[c] = f64x4_loadu(d[c] + i);
+    const F64x4 none = f64x4_set(0), along = geo[0] * way[0] + geo[1] * way[1] + geo[2] * way[2];
+    const F64x4 away = enu[0] * way[0] + enu[1] * way[1] + enu[2] * way[2];
+    if (f64x4_bits(f64x4_or(f64x4_less(none, along), f64x4_less(none, away)))) return false;
+    for (int c = 0; c < 3; c++) {
+        _mm_storeu_ps(hits->n_geo[c] + i, _mm256_cvtpd_ps(geo[c]));
+        _mm_storeu_ps(hits->n_enu[c] + i, _mm256_cvtpd_ps(enu[c]));
     }
-    visibility_store_normals(hits, i, n_geo, n_enu, d);
+    return true;
+}
+
+/* Normals of the ground at the listed hits; where it was met from below, of its lower side. */
+static void complete_ground_hits(Hits *hits, const Visibility *v, const GroundHit *hit, const int *list, int count,
+                                 const double *const d[3])
+{
+    enum { lanes = ground_normals_lanes };
+    for (int first = 0; first < count; first += lanes) {
+        double    n_geo[3][lanes], n_enu[3][lanes];
+        const int some = count - first < lanes ? count - first : lanes;
+        ground_normals(n_geo, n_enu, &v->ground, hit, list + first, some, hits->p_enu[0], hits->p_enu[1]);
+        const bool row = some == lanes && list[first + lanes - 1] == list[first] + lanes - 1; /* ascending */
+        if (row && store_four_normals(hits, list[first], n_geo, n_enu, d)) continue;
+        for (int k = 0; k < some; k++) {
+            const int    i = list[first + k];
+            const double d_enu[3] = {d[0][i], d[1][i], d[2][i]};
+            double       geo[3] = {n_geo[0][k], n_geo[1][k], n_geo[2][k]}, enu[3] = {n_enu[0][k], n_enu[1][k], n_enu[2][k]};
+            if (v3_dot(geo, d_enu) > 0) { /* stopped inside the solid ground */
+                v3_scale(geo, -1, geo);
+                v3_scale(enu, -1, enu);
+            }
+            visibility_store_normals(hits, i, geo, enu, d_enu);
+        }
+    }
 }
 
 static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit,
@@ -252,16 +277,24 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
     counters->skipped_parts += drawable * (uint64_t)count - asked;
     if (!crowd) counters->skipped[SKIP_SPHERE] += offered - asked;
 
+    clear_hits(hits);
     PosedFacet facet = {.node = NULL}; /* neighbours often meet the same */
+    int        grounds = 0;
     for (int i = 0; i < count; i++) {
-        const uint32_t entity = hits->entity[i];
-        clear_hit(hits, i);
-        if (!(hits->range_m[i] < INFINITY)) continue;
-        const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
-        for (int c = 0; c < 3; c++) hits->p_enu[c][i] = o_enu[c] + hits->range_m[i] * d_enu[c];
-        if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], &facet, o_enu, d_enu);
-        else complete_ground_hit(hits, i, v, &ground_hit[i], d_enu);
+        if (!(hits->range_m[i] < INFINITY)) {
+            for (int c = 0; c < 3; c++) hits->p_enu[c][i] = 0, hits->n_geo[c][i] = hits->n_enu[c][i] = 0;
+            hits->entity[i] = 0;
+            continue;
+        }
+        for (int c = 0; c < 3; c++) hits->p_enu[c][i] = o[c][i] + hits->range_m[i] * d[c][i];
+        if (hits->entity[i]) {
+            const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
+            complete_part_hit(hits, i, v, (int)hits->entity[i] - 1, &part_hit[i], &facet, o_enu, d_enu);
+        } else {
+            order[grounds++] = i;
+        }
     }
+    complete_ground_hits(hits, v, ground_hit, order, grounds, d);
     if (ground && v->plants) plants_first_hits(hits, v, rays, hidden, counters);
     if (v->landscape) classify_ground(hits, v->landscape, v->materials);
 }

@@ -1,6 +1,7 @@
 /* sensor/quality/lab.c: the scenes in which sampling settings are measured. Times are those of two of the views. */
 #include "sensor/quality/lab.h"
 
+#include "sensor/settings/config.h"
 #include "terrain/landscape/quick_landscape.h"
 
 #include <time.h>
@@ -25,7 +26,8 @@ Status quality_lab_open(QualityLab *lab, int threads, bool quick)
     Status status = pool_create(&lab->pool, threads);
     if (status == STATUS_OK) status = pool_create(&lab->many, thread_processors());
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = quick_landscape_create(&lab->ground, times_s, &frame, 2000, 4000, lab->many);
+    if (status == STATUS_OK) status = quick_landscape_create(&lab->ground, times_s, &frame, quality_lab_east_m,
+                                                                 quality_lab_north_m, lab->many);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = trial_scene_open(&lab->scene, &lab->ground, catalog, types, 3, vehicles);
     lab->arena           = arena_create();
@@ -54,6 +56,7 @@ TrialFrame quality_lab_frame(const QualityLab *lab, int view, QualitySettings se
                                 .target_samples = settings.target_samples,
                                 .sky_visibility = true,
                                 .hidden_entity = -1};
+    if (lab->scene.world.forest) f.request.low_plants_m = config_default().terrain.woods_low_m;
     f.request.view = trial_view(&lab->scene, views[view].back_m, views[view].above_m,
                                 views[view].hfov_deg * rad_per_deg, lab->width, lab->height);
     return f;

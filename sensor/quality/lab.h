@@ -22,7 +22,7 @@ typedef struct QualitySettings {
 /* The fastest settings, the first row of every table: machines are compared by their time. */
 static const QualitySettings quality_quickest = {1, 0, 0};
 
-enum { quality_lab_views = 7 };
+enum { quality_lab_views = 7, quality_lab_east_m = 2000, quality_lab_north_m = 4000 };
 
 /* quality_lab_close must follow even on failure. quick: small images. */
 Status quality_lab_open(QualityLab *out, int threads, bool quick);

@@ -12,10 +12,10 @@ Status machine_factor(double *factor, const char *table_path, int threads)
     Status       status = quality_open(&table, table_path);
     if (status != STATUS_OK) return status;
     const QualityRow *first = &table.row[0];
-    if (first->samples != quality_quickest.samples || first->edge_samples != quality_quickest.edge_samples ||
+    if (first->scene == QUALITY_WOODS || first->samples != quality_quickest.samples || first->edge_samples != quality_quickest.edge_samples ||
         first->target_samples != quality_quickest.target_samples) {
         log_error(
-            "quality: %s: its first row is not samples 1 without edge_samples, by which machines are compared; give "
+            "quality: %s: its first row is not samples 1 without edge_samples on bare ground, by which machines are compared; give "
             "quality.machine_factor",
             table_path);
         return STATUS_BAD_VALUE;

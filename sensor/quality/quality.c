@@ -10,13 +10,32 @@ enum { column_count = sizeof columns / sizeof *columns };
 static const double lows[column_count]  = {1, 0, 0, 0, 0, 0, 0, 0, 1e-3};
 static const double highs[column_count] = {16, 16, 256, 1e6, 1e6, 1e6, 1e6, 1e6, 1e9};
 
+static const char *const scene_names[quality_scenes] = {"bare", "woods"};
+
+const char *quality_scene_name(QualityScene scene) { return scene_names[scene]; }
+
 /* ---- the table -------------------------------------------------------------------------------- */
 
 static bool is_whole(double x) { return x == floor(x); }
 
-static Status read_row(QualityRow *out, const Table *table, const int at[column_count], int row, const char *path)
+static Status read_scene(QualityScene *out, const Table *table, int column, int row, const char *path)
 {
-    double value[column_count];
+    *out = quality_any_scene;
+    if (column < 0) return STATUS_OK;
+    const char *name = table_text(table, row, column);
+    for (int k = 0; k < quality_scenes; k++)
+        if (strcmp(name, scene_names[k]) == 0) *out = (QualityScene)k;
+    if (*out != quality_any_scene) return STATUS_OK;
+    log_error("quality: %s:%d: scene `%s` is not bare or woods", path, table->line[row + 1], name);
+    return STATUS_BAD_VALUE;
+}
+
+/* scene: its column; -1: none. */
+static Status read_row(QualityRow *out, const Table *table, const int at[column_count], int scene, int row, const char *path)
+{
+    double       value[column_count];
+    QualityScene of;
+    if (read_scene(&of, table, scene, row, path) != STATUS_OK) return STATUS_BAD_VALUE;
     for (int c = 0; c < column_count; c++) {
         const Status status = table_number(&value[c], table, row, at[c], lows[c], highs[c]);
         if (status != STATUS_OK) return status;
@@ -30,10 +49,26 @@ static Status read_row(QualityRow *out, const Table *table, const int at[column_
                   path, table->line[row + 1], value[0], value[1], value[2]);
         return STATUS_BAD_VALUE;
     }
-    *out = (QualityRow){.samples = (int)value[0], .edge_samples = (int)value[1], .target_samples = (int)value[2],
+    *out = (QualityRow){.scene = of, .samples = (int)value[0], .edge_samples = (int)value[1], .target_samples = (int)value[2],
                         .percent = {value[3], value[4], value[5]}, .kelvin = {NAN, value[6], value[7]},
                         .ms_megapixel = value[8]};
     return STATUS_OK;
+}
+
+static bool holds_in(const QualityRow *r, QualityScene scene)
+{
+    return r->scene == scene || r->scene == quality_any_scene || scene == quality_any_scene;
+}
+
+/* NULL: it has none. */
+static const QualityRow *fastest(const QualityTable *table, QualityScene scene)
+{
+    const QualityRow *best = NULL;
+    for (int k = 0; k < table->count; k++) {
+        const QualityRow *r = &table->row[k];
+        if (holds_in(r, scene) && (!best || r->ms_megapixel < best->ms_megapixel)) best = r;
+    }
+    return best;
 }
 
 Status quality_open(QualityTable *out, const char *path)
@@ -53,25 +88,34 @@ Status quality_open(QualityTable *out, const char *path)
         log_error("quality: %s: %d rows are not 1 .. %d", path, table.rows, quality_rows_max);
         status = STATUS_BAD_VALUE;
     }
+    const int scene = table_column(&table, "scene");
     made->count = 0;
     for (int row = 0; status == STATUS_OK && row < table.rows; row++) {
-        status = read_row(&made->row[row], &table, at, row, path);
+        status = read_row(&made->row[row], &table, at, scene, row, path);
         made->count += status == STATUS_OK;
     }
+    for (int k = 0; k < quality_scenes && status == STATUS_OK; k++)
+        if (!fastest(made, (QualityScene)k)) {
+            log_error("quality: %s: no row of scene `%s`; `pitviper bench quality --table FILE` writes a complete table", path,
+                      scene_names[k]);
+            status = STATUS_BAD_VALUE;
+        }
     table_close(&table);
     return status;
 }
 
 Status quality_write(const char *path, const QualityTable *table, const char *comment)
 {
-    FILE *file = output_begin(path, OUTPUT_STREAM);
-    bool  ok = file != NULL;
-    ok = ok && fprintf(file, "# %s\n", comment) > 0;
+    FILE      *file = output_begin(path, OUTPUT_STREAM);
+    bool       ok = file != NULL;
+    const bool scenes = table->count > 0 && table->row[0].scene != quality_any_scene; /* else none has one */
+    ok = ok && fprintf(file, "# %s\n%s", comment, scenes ? "scene," : "") > 0;
     for (int c = 0; ok && c < column_count; c++)
         ok = fprintf(file, "%s%s", columns[c], c + 1 < column_count ? "," : "\n") > 0;
     for (int k = 0; ok && k < table->count; k++) {
         const QualityRow *r = &table->row[k];
-        ok = fprintf(file, "%d,%d,%d,%.3g,%.3g,%.3g,%.3g,%.3g,%.4g\n", r->samples, r->edge_samples, r->target_samples,
+        if (scenes) ok = fprintf(file, "%s,", scene_names[r->scene]) > 0;
+        ok = ok && fprintf(file, "%d,%d,%d,%.3g,%.3g,%.3g,%.3g,%.3g,%.4g\n", r->samples, r->edge_samples, r->target_samples,
                      r->percent[0], r->percent[1], r->percent[2], r->kelvin[1], r->kelvin[2], r->ms_megapixel) > 0;
     }
     if (file && ok) ok = output_end(file, path);
@@ -113,6 +157,7 @@ int quality_pick(bool *reached, const QualityTable *table, const QualityTarget *
     bool       best_in_time = false;
     for (int k = 0; k < table->count; k++) {
         const QualityRow *r = &table->row[k], *b = best >= 0 ? &table->row[best] : NULL;
+        if (!holds_in(r, target->scene)) continue;
         const bool        in_time = isnan(target->frame_ms) || frame_ms(r, target) <= target->frame_ms;
         bool              better = !b || (in_time && !best_in_time);
         if (b && in_time == best_in_time) {
@@ -132,12 +177,12 @@ bool quality_wanted(const QualityTable *table, int row)
     for (unsigned bands = 1; bands < 1u << quality_bands; bands++) {
         /* the tightest targets of this row: a faster row that meets them dominates it */
         const QualityTarget target = {
-            worst(r->percent, bands, BAND_OPTICAL), worst(r->kelvin, bands, BAND_MWIR), NAN, 1, 1, bands};
+            worst(r->percent, bands, BAND_OPTICAL), worst(r->kelvin, bands, BAND_MWIR), NAN, 1, 1, bands, r->scene};
         bool                quicker = false;
         for (int k = 0; k < table->count; k++) {
             const QualityRow *q = &table->row[k];
             const bool first = q->ms_megapixel < r->ms_megapixel || (q->ms_megapixel == r->ms_megapixel && k < row);
-            quicker |= k != row && first && worst(q->percent, bands, BAND_OPTICAL) <= target.percent &&
+            quicker |= k != row && first && holds_in(q, r->scene) && worst(q->percent, bands, BAND_OPTICAL) <= target.percent &&
                        worst(q->kelvin, bands, BAND_MWIR) <= target.kelvin;
         }
         if (!quicker) return true;
@@ -170,6 +215,11 @@ static void take(char *kept, size_t size, int *to, int value, const Config *conf
     else snprintf(kept + strlen(kept), size - strlen(kept), "; %s as given", key);
 }
 
+static bool has_plants(const Config *config)
+{
+    return strcmp(config->terrain.woods, "on") == 0 && config->terrain.woods_trees > 0;
+}
+
 Status quality_choose(Config *config, Choices *choices, unsigned bands)
 {
     QualityTable table;
@@ -185,7 +235,8 @@ Status quality_choose(Config *config, Choices *choices, unsigned bands)
                                   config->quality.frame_ms,
                                   1e-6 * config->sensor.width_px * config->sensor.height_px,
                                   config->quality.machine_factor,
-                                  bands};
+                                  bands,
+                                  has_plants(config) ? QUALITY_WOODS : QUALITY_BARE};
     const QualityRow *r = &table.row[quality_pick(&reached, &table, &target)];
     take(kept, sizeof kept, &config->sensor.samples, r->samples, config, "sensor.samples");
     if (r->edge_samples > 0) {
@@ -202,9 +253,11 @@ Status quality_choose(Config *config, Choices *choices, unsigned bands)
     char grids[64] = "";
     if (r->edge_samples > 0)
         snprintf(grids, sizeof grids, ", edge_samples %d, target_samples %d", r->edge_samples, r->target_samples);
-    choice_add(choices, "quality: samples %d%s for%s%s (at most %.2g %%%s; %.3g ms, %.2g x the fastest)%s", r->samples,
-               grids, wants, reached ? "" : ": NOT reached, the closest", worst(r->percent, bands, BAND_OPTICAL),
-               k_text, frame_ms(r, &target), r->ms_megapixel / table.row[0].ms_megapixel, kept);
+    const char *where = target.scene == QUALITY_WOODS ? "in woods" : "on bare ground";
+    choice_add(choices, "quality: samples %d%s for%s%s (%s: at most %.2g %%%s; %.3g ms, %.2g x the fastest)%s", r->samples,
+               grids, wants, reached ? "" : ": NOT reached, the closest",
+               r->scene == quality_any_scene ? "table without scenes" : where, worst(r->percent, bands, BAND_OPTICAL), k_text,
+               frame_ms(r, &target), r->ms_megapixel / fastest(&table, target.scene)->ms_megapixel, kept);
     if (!reached)
         log_warn("quality: no row of the table meets%s; the closest is used (`pitviper bench quality` lists them)",
                  wants);

@@ -102,44 +102,54 @@ typedef struct Nodes {
     bool    same; /* the eight share class and nodes */
 } Nodes;
 
-/* Nodes are equally spaced between powers of 2: exponent and mantissa of a float are their position. */
-static void find_node(int32_t *node, float *share, float x, int per_doubling_log2, int least_log2, int nodes)
+/* Nodes are equally spaced between powers of 2: exponent and mantissa of a float are their position. Of eight. */
+static inline I32x8 find_node(float share[8], F32x8 x, int per_doubling_log2, int least_log2, int nodes)
 {
-    const float least = ldexpf(1, least_log2);
-    int32_t     bits;
-    x = x > least ? x : least; /* NaN: least */
-    memcpy(&bits, &x, sizeof bits);
-    bits -= (127 + least_log2) << 23;
-    const int shift = 23 - per_doubling_log2;
-    *node  = bits >> shift;
-    *share = (float)(bits & ((1 << shift) - 1)) * ldexpf(1, -shift);
-    if (*node >= nodes - 1) *node = nodes - 2, *share = 1;
+    const int   shift = 23 - per_doubling_log2;
+    const F32x8 at_least = f32x8_max(x, f32x8_set(ldexp(1, least_log2))); /* NaN: least */
+    const I32x8 bits = i32x8_sub(_mm256_castps_si256(at_least), i32x8_set((127 + least_log2) << 23));
+    const I32x8 node = i32x8_shift_right(bits, shift), last = i32x8_set(nodes - 2);
+    const F32x8 beyond = i32x8_greater(node, last);
+    const F32x8 in_node = f32x8_of_ints(i32x8_and(bits, i32x8_set((1 << shift) - 1))) * f32x8_set(ldexp(1, -shift));
+    f32x8_store(share, f32x8_select(beyond, f32x8_set(1), in_node));
+    return i32x8_select(beyond, last, node);
 }
 
 static void find_nodes(Nodes *out, int some, const uint8_t *surface, const float *across_m, const float *along_m)
 {
-    out->same = true;
+    float across[8], along[8];
     for (int k = 0; k < 8; k++) {
         const int at = k < some ? k : 0; /* places beyond the last repeat the first */
         const bool known = surface[at] > SURFACE_NONE && surface[at] < SURFACE_COUNT;
-        const float across = across_m[at], along = along_m[at];
+        across[k] = across_m[at], along[k] = along_m[at];
         out->class[k] = known ? surface[at] : SURFACE_NONE;
-        find_node(&out->size[k], &out->size_share[k], across, 2, detail_least_log2, detail_sizes);
-        find_node(&out->elongation[k], &out->elongation_share[k], across > 0 ? along / across : 1, 1, 0, detail_longs);
-        out->same &= out->class[k] == out->class[0] && out->size[k] == out->size[0] &&
-                     out->elongation[k] == out->elongation[0];
     }
+    const F32x8 wide = f32x8_load(across), first = f32x8_set(1);
+    const F32x8 longer = f32x8_select(f32x8_greater(wide, f32x8_set(0)), f32x8_load(along) / wide, first);
+    const I32x8 size = find_node(out->size_share, wide, 2, detail_least_log2, detail_sizes);
+    const I32x8 elongation = find_node(out->elongation_share, longer, 1, 0, detail_longs), class = i32x8_load(out->class);
+    const I32x8 lane = i32x8_set(0);
+    const F32x8 equal = f32x8_and(i32x8_equal(class, _mm256_permutevar8x32_epi32(class, lane)),
+                                  f32x8_and(i32x8_equal(size, _mm256_permutevar8x32_epi32(size, lane)),
+                                            i32x8_equal(elongation, _mm256_permutevar8x32_epi32(elongation, lane))));
+    i32x8_store(out->size, size), i32x8_store(out->elongation, elongation);
+    out->same = f32x8_bits(equal) == 0xff;
 }
 
-/* Octaves that any of the places has a weight for. */
-static unsigned used_octaves(const DetailTable *t, const Nodes *nodes, DetailField f)
+/* Octaves that any of the places has a weight for, in each field. */
+static void used_octaves(uint8_t used[detail_fields], const DetailTable *t, const Nodes *nodes)
 {
-    unsigned used = 0;
+    uint32_t all = 0;
+    _Static_assert(detail_fields == sizeof all, "the fields of a node are read as one word");
     for (int k = 0; k < (nodes->same ? 1 : 8); k++) {
-        const int c = nodes->class[k], i = nodes->size[k], j = nodes->elongation[k];
-        used |= t->used[c][i][j][f] | t->used[c][i][j + 1][f] | t->used[c][i + 1][j][f] | t->used[c][i + 1][j + 1][f];
+        const uint8_t(*at)[detail_longs][detail_fields] = &t->used[nodes->class[k]][nodes->size[k]];
+        for (int corner = 0; corner < 4; corner++) {
+            uint32_t word;
+            memcpy(&word, at[corner >> 1][nodes->elongation[k] + (corner & 1)], sizeof word);
+            all |= word;
+        }
     }
-    return used;
+    memcpy(used, &all, sizeof all);
 }
 
 static inline F32x8 between(F32x8 low_low, F32x8 low_high, F32x8 high_low, F32x8 high_high, F32x8 size,
@@ -222,9 +232,11 @@ static void details(Eight *out, const DetailTable *t, uint64_t seed, const Nodes
     FieldSum    sum[detail_fields];
     F32x8       slope_x = f32x8_set(0), slope_y = f32x8_set(0);
     unsigned    used = 0;
+    uint8_t     octaves[detail_fields];
+    used_octaves(octaves, t, nodes);
     for (int f = 0; f < detail_fields; f++) {
         sum[f].value = sum[f].variance = f32x8_set(0);
-        sum[f].used = wanted >> f & 1 ? used_octaves(t, nodes, (DetailField)f) : 0;
+        sum[f].used = wanted >> f & 1 ? octaves[f] : 0;
         if (sum[f].used) find_weights(sum[f].weight, t, nodes, (DetailField)f, sum[f].used);
         used |= sum[f].used;
     }

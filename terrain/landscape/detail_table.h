@@ -49,7 +49,7 @@ Status detail_table_create(DetailTable **out, const DetailStatistics statistics[
 
 /* Logs what is wrong with the file. cut_off: octaves below this share of a field's variance are left out, their
  * variance given to the others. */
-static const double detail_cut_off = 0.005; /* `bench precision`: detail: weakest octave */
+static const double detail_cut_off = 0; /* none is left out: `bench precision`: detail: weakest octave */
 Status detail_table_open(DetailTable **out, const char *path, double cut_off);
 void   detail_table_close(DetailTable *table); /* accepts NULL */
 

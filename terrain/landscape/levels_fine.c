@@ -69,15 +69,33 @@ static bool tile_meets(const Seam *s, int ti, int tj)
     return !(i0 > s->i0 && i1 < s->i1 && j0 > s->j0 && j1 < s->j1);
 }
 
-/* The coarsest shift of the tiles that share posts of a seam. */
-static int coarsest_on(const ElevationLevel *level, const Seam *s)
+/* The tiles that hold any of the posts n0 .. n1 of an axis with this many posts and tiles: first and last. */
+static void holding(int out[2], int n0, int n1, int posts, int tiles)
 {
-    int shift = 0;
-    for (int tj = 0; tj < level->tiles_y; tj++)
-        for (int ti = 0; ti < level->tiles_x; ti++) {
-            const int of = level->tile[(size_t)tj * (size_t)level->tiles_x + (size_t)ti].shift;
-            if (of > shift && tile_meets(s, ti, tj)) shift = of;
-        }
+    n0 = n0 > 0 ? n0 : 0, n1 = n1 < posts - 1 ? n1 : posts - 1;
+    const int low = n0 / elevation_tile_cells, high = n1 / elevation_tile_cells;
+    out[0] = n0 % elevation_tile_cells == 0 && n0 > 0 ? low - 1 : low;
+    out[1] = high < tiles ? high : tiles - 1;
+}
+
+/* The coarsest shift of the tiles that hold posts of a level's outline between post (i, j) of it and the posts level_ratio
+ * to both sides, which lie on straight lines to their neighbours of the level around. */
+static int coarsest_beside(const ElevationLevel *level, int i, int j)
+{
+    const bool along_x = j == 0 || j == level->ny - 1, along_y = i == 0 || i == level->nx - 1;
+    int        shift = 0;
+    for (int axis = 0; axis < 2; axis++) { /* a corner is on both */
+        const int reach_i = axis == 0 ? level_ratio : 0, reach_j = axis == 1 ? level_ratio : 0;
+        int       a[2], b[2];
+        if (!(axis == 0 ? along_x : along_y)) continue;
+        holding(a, i - reach_i, i + reach_i, level->nx, level->tiles_x);
+        holding(b, j - reach_j, j + reach_j, level->ny, level->tiles_y);
+        for (int tj = b[0]; tj <= b[1]; tj++)
+            for (int ti = a[0]; ti <= a[1]; ti++) {
+                const int of = level->tile[(size_t)tj * (size_t)level->tiles_x + (size_t)ti].shift;
+                shift = of > shift ? of : shift;
+            }
+    }
     return shift;
 }
 
@@ -103,15 +121,15 @@ static void choose_tiles(ElevationLevel *to, const WorkLevel *level, int32_t *po
     to->plain = true;
 }
 
-/* Posts of the hole's outline become multiples of what divides into eight whole units of the level inside, rounded
- * down. */
-static void round_hole(ElevationLevel *to, const WorkLevel *level, const ElevationLevel *inside, const Seam *around)
+/* Posts of the hole's outline become multiples of what divides into eight whole units of the tiles beside them of the level
+ * inside, rounded down: a cliff elsewhere on the outline moves none of them. */
+static void round_hole(ElevationLevel *to, const WorkLevel *level, const ElevationLevel *inside)
 {
     const Seam hole = hole_of(level);
-    const int  unit = level_ratio << coarsest_on(inside, around);
     for (int j = hole.j0; j <= hole.j1; j++)
         for (int i = hole.i0; i <= hole.i1; i++) {
             if (j > hole.j0 && j < hole.j1 && i > hole.i0) i = hole.i1;
+            const int unit = level_ratio << coarsest_beside(inside, level_ratio * (i - hole.i0), level_ratio * (j - hole.j0));
             elevation_set_post(to, i, j, elevation_post(to, i, j) / unit * unit);
         }
 }
@@ -154,10 +172,7 @@ Status levels_store_fine(Elevation *out, const WorkLevel *levels, int count)
             rows_of(post, &levels[k].z, tj, &steps);
             elevation_fill_tiles(to, tj, post);
         }
-        if (k > 0) {
-            const Seam around = outline_of(&levels[k - 1]);
-            round_hole(to, &levels[k], &elevation.level[k - 1], &around);
-        }
+        if (k > 0) round_hole(to, &levels[k], &elevation.level[k - 1]);
         if (!levels[k].outermost) lay_outline(to, &levels[k], &elevation.level[k + 1], &levels[k + 1]);
     }
     free(post);

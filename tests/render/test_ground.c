@@ -19,6 +19,14 @@ static void aim(double d[3], const double from[3], const double to[3])
     if (!v3_normalize(d, d)) d[0] = 0, d[1] = 0, d[2] = -1;
 }
 
+static void normals_at(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m, double y_m)
+{
+    static const int first = 0;
+    double           geo[3][ground_normals_lanes], enu[3][ground_normals_lanes];
+    ground_normals(geo, enu, ground, hit, &first, 1, &x_m, &y_m);
+    for (int c = 0; c < 3; c++) n_geo[c] = geo[c][0], n_enu[c] = enu[c][0];
+}
+
 static void make_level(Elevation *e, int index, int nx, int ny, double x0_m, double y0_m, double spacing_m, double z0_m,
                        double step_m)
 {
@@ -217,7 +225,7 @@ static void planes_are_met_where_paper_says(void **state)
             const double got  = ground_first_hit(&hit, &ground, o, d, INFINITY);
             /* 1e-12 m of rounding in z at these sizes, over the sine of the grazing angle */
             CHECK_NEAR(got, want, 2e-12 * (1 + 1 / fabs(d[2] - b * d[0] - c * d[1])) + 1e-12 * want);
-            ground_normals(n_geo, n_enu, &ground, &hit, o[0] + got * d[0], o[1] + got * d[1]);
+            normals_at(n_geo, n_enu, &ground, &hit, o[0] + got * d[0], o[1] + got * d[1]);
             const double s = 1 / sqrt(1 + b * b + c * c), normal[3] = {-b * s, -c * s, s};
             for (int k = 0; k < 3; k++) {
                 CHECK_NEAR(n_geo[k], normal[k], 1e-12);
@@ -245,7 +253,7 @@ static void hits_lie_on_the_surface(void **state)
         if (!(t < INFINITY)) continue;
         const double x = o[0] + t * d[0], y = o[1] + t * d[1];
         CHECK_NEAR(o[2] + t * d[2], elevation_height(&e, x, y, normal), 1e-11);
-        ground_normals(n_geo, n_enu, &ground, &hit, x, y);
+        normals_at(n_geo, n_enu, &ground, &hit, x, y);
         CHECK_NEAR(v3_dot(n_enu, n_enu), 1, 1e-12);
         CHECK(v3_dot(n_geo, d) < 0);
         /* on the line between two triangles either normal is right */

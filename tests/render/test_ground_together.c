@@ -1,5 +1,6 @@
 /* Rays that keep together against the same rays eight by eight: not a bit may differ, whatever the country and wherever
- * the eye. Of this the second knows neither strips nor groups (tests/render/test_ground.c judges it).
+ * the eye. Of this the second knows neither strips nor groups (tests/render/test_ground.c judges it). Normals of four hits
+ * at a time likewise against those of one, post by post.
  * labels: physics slow */
 #include "tests/check.h"
 
@@ -25,6 +26,68 @@ typedef struct Batch {
 
 static Batch batch;
 
+/* ---- normals, post by post -------------------------------------------------------------------- */
+
+static void slope_at(double slope[2], const ElevationLevel *e, double scale, int i, int j)
+{
+    const int west = i > 0 ? i - 1 : i, east = i < e->nx - 1 ? i + 1 : i;
+    const int south = j > 0 ? j - 1 : j, north = j < e->ny - 1 ? j + 1 : j;
+    slope[0] = (elevation_post(e, east, j) - elevation_post(e, west, j)) * scale / (east - west);
+    slope[1] = (elevation_post(e, i, north) - elevation_post(e, i, south)) * scale / (north - south);
+}
+
+static void upward(double n[3], double slope_x, double slope_y)
+{
+    const double s = 1 / sqrt(slope_x * slope_x + slope_y * slope_y + 1);
+    n[0] = -slope_x * s, n[1] = -slope_y * s, n[2] = s;
+}
+
+static void normals_at(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m, double y_m)
+{
+    const GroundLevel    *g = &ground->level[hit->level];
+    const ElevationLevel *e = &ground->elevation->level[hit->level];
+    const double          scale = g->cells_per_m / g->posts_per_m;
+    const int             i = hit->i, j = hit->j, sw = elevation_post(e, i, j), se = elevation_post(e, i + 1, j),
+              nw = elevation_post(e, i, j + 1), ne = elevation_post(e, i + 1, j + 1);
+    if (hit->north_west) upward(n_geo, (ne - nw) * scale, (nw - sw) * scale);
+    else upward(n_geo, (se - sw) * scale, (ne - se) * scale);
+    const double a = clamp((x_m - g->x0_m) * g->cells_per_m - i, 0, 1), b = clamp((y_m - g->y0_m) * g->cells_per_m - j, 0, 1);
+    const double low = a < b ? a : b, high = a < b ? b : a;
+    double       at[3][2], slope[2];
+    slope_at(at[0], e, scale, i, j);
+    slope_at(at[1], e, scale, i + 1, j + 1);
+    slope_at(at[2], e, scale, i + !hit->north_west, j + hit->north_west);
+    for (int c = 0; c < 2; c++) slope[c] = (1 - high) * at[0][c] + low * at[1][c] + (high - low) * at[2][c];
+    upward(n_enu, slope[0], slope[1]);
+}
+
+/* Those of the batch's hits, in fours from one of the first on. */
+static void compare_normals(const Ground *ground, const char *what)
+{
+    static double x_m[tile], y_m[tile];
+    static int    list[tile];
+    int           count = 0;
+    for (int n = 0; n < batch.count; n++) {
+        x_m[n] = batch.o[0][n] + batch.plain_m[n] * batch.d[0][n], y_m[n] = batch.o[1][n] + batch.plain_m[n] * batch.d[1][n];
+        if (batch.plain_m[n] < INFINITY) list[count++] = n;
+    }
+    for (int first = 0, some; first < count; first += some) {
+        double n_geo[3][ground_normals_lanes], n_enu[3][ground_normals_lanes];
+        some = first ? ground_normals_lanes : 1 + count % ground_normals_lanes;
+        if (some > count - first) some = count - first;
+        ground_normals(n_geo, n_enu, ground, batch.plain_hit, list + first, some, x_m, y_m);
+        for (int k = 0; k < some; k++) {
+            const int n = list[first + k];
+            double    geo[3], enu[3];
+            normals_at(geo, enu, ground, &batch.plain_hit[n], x_m[n], y_m[n]);
+            for (int c = 0; c < 3; c++)
+                if (memcmp(&geo[c], &n_geo[c][k], sizeof geo[c]) || memcmp(&enu[c], &n_enu[c][k], sizeof enu[c]))
+                    fail_msg("%s: normals of hit %d, axis %d: %.17g %.17g, plain %.17g %.17g", what, n, c, n_geo[c][k],
+                             n_enu[c][k], geo[c], enu[c]);
+        }
+    }
+}
+
 /* Traces the batch both ways; returns how many met something. */
 static int compare(const Ground *ground, const char *what)
 {
@@ -44,6 +107,7 @@ static int compare(const Ground *ground, const char *what)
                  batch.count, o[0][n], o[1][n], o[2][n], d[0][n], d[1][n], d[2][n], batch.far_m[n], batch.range_m[n],
                  batch.plain_m[n]);
     }
+    compare_normals(ground, what);
     return hits;
 }
 
@@ -191,7 +255,7 @@ static void fill_from_hits(const Ground *ground, const double sun_enu[3])
         if (!(batch.plain_m[n] < INFINITY)) continue;
         double p[3], n_geo[3], n_enu[3];
         for (int c = 0; c < 3; c++) p[c] = batch.o[c][n] + batch.plain_m[n] * batch.d[c][n];
-        ground_normals(n_geo, n_enu, ground, &batch.plain_hit[n], p[0], p[1]);
+        normals_at(n_geo, n_enu, ground, &batch.plain_hit[n], p[0], p[1]);
         for (int c = 0; c < 3; c++) batch.o[c][count] = p[c] + 1e-3 * n_geo[c], batch.d[c][count] = sun_enu[c];
         batch.far_m[count++] = INFINITY;
     }

@@ -117,6 +117,61 @@ static void facets_are_close(void **state)
     arena_reset(arena);
 }
 
+/* Straight between the nodes of the tables, one by one: the definition of heat_ground_k. */
+static double by_hand_k(const GroundHeatTable *t, int kind, const double n[3], double taken, double open, double dark)
+{
+    const double sum = fabs(n[0]) + fabs(n[1]) + (n[2] > 0 ? n[2] : 0), over = 1 / sum;
+    const double x = 0.5 * ((n[0] + n[1]) * over + 1) * (t->facets - 1), y = 0.5 * ((n[0] - n[1]) * over + 1) * (t->facets - 1);
+    const int    i = x < t->facets - 2 ? (int)x : t->facets - 2, j = y < t->facets - 2 ? (int)y : t->facets - 2;
+    double       row[2], up_k[2];
+    for (int r = 0; r < 2; r++) {
+        const float *k = &t->sun_k[kind][(j + r) * t->facets + i];
+        row[r] = (double)k[0] + (x - i) * ((double)k[1] - (double)k[0]);
+    }
+    const double sun_k = row[0] + (y - j) * (row[1] - row[0]), up = clamp(n[2], 0, 1) * (heat_ups - 1);
+    const int    u = up < heat_ups - 2 ? (int)up : heat_ups - 2;
+    for (int side = 0; side < 2; side++) {
+        const float *k = side ? t->dark_k[kind] : t->shade_k[kind];
+        up_k[side] = (double)k[u] + (up - u) * ((double)k[u + 1] - (double)k[u]);
+    }
+    const double shade_k = up_k[0], dark_k = up_k[1], lit_k = sun_k + taken * (shade_k - sun_k);
+    return dark_k + dark * (lit_k - dark_k) + (1 - open) * ((double)t->hidden_k[kind] - (dark_k + dark * (shade_k - dark_k)));
+}
+
+/* Places side by side, of any kinds, against each by itself, to the bit. */
+static void places_side_by_side(void **state)
+{
+    (void)state;
+    Heat          *h = paper_heat(&kinds, &paper_summer, 4, NULL);
+    const HeatNow *now = at(h, 13.2);
+    for (int n = 0; n < 4000; n++) {
+        HeatPlaces place;
+        double     temp_k[heat_lanes];
+        for (int k = 0; k < heat_lanes; k++) {
+            double       v[3], unit[3];
+            const double special[3] = {n % 7 - 3, (n / 7) % 3 - 1, n % 2};
+            for (int c = 0; c < 3; c++) v[c] = random_uniform(8, (uint32_t)c, (uint64_t)k, (uint64_t)n) - (c == 2 ? 0.1 : 0.5);
+            if (k == 2 || !v3_normalize(unit, v)) /* along axes and edges of the square of facets */
+                if (!v3_normalize(unit, special)) unit[0] = unit[1] = 0, unit[2] = 1;
+            for (int c = 0; c < 3; c++) place.n_enu[c][k] = unit[c];
+            place.kind[k] = (int)(random_uniform(8, 3, (uint64_t)k, (uint64_t)n) * SURFACE_COUNT);
+            place.taken[k] = k == 1 ? 0 : random_uniform(8, 4, (uint64_t)k, (uint64_t)n);
+            place.open[k] = k == 3 ? 1 : random_uniform(8, 5, (uint64_t)k, (uint64_t)n);
+            place.dark[k] = 0.6 + random_uniform(8, 6, (uint64_t)k, (uint64_t)n);
+        }
+        heat_grounds_k(temp_k, now, &place);
+        for (int k = 0; k < heat_lanes; k++) {
+            const double unit[3] = {place.n_enu[0][k], place.n_enu[1][k], place.n_enu[2][k]};
+            const double want_k = by_hand_k(&now->table, place.kind[k], unit, place.taken[k], place.open[k], place.dark[k]);
+            const double alone_k = heat_ground_k(now, place.kind[k], unit, place.taken[k], place.open[k], place.dark[k]);
+            assert_memory_equal(&temp_k[k], &want_k, sizeof want_k);
+            assert_memory_equal(&temp_k[k], &alone_k, sizeof alone_k);
+        }
+    }
+    heat_destroy(h);
+    arena_reset(arena);
+}
+
 /* In the shade for some hours of the day: the share of slots in those hours, against a column without that sun. */
 static void shade_of_the_hours_before(void **state)
 {
@@ -255,6 +310,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables_are_columns), cmocka_unit_test(slopes_face_the_sun), cmocka_unit_test(facets_are_close),
+        cmocka_unit_test(places_side_by_side),
         cmocka_unit_test(shade_of_the_hours_before), cmocka_unit_test(what_everyone_knows),
         cmocka_unit_test(a_function_of_time_alone), cmocka_unit_test(a_day_is_remembered),
         cmocka_unit_test(settings_out_of_range),

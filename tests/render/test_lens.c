@@ -228,6 +228,30 @@ static void a_ball_s_intensity_is_the_same_all_over(void **state)
         }
 }
 
+/* Many rays at once: each leads back to its place, and is the one asked for alone, to the bit. */
+static void rays_of_a_row_are_those_of_its_points(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 2; n++) {
+        enum { points = 37 };
+        View   view = distorted_view(128, 96, 0.6, -0.15);
+        double column_px[points], row_px[points], d[3][points];
+        if (n == 0) view.lens = (Lens){0};
+        for (int i = 0; i < points; i++) column_px[i] = draw(i, 4 + n, 0, view.width), row_px[i] = draw(i, 6 + n, 0, view.height);
+        view_rays((double *const[3]){d[0], d[1], d[2]}, &view, points, column_px, row_px);
+        for (int i = 0; i < points; i++) {
+            const double d_enu[3] = {d[0][i], d[1][i], d[2][i]};
+            double       alone[3], p_cam[3], at_px[2];
+            view_ray(alone, &view, column_px[i], row_px[i]);
+            assert_memory_equal(alone, d_enu, sizeof alone);
+            m3_tmul_v3(p_cam, view.r_enu_from_cam, d_enu);
+            view_project(at_px, &view, p_cam);
+            CHECK_NEAR(v3_length(d_enu), 1, 1e-15);
+            CHECK_NEAR(hypot(at_px[0] - column_px[i], at_px[1] - row_px[i]), 0, 1e-9);
+        }
+    }
+}
+
 /* All that is skipped changes nothing, with a lens as without: every block's list, the ground's walk, smoke. */
 static void skips_change_nothing(void **state)
 {
@@ -307,6 +331,7 @@ int main(void)
         cmocka_unit_test(boxes_hold_what_is_in_them),
         cmocka_unit_test(pixels_fill_the_picture_s_solid_angle),
         cmocka_unit_test(a_ball_s_intensity_is_the_same_all_over),
+        cmocka_unit_test(rays_of_a_row_are_those_of_its_points),
         cmocka_unit_test(skips_change_nothing),
         cmocka_unit_test(no_distortion_is_a_pinhole),
     };

@@ -336,10 +336,48 @@ static void a_crowd_keeps_the_footprints_near_the_boresight(void **state)
         if (picture.target[k].small) area_px = picture.target[k].visible;
     }
     for (int k = 0; k < plates; k++) CHECK_NEAR(picture.target[k].visible / area_px, 1, 0.1); /* edges: 1 / 16 px of 2 */
+    request.target_samples = 200; /* no fewer than with the usual grids */
+    arena_reset(hand.arena);
+    const Picture fine = hand_render(&request, hand.pool);
+    assert_int_equal(fine.counters.small_targets, kept);
     request.target_samples = 24; /* a quarter of the cells: all have footprints */
     arena_reset(hand.arena);
     const Picture all = hand_render(&request, hand.pool);
     assert_int_equal(all.counters.small_targets_by_pixels, 0);
+}
+
+/* Twenty equal plates at 96 x 96 cells do not fit into 2^17: they keep their grids, of 80 x 80, and their areas scatter no more
+ * about the mean of those by the usual grids than these. By pixels 6 of them would scatter by 3 %. */
+static void finer_grids_than_fit_become_coarser(void **state)
+{
+    (void)state;
+    enum { plates = 20 };
+    static const int cells[] = {48, 64, 80, 96, 256};
+    const View    view = east();
+    RenderRequest request = hand_request(&view);
+    double        r[9];
+    hand_air_off(sun_enu);
+    hand_attitude(r, pi_rad, 0.2);
+    hand_clear();
+    for (int k = 0; k < plates; k++) {
+        double p_enu[3];
+        place_at(p_enu, &view, 2000, 9.13 * (k % 5) - 20.3, 11.27 * (k / 5) - 18.1);
+        hand_add(hand_plate_model, p_enu, r);
+    }
+    double mean_px = 0, rms[5];
+    for (int c = 0; c < 5; c++) {
+        double square = 0;
+        request.target_samples = cells[c];
+        arena_reset(hand.arena);
+        const Picture p = hand_render(&request, hand.pool);
+        assert_int_equal(p.counters.small_targets, plates);
+        assert_int_equal(p.counters.small_targets_by_pixels, 0);
+        for (int k = 0; k < plates && c == 0; k++) mean_px += p.target[k].visible / plates;
+        for (int k = 0; k < plates; k++) square += (p.target[k].visible / mean_px - 1) * (p.target[k].visible / mean_px - 1);
+        rms[c] = sqrt(square / plates);
+        print_message("%d cells a side: areas scatter by %.4f\n", cells[c], rms[c]);
+    }
+    for (int c = 1; c < 5; c++) CHECK(rms[c] <= 1.1 * rms[0]);
 }
 
 static void a_pixel_is_whose_most_of_it_is(void **state)
@@ -417,6 +455,7 @@ int main(void)
         cmocka_unit_test(nothing_shines_through_gaps_that_it_fills),
         cmocka_unit_test(all_that_is_hidden_names_what_hides_it),
         cmocka_unit_test(a_crowd_keeps_the_footprints_near_the_boresight),
+        cmocka_unit_test(finer_grids_than_fit_become_coarser),
         cmocka_unit_test(a_pixel_is_whose_most_of_it_is),
         cmocka_unit_test(the_profile_holds_the_picture),
     };

@@ -11,6 +11,16 @@ static const char good[] = "# by hand\n"
     "2,4,48,4,3.5,0.8,0.3,0.4,90\n"
     "4,8,96,2,1,0.5,0.1,0.1,400\n";
 
+/* Woods cost six times as much, and err more at a ray. */
+static const char both[] =
+    "scene,samples,edge_samples,target_samples,optical_percent,mwir_percent,lwir_percent,mwir_k,lwir_k,ms_megapixel\n"
+    "bare,1,0,0,10,20,5,2,2,10\n"
+    "bare,1,4,48,6,4,1,0.5,0.6,40\n"
+    "bare,4,8,96,2,1,0.5,0.1,0.1,400\n"
+    "woods,1,0,0,30,22,6,3,3,60\n"
+    "woods,1,4,48,14,5,2,1,1,100\n"
+    "woods,4,8,96,4,3,1,0.3,0.3,2400\n";
+
 static QualityTable table_of(const char *text)
 {
     char         path[text_file_size];
@@ -24,8 +34,93 @@ static QualityTable table_of(const char *text)
 static int picked(bool *reached, const QualityTable *table, double percent, double kelvin, double frame_ms,
                   unsigned bands)
 {
-    const QualityTarget target = {percent, kelvin, frame_ms, 0.5, 2, bands};
+    const QualityTarget target = {percent, kelvin, frame_ms, 0.5, 2, bands, QUALITY_BARE};
     return quality_pick(reached, table, &target);
+}
+
+/* A deadline that bare ground keeps with many rays is kept among trees with fewer: of each scene its own rows alone. Half a
+ * megapixel at twice the table's time. */
+static void woods_have_rows_of_their_own(void **state)
+{
+    (void)state;
+    static const struct {
+        double frame_ms;
+        int    bare, woods; /* rows */
+    } asked[] = {{5000, 2, 5}, {1000, 2, 4}, {400, 2, 4}, {100, 1, 4}, {99, 1, 3}, {60, 1, 3}, {12, 0, 3}};
+    const QualityTable t = table_of(both);
+    CHECK(t.count == 6 && t.row[2].scene == QUALITY_BARE && t.row[3].scene == QUALITY_WOODS);
+    for (size_t k = 0; k < sizeof asked / sizeof *asked; k++)
+        for (int scene = 0; scene < quality_scenes; scene++) {
+            const QualityTarget target = {NAN, NAN, asked[k].frame_ms, 0.5, 2, 7, (QualityScene)scene};
+            bool                reached;
+            const int           row = quality_pick(&reached, &t, &target);
+            CHECK(row == (scene == QUALITY_WOODS ? asked[k].woods : asked[k].bare));
+            CHECK(reached == (t.row[row].ms_megapixel <= asked[k].frame_ms)); /* the promise */
+        }
+    /* rows of one scene serve no other: the same settings are wanted in both, and a cheap one on bare ground spares none */
+    for (int k = 0; k < t.count; k++) CHECK(quality_wanted(&t, k));
+    /* a table without scenes holds in all */
+    const QualityTable one = table_of(good);
+    const QualityTarget in_woods = {4, NAN, NAN, 0.5, 2, 7, QUALITY_WOODS};
+    bool                reached;
+    CHECK(quality_pick(&reached, &one, &in_woods) == 2 && reached);
+    /* written with its scenes */
+    char         path[text_file_size];
+    QualityTable again;
+    text_file(path, "");
+    assert_int_equal(quality_write(path, &t, "again"), STATUS_OK);
+    assert_int_equal(quality_open(&again, path), STATUS_OK);
+    remove(path);
+    CHECK(again.count == 6 && again.row[4].scene == QUALITY_WOODS && again.row[4].ms_megapixel == 100);
+}
+
+/* The scene is one of woods where the settings let plants grow. */
+static void the_scene_is_that_of_the_settings(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *woods, *trees, *says;
+        int         samples;
+        bool        adaptive;
+    } of[] = {{"on", "300000", "in woods", 1, false}, {"off", "300000", "on bare ground", 1, true},
+              {"on", "0", "on bare ground", 1, true}};
+    char path[text_file_size];
+    text_file(path, both);
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+        Config  config = config_default();
+        Choices choices = {0};
+        assert_int_equal(config_set(&config, "quality.table", path, "test"), STATUS_OK);
+        assert_int_equal(config_set(&config, "quality.frame_ms", "30", "test"), STATUS_OK); /* 0.35 megapixels */
+        assert_int_equal(config_set(&config, "terrain.woods", of[k].woods, "test"), STATUS_OK);
+        assert_int_equal(config_set(&config, "terrain.woods_trees", of[k].trees, "test"), STATUS_OK);
+        assert_int_equal(quality_choose(&config, &choices, 7), STATUS_OK);
+        print_message("%s\n", choices.line[0]);
+        CHECK(config.sensor.samples == of[k].samples && config_adaptive(&config) == of[k].adaptive);
+        CHECK(strstr(choices.line[0], of[k].says) && !strstr(choices.line[0], "NOT reached"));
+    }
+    remove(path);
+}
+
+/* What the table of etc/ promises in woods is several times what it promises on bare ground, as it is measured to be
+ * (etc/cost: rays among trees), and no row of it says that trees cost nothing. */
+static void woods_are_promised_no_bare_times(void **state)
+{
+    (void)state;
+    char         path[512];
+    QualityTable table;
+    int          pairs = 0;
+    CHECK(etc_path(path, sizeof path, "quality.csv"));
+    assert_int_equal(quality_open(&table, path), STATUS_OK);
+    for (int k = 0; k < table.count; k++)
+        for (int n = 0; n < table.count; n++) {
+            const QualityRow *bare = &table.row[k], *woods = &table.row[n];
+            if (bare->scene != QUALITY_BARE || woods->scene != QUALITY_WOODS || bare->samples != woods->samples ||
+                bare->edge_samples != woods->edge_samples || bare->target_samples != woods->target_samples)
+                continue;
+            pairs++;
+            CHECK(woods->ms_megapixel > 1.3 * bare->ms_megapixel);
+        }
+    CHECK(pairs >= 3);
 }
 
 static void the_quickest_that_keeps_it(void **state)
@@ -90,6 +185,9 @@ static void broken_tables_are_refused(void **state)
                                        "1,4,7,1,1,1,1,1,1\n",
                                        "1,4,257,1,1,1,1,1,1\n",
                                        "1,0,0,1,1,1,1,1,1e300\n"};
+    static const char *const scenes[] = {"bare,1,0,0,1,1,1,1,1,1\n", "woods,1,0,0,1,1,1,1,1,1\n",
+                                         "bare,1,0,0,1,1,1,1,1,1\nsea,1,0,0,1,1,1,1,1,1\n",
+                                         "bare,1,0,0,1,1,1,1,1,1\n,1,0,0,1,1,1,1,1,1\n"};
     char         path[text_file_size], text[16384];
     QualityTable table;
     log_suppress(true);
@@ -97,6 +195,12 @@ static void broken_tables_are_refused(void **state)
         snprintf(text, sizeof text, "%s%s", head, rows[k]);
         text_file(path, text);
         CHECK(quality_open(&table, path) != STATUS_OK);
+        remove(path);
+    }
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) { /* a scene without rows, or unknown */
+        snprintf(text, sizeof text, "scene,%s%s", head, scenes[k]);
+        text_file(path, text);
+        CHECK(quality_open(&table, path) == STATUS_BAD_VALUE);
         remove(path);
     }
     text_file(path, "samples,edge_samples\n1,0\n"); /* columns missing */
@@ -191,7 +295,7 @@ static void promises_hold_elsewhere(void **state)
         const TrialFrame true_one = frame_of(&scene, &request, 0);
         for (int k = 0; k < 3; k++) {
             bool                reached;
-            const QualityTarget target = {asked_percent[k], NAN, NAN, 1, 1, 7};
+            const QualityTarget target = {asked_percent[k], NAN, NAN, 1, 1, 7, QUALITY_BARE};
             const QualityRow   *r = &table.row[quality_pick(&reached, &table, &target)];
             CHECK(reached);
             request.samples = r->samples, request.edge_samples = r->edge_samples,
@@ -215,7 +319,8 @@ static void promises_hold_elsewhere(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_quickest_that_keeps_it), cmocka_unit_test(rows_for_nobody_are_told),
+        cmocka_unit_test(the_quickest_that_keeps_it), cmocka_unit_test(woods_have_rows_of_their_own),
+        cmocka_unit_test(the_scene_is_that_of_the_settings), cmocka_unit_test(woods_are_promised_no_bare_times), cmocka_unit_test(rows_for_nobody_are_told),
         cmocka_unit_test(broken_tables_are_refused), cmocka_unit_test(given_keys_stay_and_the_choice_is_said),
         cmocka_unit_test(promises_hold_elsewhere)};
     return cmocka_run_group_tests(tests, lab_open, lab_close);

@@ -80,8 +80,44 @@ static void posts_are_near_and_seams_exact(void **state)
     }
 }
 
+/* A peak of 4 km in the first tile of the finest level: posts of the seam beside other tiles stay as near to their heights as
+ * without it, those beside it come within the peak's unit. */
+static void a_peak_moves_only_the_seam_beside_it(void **state)
+{
+    (void)state;
+    WorkLevel level[levels];
+    Elevation ground;
+    double    beside_m = 0, elsewhere_m = 0;
+    int       posts = 0;
+    make_levels(level, 1);
+    const Field *fine = &level[0].z, *z = &level[1].z;
+    for (int j = 12; j < 30; j++)
+        for (int i = 12; i < 30; i++) fine->v[j * fine->nx + i] += 4000;
+    assert_int_equal(levels_store_fine(&ground, level, levels), STATUS_OK);
+    check_seams(&ground);
+    CHECK(ground.level[0].tile[0].shift == 7 && ground.level[0].tile[1].shift == 0); /* 32 m << 7 hold 4 km */
+    for (int j = level[1].hole_j0; j <= level[1].hole_j1; j++)
+        for (int i = level[1].hole_i0; i <= level[1].hole_i1; i++) {
+            const bool   rim = i == level[1].hole_i0 || i == level[1].hole_i1 || j == level[1].hole_j0 || j == level[1].hole_j1;
+            const int    at_i = i - z->i0, at_j = j - z->j0;
+            const double off_m = fabs(elevation_post_m(&ground.level[1], at_i, at_j) - (double)z->v[at_j * z->nx + at_i]);
+            const int    in_i = level_ratio * (i - level[1].hole_i0), in_j = level_ratio * (j - level[1].hole_j0);
+            const bool   beside = in_i <= elevation_tile_cells + level_ratio && in_j <= elevation_tile_cells + level_ratio;
+            if (!rim) continue;
+            posts += !beside;
+            if (beside) beside_m = fmax(beside_m, off_m);
+            else elsewhere_m = fmax(elsewhere_m, off_m);
+        }
+    print_message("seam: %.4f m beside the peak, %.4f m elsewhere (%d posts)\n", beside_m, elsewhere_m, posts);
+    CHECK(posts > 40 && elsewhere_m <= 8.5 / 2048);                              /* eight steps, rounded down */
+    CHECK(beside_m > 0.05 && beside_m <= (8 << 7) / 2048.0 + 1.0 / 2048);        /* eight units of the peak's tile */
+    elevation_destroy(&ground);
+    for (int k = 0; k < levels; k++) field_destroy(&level[k].z);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(posts_are_near_and_seams_exact)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(posts_are_near_and_seams_exact),
+                                       cmocka_unit_test(a_peak_moves_only_the_seam_beside_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

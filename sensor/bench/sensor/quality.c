@@ -1,15 +1,20 @@
-/* sensor/bench/sensor/quality.c: `pitviper bench quality`: each row of settings in each scene against 16 x 16 rays
- * in every pixel. A row's error is that of its worst scene. Its time is of two of the scenes in larger images, on
- * one thread, rows interleaved, the best of the rounds. */
+/* sensor/bench/sensor/quality.c: `pitviper bench quality`: each row of settings on bare ground and in woods, in each view
+ * against 16 x 16 rays in every pixel. A row's error is that of its worst view. Its time is of two of the views in larger
+ * images, on one thread, rows interleaved, the best of the rounds. */
 #include "sensor/bench/sensor/quality.h"
 
 #include "pitviper_output.h"
+#include "sensor/bench/sensor/woods_stand.h"
 #include "sensor/quality/lab.h"
 #include "sensor/quality/quality.h"
 
 #include <errno.h>
 
 enum { rounds_most = 2 };
+
+/* A third of the density of `bench woods`: half to two thirds of the pixels are plants, in the demonstration 21 to 46 %. */
+static const double trees_per_m2 = 0.005;
+static const double cleared_m = 6; /* about a vehicle */
 
 static const QualitySettings reference = {16, 0, 0};
 
@@ -44,11 +49,34 @@ static void errors_of(double percent[quality_bands], double kelvin[quality_bands
     for (int b = 0; b < quality_bands; b++) percent[b] = 100 * sqrt(shares[b]);
 }
 
-static Status measure_errors(QualityTable *table, QualityLab *lab, Bench *bench)
+/* Trees over all of the lab's ground but for the vehicles' places. */
+static Status plant_lab(Woods *woods, QualityLab *lab)
 {
-    for (int v = 0; v < quality_lab_views; v += lab->quick ? 3 : 1) {
+    const Config       config = config_default();
+    const ForestConfig forest = {.leaves = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
+    const HeatConfig   heat = heat_default_config();
+    WoodsStand stand = {.landscape = &lab->ground, .east_m = quality_lab_east_m, .north_m = quality_lab_north_m,
+                        .trees = (int)(trees_per_m2 * quality_lab_east_m * quality_lab_north_m)};
+    Snapshot   snapshot;
+    arena_reset(lab->arena);
+    Status status = entity_table_snapshot(&snapshot, lab->scene.table, lab->scene.sun_now_s + 0.5, lab->arena);
+    for (int k = 0; status == STATUS_OK && k < snapshot.count && k < woods_stand_clear; k++) {
+        double p_enu[3];
+        enu_from_ecef(p_enu, &lab->ground.frame, snapshot.entity[k].p_ecef);
+        stand.clear[stand.clears++] = (WoodsPath){{p_enu[0], p_enu[1]}, {p_enu[0], p_enu[1]}, cleared_m, cleared_m};
+    }
+    if (status == STATUS_OK) status = woods_stand_create(woods, &stand, lab->many);
+    if (status == STATUS_OK) status = world_plant(&lab->scene.world, woods, &forest, NULL, lab->many);
+    return status == STATUS_OK ? trial_scene_warm(&lab->scene, &heat) : status;
+}
+
+/* rows: of this scene, in the order of the grid. Among plants every second view. */
+static Status measure_errors(QualityRow *rows, QualityLab *lab, Bench *bench)
+{
+    const bool woods = rows->scene == QUALITY_WOODS;
+    for (int v = 0; v < quality_lab_views; v += lab->quick ? 3 : woods ? 2 : 1) {
         char what[64];
-        snprintf(what, sizeof what, "errors, view %d of %d", v + 1, quality_lab_views);
+        snprintf(what, sizeof what, "errors, %s, view %d of %d", quality_scene_name(rows->scene), v + 1, quality_lab_views);
         bench_progress(bench, what);
         TrialFrame fine = quality_lab_frame(lab, v, reference);
         fine.pool  = lab->many;
@@ -57,7 +85,7 @@ static Status measure_errors(QualityTable *table, QualityLab *lab, Bench *bench)
         for (int k = 0; k < grid_count && fine.status == STATUS_OK; k++) {
             TrialFrame  f = quality_lab_frame(lab, v, grid[k]);
             double      percent[quality_bands], kelvin[quality_bands];
-            QualityRow *r = &table->row[k];
+            QualityRow *r = &rows[k];
             f.pool = lab->many;
             trial_frame(&f);
             if (f.status != STATUS_OK) return f.status;
@@ -72,15 +100,37 @@ static Status measure_errors(QualityTable *table, QualityLab *lab, Bench *bench)
     return STATUS_OK;
 }
 
+static Status measure_times(QualityRow *rows, BenchTime time[grid_count], QualityLab *lab, Bench *bench)
+{
+    QualityLab large = *lab;
+    const int  rounds = lab->quick || rows->scene == QUALITY_WOODS ? 1 : rounds_most;
+    quality_lab_enlarge(&large);
+    for (int n = 0; n < rounds; n++)
+        for (int k = 0; k < grid_count; k++) {
+            char what[64];
+            snprintf(what, sizeof what, "times, %s, round %d of %d", quality_scene_name(rows->scene), n + 1, rounds);
+            bench_progress(bench, what);
+            time[k].item_s[n] = quality_lab_time(&large, grid[k], false);
+            time[k].rounds    = n + 1;
+            if (isnan(time[k].item_s[n])) return STATUS_NO_MEMORY;
+        }
+    for (int k = 0; k < grid_count; k++) {
+        bench_time_finish(&time[k]);
+        rows[k].ms_megapixel = 1e3 * time[k].best_s;
+    }
+    return STATUS_OK;
+}
+
 /* Rows that some target selects are marked, like a front. */
 static void list_row(Bench *bench, const QualityTable *table, int k, const BenchTime *time)
 {
-    const QualityRow *r = &table->row[k], *first = &table->row[0];
+    const QualityRow *r = &table->row[k], *first = &table->row[k / grid_count * grid_count];
+    const char       *scene = quality_scene_name(r->scene);
     char              what[96];
     if (r->edge_samples > 0)
-        snprintf(what, sizeof what, "samples %d, edge_samples %d, target_samples %d", r->samples, r->edge_samples,
+        snprintf(what, sizeof what, "%s: samples %d, edge_samples %d, target_samples %d", scene, r->samples, r->edge_samples,
                  r->target_samples);
-    else snprintf(what, sizeof what, "samples %d, antialias off", r->samples);
+    else snprintf(what, sizeof what, "%s: samples %d, antialias off", scene, r->samples);
     BenchRow row   = bench_row(what);
     row.median     = time->median_s;
     row.best       = time->best_s;
@@ -88,7 +138,7 @@ static void list_row(Bench *bench, const QualityTable *table, int k, const Bench
     row.rate       = 1 / time->median_s;
     row.rate_unit  = "Mpx/s";
     row.ratio      = r->ms_megapixel / first->ms_megapixel;
-    row.to         = "the first";
+    row.to         = "the scene's first";
     row.error      = fmax(r->percent[BAND_OPTICAL], fmax(r->percent[BAND_MWIR], r->percent[BAND_LWIR]));
     row.error_unit = "%";
     row.against    = "16 x 16 rays a pixel: worst band of the worst view";
@@ -104,42 +154,62 @@ Status bench_quality_check(const Bench *bench)
     return STATUS_IO;
 }
 
+static Status measure(QualityTable *table, BenchTime *time, Woods *woods, QualityLab *lab, Bench *bench)
+{
+    for (int scene = 0; scene < quality_scenes; scene++) {
+        QualityRow *rows = table->row + scene * grid_count;
+        for (int k = 0; k < grid_count; k++)
+            rows[k] = (QualityRow){.scene = (QualityScene)scene, .samples = grid[k].samples,
+                                   .edge_samples = grid[k].edge_samples, .target_samples = grid[k].target_samples};
+        Status status = STATUS_OK;
+        if (scene == QUALITY_WOODS) {
+            bench_progress(bench, "woods");
+            status = plant_lab(woods, lab);
+        }
+        if (status == STATUS_OK) status = measure_errors(rows, lab, bench);
+        if (status == STATUS_OK) status = measure_times(rows, time + scene * grid_count, lab, bench);
+        if (status != STATUS_OK) return status;
+    }
+    return STATUS_OK;
+}
+
+/* As a table has them: rows that differ beyond it are the same. */
+static void round_rows(QualityTable *table)
+{
+    for (int k = 0; k < table->count; k++) {
+        QualityRow *r = &table->row[k];
+        double     *value[] = {&r->percent[0], &r->percent[1], &r->percent[2], &r->kelvin[1], &r->kelvin[2]};
+        for (size_t n = 0; n < sizeof value / sizeof *value; n++) {
+            char text[32];
+            snprintf(text, sizeof text, "%.3g", *value[n]);
+            text_to_double(value[n], text);
+        }
+    }
+}
+
 Status bench_quality(Bench *bench)
 {
-    QualityLab   lab;
-    QualityTable table = {.count = grid_count};
-    BenchTime    time[grid_count] = {0};
-    const char  *path = bench_option(bench, "table");
+    enum { rows = quality_scenes * grid_count };
+    QualityLab       lab;
+    QualityTable     table = {.count = rows};
+    static BenchTime time[rows];
+    Woods            woods = {0};
+    const char      *path = bench_option(bench, "table");
+    memset(time, 0, sizeof time);
     bench_progress(bench, "ground and vehicles");
     Status status = quality_lab_open(&lab, 1, bench_quick(bench));
-    for (int k = 0; k < grid_count; k++)
-        table.row[k] = (QualityRow){.samples = grid[k].samples, .edge_samples = grid[k].edge_samples,
-                                      .target_samples = grid[k].target_samples};
-    if (status == STATUS_OK) status = measure_errors(&table, &lab, bench);
-    const int rounds = lab.quick ? 1 : rounds_most;
-    quality_lab_enlarge(&lab);
-    for (int n = 0; n < rounds && status == STATUS_OK; n++)
-        for (int k = 0; k < grid_count; k++) {
-            char what[64];
-            snprintf(what, sizeof what, "times, round %d of %d", n + 1, rounds);
-            bench_progress(bench, what);
-            time[k].item_s[n] = quality_lab_time(&lab, grid[k], false);
-            time[k].rounds    = n + 1;
-            if (isnan(time[k].item_s[n])) status = STATUS_NO_MEMORY;
-        }
-    for (int k = 0; k < grid_count && status == STATUS_OK; k++) {
-        bench_time_finish(&time[k]);
-        table.row[k].ms_megapixel = 1e3 * time[k].best_s;
-    }
-    for (int k = 0; k < grid_count && status == STATUS_OK; k++) list_row(bench, &table, k, &time[k]);
-    /* what nothing would pick is not written, but for the first, by which machines are compared */
+    if (status == STATUS_OK) status = measure(&table, time, &woods, &lab, bench);
+    round_rows(&table);
+    for (int k = 0; k < rows && status == STATUS_OK; k++) list_row(bench, &table, k, &time[k]);
+    /* what nothing would pick is not written, but for the first of a scene: machines are compared by that of bare ground */
     QualityTable written = {.count = 0};
-    for (int k = 0; k < grid_count; k++)
-        if (k == 0 || quality_wanted(&table, k)) written.row[written.count++] = table.row[k];
+    for (int k = 0; k < rows; k++)
+        if (k % grid_count == 0 || quality_wanted(&table, k)) written.row[written.count++] = table.row[k];
     if (status == STATUS_OK && path)
         status = quality_write(path, &written,
                                "rms error at most, and time on one thread of the machine it was measured on, by "
                                "`pitviper bench quality --table FILE`");
     quality_lab_close(&lab);
+    woods_destroy(&woods);
     return status;
 }

@@ -50,7 +50,7 @@ const BenchSuite sensor_benches[] = {
      .run = sensor_bench_stability},
     {.name = "quality",
      .options = "table=FILE: written too; quality.* picks from etc/quality.csv",
-     .help = "rays a pixel, at edges and over small targets together: time against error, what quality.* picks from",
+     .help = "rays a pixel, at edges and over small targets together: time against error on bare ground and in woods, what quality.* picks from",
      .run = bench_quality,
      .check = bench_quality_check},
 };
