@@ -71,6 +71,8 @@ void   arena_destroy(Arena *arena);
 void   arena_reset(Arena *arena);
 /* 64-byte aligned, zeroed; NULL when memory is out or count * size overflows. */
 void  *arena_alloc(Arena *arena, size_t count, size_t size);
+/* The same not zeroed: for what is written before it is read. */
+void  *arena_alloc_raw(Arena *arena, size_t count, size_t size);
 size_t arena_bytes(const Arena *arena);
 
 /* ---- threads: one pool -------------------------------------------------------------------- */

@@ -119,16 +119,29 @@ static void *take(Arena *arena, size_t octets)
     return memory;
 }
 
+/* *octets: what was taken. */
+static void *take_aligned(size_t *octets, Arena *arena, size_t count, size_t size)
+{
+    if (__builtin_mul_overflow(count, size, octets) || *octets > SIZE_MAX - arena_alignment) return NULL;
+    *octets = (*octets + arena_alignment - 1) & ~(size_t)(arena_alignment - 1);
+    if (*octets == 0) *octets = arena_alignment;
+
+    pthread_mutex_lock(&arena->mutex);
+    void *memory = take(arena, *octets);
+    pthread_mutex_unlock(&arena->mutex);
+    return memory;
+}
+
+void *arena_alloc_raw(Arena *arena, size_t count, size_t size)
+{
+    size_t octets;
+    return take_aligned(&octets, arena, count, size);
+}
+
 void *arena_alloc(Arena *arena, size_t count, size_t size)
 {
     size_t octets;
-    if (__builtin_mul_overflow(count, size, &octets) || octets > SIZE_MAX - arena_alignment) return NULL;
-    octets = (octets + arena_alignment - 1) & ~(size_t)(arena_alignment - 1);
-    if (octets == 0) octets = arena_alignment;
-
-    pthread_mutex_lock(&arena->mutex);
-    void *memory = take(arena, octets);
-    pthread_mutex_unlock(&arena->mutex);
+    void  *memory = take_aligned(&octets, arena, count, size);
     if (memory) memset(memory, 0, octets);
     return memory;
 }

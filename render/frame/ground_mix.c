@@ -224,6 +224,5 @@ void split_ground(Worker *w, const Job *job, int side, int most)
     hits->count = rays->count = count;
     hits->columns = rays->columns = 0;
     hits->several = true;
-    s->hits = *hits;
-    s->rays = *rays;
+    hits_copy_all(&s->hits, &s->rays, hits, rays);
 }

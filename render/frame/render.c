@@ -72,7 +72,8 @@ static Status prepare_sky(Job *job, Pool *pool, Arena *arena)
     const SkyVisibilityScene scene = {
         .gather = {job->scene.bare, job->scene.air, &world->materials, world->patches, job->scene.snapshot},
         .landscape = world->landscape, .view = &request->view, .box_px = (const double (*)[4])box_px,
-        .air_bands = bands, .skips_off = request->skips_off, .hidden_entity = request->hidden_entity};
+        .air_bands = bands, .skips_off = request->skips_off, .hidden_entity = request->hidden_entity,
+        .kept = world->sky};
     Status status = sky_visibility_create(&job->scene.sky, &scene, arena);
     for (int w = 0; w < pool_threads(pool) && status == STATUS_OK; w++)
         status = sky_worker_create(&job->worker[w]->shader.sky, job->scene.sky, arena);
@@ -191,6 +192,7 @@ static Status render_once(Picture *out, const World *world, const Snapshot *snap
     picture.times.prepare_ms = 1e3 * (wall_clock_s() - start_s);
     if (status == STATUS_OK) status = run_passes(&job, pool, arena);
     if (status == STATUS_OK) status = visibility_status(job.scene.visibility);
+    sky_visibility_close(job.scene.sky, &picture.counters.visibility);
     shade_scene_close(&job.scene);
     if (status != STATUS_OK) return status;
     if (!request->truth) picture_forget_truth(&picture);

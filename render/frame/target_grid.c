@@ -238,39 +238,35 @@ static void cell_sample(double at_px[2], const TargetGrid *f, int cell)
     at_px[1] = f->box[1] + (f->box[3] - f->box[1]) * (row + v - floor(v)) / f->rows;
 }
 
-/* visit(user, pixel of the grid's box, area) for each pixel that a cell overlaps. */
-typedef void VisitPixel(void *user, const TargetGrid *f, int pixel, int x, int y, double area);
+/* The pixels that a cell overlaps: no more than two each way, since cells are no larger than a pixel (cells_of). */
+enum { shares_most = 9 };
+typedef struct CellShares {
+    int    count, pixel[shares_most], x[shares_most], y[shares_most];
+    double area[shares_most];
+} CellShares;
 
-static void over_pixels(const TargetGrid *f, int cell, VisitPixel *visit, void *user)
+static void shares_of(CellShares *out, const TargetGrid *f, int cell)
 {
     const Span across = cell_span(f, 0, cell % f->columns), down = cell_span(f, 1, cell / f->columns);
+    out->count = 0;
     for (int y = (int)fmax(f->y0, floor(down.low)); y < f->y1 && y < down.high; y++)
         for (int x = (int)fmax(f->x0, floor(across.low)); x < f->x1 && x < across.high; x++) {
             const double area = overlap(across, x, x + 1) * overlap(down, y, y + 1);
-            if (area > 0) visit(user, f, (y - f->y0) * (f->x1 - f->x0) + x - f->x0, x, y, area);
+            if (!(area > 0) || out->count == shares_most) continue;
+            out->pixel[out->count] = (y - f->y0) * (f->x1 - f->x0) + x - f->x0;
+            out->x[out->count] = x, out->y[out->count] = y;
+            out->area[out->count++] = area;
         }
 }
 
-typedef struct Splat {
-    double *sum, value;
-} Splat;
-
-static void splat_pixel(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
+static void add_value(double *sum, const CellShares *s, double value)
 {
-    (void)f, (void)x, (void)y;
-    const Splat *splat = user;
-    splat->sum[pixel] += area * splat->value;
+    for (int k = 0; k < s->count; k++) sum[s->pixel[k]] += s->area[k] * value;
 }
 
-/* Distributes the samples' values of a plane to the pixels. */
-static void splat(TargetGrid *f, const int *cell, int count, const float *value, int plane)
+static void add_area(double *sum, const CellShares *s)
 {
-    for (int i = 0; i < count; i++) {
-        Splat of = {f->sum[plane], value[i]};
-        over_pixels(f, cell[i], splat_pixel, &of);
-        if (f->cell[plane]) f->cell[plane][cell[i]] = value[i], f->met[cell[i]] = true;
-        f->square[plane] += cell_area(f, cell[i]) * value[i] * value[i];
-    }
+    for (int k = 0; k < s->count; k++) sum[s->pixel[k]] += s->area[k];
 }
 
 /* ---- sampling ------------------------------------------------------------------------------- */
@@ -281,10 +277,8 @@ typedef struct TruthSample {
     double         at_px[2];
 } TruthSample;
 
-static void offer_truth(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
+static void offer_truth(const TruthSample *t, const TargetGrid *f, int pixel, int x, int y)
 {
-    (void)area;
-    const TruthSample *t = user;
     const double       dx = t->at_px[0] - x - 0.5, dy = t->at_px[1] - y - 0.5, square_px = dx * dx + dy * dy;
     TargetGridTruth    *to = &f->truth[pixel];
     const Samples     *s = t->s;
@@ -293,12 +287,6 @@ static void offer_truth(void *user, const TargetGrid *f, int pixel, int x, int y
                            .temp_k = s->temp_k[t->sample], .part = s->hits.part[t->sample],
                            .material = s->hits.material[t->sample]};
     for (int k = 0; k < 3; k++) to->normal[k] = s->hits.n_enu[k][t->sample];
-}
-
-static void grow_amodal(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
-{
-    (void)f, (void)pixel, (void)area;
-    grow_pixel_box(user, x, y);
 }
 
 /* Compacts the cells whose ray would meet the target if it were alone in the world: no other ray is traced, and the target
@@ -337,8 +325,10 @@ static void count_hidden(TargetGrid *f, Worker *w, const Job *job, const int *ce
     for (int i = 0; i < hits->count; i++) {
         if (!w->meets[i]) continue;
         const double area = cell_area(f, cell[i]);
+        CellShares   shares;
         f->amodal += area;
-        over_pixels(f, cell[i], grow_amodal, f->amodal_box);
+        shares_of(&shares, f, cell[i]);
+        for (int k = 0; k < shares.count; k++) grow_pixel_box(f->amodal_box, shares.x[k], shares.y[k]);
         if (hits->entity[i] == id) continue;
         if (hits->entity[i]) {
             f->hidden_entity += area;
@@ -376,12 +366,6 @@ static int part_samples(const TargetGrid *f, Worker *w, const Job *job, int *cel
     return kept;
 }
 
-static void add_area(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
-{
-    (void)f, (void)x, (void)y;
-    ((double *)user)[pixel] += area;
-}
-
 static void light_cells(const TargetGrid *f, Worker *w, const Job *job, const int *cell)
 {
     Samples *s = &w->samples;
@@ -392,20 +376,16 @@ static void light_cells(const TargetGrid *f, Worker *w, const Job *job, const in
     samples_light(&w->shader, &job->scene, s);
 }
 
-static void find_shown(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
-{
-    (void)x, (void)y, (void)area;
-    if (f->area[pixel] > 0) *(bool *)user = true;
-}
-
 /* Light of the cells that something hides, into the pixels that show some of the target. */
 static void shade_hidden(TargetGrid *f, Worker *w, const Job *job, int *cell)
 {
     Samples *s = &w->samples;
     int      kept = 0;
     for (int i = 0; i < w->hits.count; i++) {
-        bool shown = false;
-        over_pixels(f, cell[i], find_shown, &shown);
+        CellShares shares;
+        bool       shown = false;
+        shares_of(&shares, f, cell[i]);
+        for (int k = 0; k < shares.count; k++) shown |= f->area[shares.pixel[k]] > 0;
         if (!shown) continue;
         cell[kept] = cell[i];
         hits_copy(&s->hits, &s->rays, kept++, &w->hits, &w->rays, i);
@@ -413,14 +393,15 @@ static void shade_hidden(TargetGrid *f, Worker *w, const Job *job, int *cell)
     s->hits.count = s->rays.count = kept;
     if (kept == 0) return;
     light_cells(f, w, job, cell);
-    for (int plane = 0; plane < picture_plane_count; plane++) {
-        const float *value = block_values(w, job, plane);
-        for (int i = 0; value && i < kept; i++) {
-            Splat of = {f->before_sum[plane], value[i]};
-            over_pixels(f, cell[i], splat_pixel, &of);
-        }
+    const float *value[picture_plane_count];
+    for (int plane = 0; plane < picture_plane_count; plane++) value[plane] = block_values(w, job, plane);
+    for (int i = 0; i < kept; i++) {
+        CellShares shares;
+        shares_of(&shares, f, cell[i]);
+        for (int plane = 0; plane < picture_plane_count; plane++)
+            if (value[plane]) add_value(f->before_sum[plane], &shares, (double)value[plane][i]);
+        add_area(f->before, &shares);
     }
-    for (int i = 0; i < kept; i++) over_pixels(f, cell[i], add_area, f->before);
 }
 
 /* Light of the samples that met the target, into its cells, its pixels and its sums. */
@@ -429,20 +410,27 @@ static void shade_cells(TargetGrid *f, Worker *w, const Job *job, const int *cel
     Samples *s = &w->samples;
     ask_smoke(w, job, f->box);
     light_cells(f, w, job, cell);
-    for (int plane = 0; plane < picture_plane_count; plane++) {
-        const float *value = block_values(w, job, plane);
-        if (value) splat(f, cell, count, value, plane);
-    }
+    const float *value[picture_plane_count];
+    for (int plane = 0; plane < picture_plane_count; plane++) value[plane] = block_values(w, job, plane);
     for (int i = 0; i < count; i++) {
+        CellShares shares;
+        shares_of(&shares, f, cell[i]);
         w->area_px[i] = cell_area(f, cell[i]);
+        for (int plane = 0; plane < picture_plane_count; plane++) {
+            if (!value[plane]) continue;
+            const float v = value[plane][i];
+            add_value(f->sum[plane], &shares, (double)v);
+            if (f->cell[plane]) f->cell[plane][cell[i]] = v, f->met[cell[i]] = true;
+            f->square[plane] += w->area_px[i] * v * v;
+        }
         f->visible += w->area_px[i];
         for (int b = 0; b < BAND_COUNT; b++)
             f->veiled[b] += w->area_px[i] * samples_smoke_taken(s, job->rules.smoke_channel[b], i);
-        over_pixels(f, cell[i], add_area, f->area);
+        add_area(f->area, &shares);
         if (!f->truth) continue;
         TruthSample truth = {.s = s, .sample = i};
         cell_sample(truth.at_px, f, cell[i]);
-        over_pixels(f, cell[i], offer_truth, &truth);
+        for (int k = 0; k < shares.count; k++) offer_truth(&truth, f, shares.pixel[k], shares.x[k], shares.y[k]);
     }
     if (s->radar && job->request->profile_bins > 0)
         target_sums_profile(&w->sums, &job->rules, job->request, s, w->area_px);

@@ -1,6 +1,7 @@
 /* render/frame/world.c: opens the tables and the tracer once. */
 #include "render/frame/world.h"
 
+#include "render/light/sky_kept.h"
 #include "render/parts/parts.h"
 
 #include <stdlib.h>
@@ -23,6 +24,7 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
     if (status == STATUS_OK) status = part_table_open(&world.parts, parts, machines);
     if (status == STATUS_OK && !(world.patches = calloc(1, sizeof *world.patches))) status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = patch_set_create(world.patches, catalog_model_count(catalog));
+    if (status == STATUS_OK) status = sky_kept_create(&world.sky, sky_kept_octets);
     if (status == STATUS_OK) status = detail_table_open(&world.detail, detail, detail_cut_off);
     PlanckTable **const planck[2] = {&world.planck_mwir, &world.planck_lwir};
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
@@ -79,6 +81,7 @@ void world_close(World *world)
     materials_close(&world->materials);
     if (world->patches) patch_set_destroy(world->patches);
     free(world->patches);
+    sky_kept_destroy(world->sky);
     tracer_destroy(world->tracer);
     memset(world, 0, sizeof *world);
 }

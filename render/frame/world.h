@@ -32,6 +32,7 @@ typedef struct World {
     struct HeatDrive *drive;         /* of heat */
     PartTable        parts;          /* what is behind the skin of parts */
     PatchSet        *patches;        /* of the models that have been seen with temperatures */
+    struct SkyKept  *sky;            /* what frames leave for the next (render/light/sky_kept.h) */
 } World;
 
 /* frame: the landscape's, or any where there is none. */

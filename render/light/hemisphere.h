@@ -23,6 +23,8 @@ typedef struct HemisphereScene {
     const Snapshot   *snapshot;
 } HemisphereScene;
 
+struct SkyNotes; /* render/light/sky_kept.h */
+
 typedef struct HemisphereLight {
     float w_m2[AIR_BAND_COUNT][hits_capacity]; /* irradiance on the hit's own shading normal; 0 for sky. Of leaves: and
                                                 * that on their far side, material_through of it */
@@ -36,17 +38,21 @@ void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const 
 /* Change of the light of open sky and level, sunlit ground at a point by nearby parts and shadows. */
 typedef struct HemisphereChange {
     float w_m2[AIR_BAND_COUNT]; /* irradiance, exact less open; of the bands requested, else 0 */
-    float blocked, sunlit;      /* shares of its directions that meet something, and that meet sunlit surfaces */
+    float blocked, sunlit;      /* shares of its directions that meet something, and that meet sunlit surfaces; the
+                                 * latter of points on the ground, or where a band needs it */
     float inside;               /* of those that met parts, the share met from within: a point inside a body has 1 */
 } HemisphereChange;
 
-/* out[hits->count]. Only what is nearer than reach_m counts, and of the listed entities alone, which must include
- * all of those; points on the ground are sampled only towards entities within whose own reach, list_reach_m[listed]
+enum { hemisphere_change_bounces = 3 };
+
+/* out[hits->count]. At each bounce only what is nearer than reach_m counts, and of the listed entities alone, which must
+ * include all that bounces times that far; points on the ground are sampled only towards entities within whose own reach, list_reach_m[listed]
  * beyond their sphere, they lie. From points on the ground the ground is not traced: only parts change their light.
+ * notes: where meetings are kept (render/light/sky_kept.h), the same bits; NULL: nowhere.
  * Three bounces; the open form is subtracted direction by direction, so that points with an unobstructed sky get 0,
  * without noise. The bright ring about the sun has separate directions, since it would cause most of the noise. */
 void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits, unsigned bands, int samples,
-                   double reach_m, const double *list_reach_m, const uint64_t *key, const int *list, int listed,
-                   VisibilityCounters *counters);
+                       double reach_m, const double *list_reach_m, const uint64_t *key, const int *list, int listed,
+                       struct SkyNotes *notes, VisibilityCounters *counters);
 
 #endif

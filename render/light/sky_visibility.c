@@ -47,7 +47,7 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
     for (int k = 0; k <= coarsest_log2_m + lattice_steps; k++) v->cells_per_m[k] = ldexp(1, lattice_steps - k);
     v->cached_key  = arena_alloc(arena, cached_slots, sizeof *v->cached_key);
     v->cached_done = arena_alloc(arena, cached_slots, sizeof *v->cached_done);
-    v->kept      = arena_alloc(arena, cached_slots, sizeof *v->kept);
+    v->kept      = arena_alloc_raw(arena, cached_slots, sizeof *v->kept);
     if (!v->entity || !v->cached_key || !v->cached_done || !v->kept) return STATUS_NO_MEMORY;
     for (int k = 0, at = 0; k < v->count; k++) {
         if (isnan(scene->box_px[k][0])) continue;
@@ -61,8 +61,16 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         v->level_w_m2[b] = b >= AIR_MWIR ? scene->gather.air->light.ground_w_m2_sr[b] * pi_rad
                                          : optical_ground_w_m2(b, scene->gather.air, scene->gather.materials);
-    *out = v;
-    return sky_entities_tasks(v, arena);
+    Status status = sky_entities_tasks(v, arena);
+    if (status == STATUS_OK && skips(scene->skips_off, SKIP_KEPT))
+        status = sky_kept_begin(&v->keeper, scene->kept, scene->gather.visibility, (uint64_t)(uintptr_t)scene->landscape, arena);
+    if (status == STATUS_OK) *out = v;
+    return status;
+}
+
+void sky_visibility_close(SkyVisibility *v, VisibilityCounters *counters)
+{
+    if (v) counters->skipped[SKIP_KEPT] += sky_kept_end(v->keeper);
 }
 
 /* ---- keys of sample points ------------------------------------------------------------------------ */
@@ -85,10 +93,13 @@ Status sky_worker_create(SkyWorker **out, const SkyVisibility *v, Arena *arena)
 {
     SkyWorker *w = *out = arena_alloc(arena, 1, sizeof *w);
     if (!w) return STATUS_NO_MEMORY;
+    w->slot       = arena_alloc_raw(arena, known_slots, sizeof *w->slot);
+    w->slot_block = arena_alloc(arena, known_slots, sizeof *w->slot_block);
     w->near = arena_alloc(arena, (size_t)v->count + 1, sizeof *w->near);
     w->near_reach_m = arena_alloc(arena, (size_t)v->count + 1, sizeof *w->near_reach_m);
     w->near_step    = arena_alloc(arena, (size_t)v->count + 1, sizeof *w->near_step);
-    return w->near && w->near_reach_m && w->near_step ? STATUS_OK : STATUS_NO_MEMORY;
+    if (!w->slot || !w->slot_block || !w->near || !w->near_reach_m || !w->near_step) return STATUS_NO_MEMORY;
+    return v->keeper ? sky_notes_create(&w->notes, v->keeper, arena) : STATUS_OK;
 }
 
 static uint64_t scramble(uint64_t key)
@@ -133,13 +144,14 @@ static void keep(const SkyVisibility *v, uint64_t key, const SkyAnswer *place)
 static const SkySlot *slot_of(SkyWorker *w, const SkyVisibility *v, uint64_t key)
 {
     for (uint64_t at = scramble(key);; at++) {
-        SkySlot *s = &w->slot[at & (known_slots - 1)];
-        if (s->block == w->block && s->key == key) return s;
-        if (s->block == w->block) continue;
-        s->block = w->block;
+        const size_t k = at & (known_slots - 1);
+        SkySlot     *s = &w->slot[k];
+        if (w->slot_block[k] == w->block && s->key == key) return s;
+        if (w->slot_block[k] == w->block) continue;
+        w->slot_block[k] = w->block;
         s->key   = key;
         s->known = find_cached(&s->place, v, key);
-        if (!s->known) w->queue[w->queued++] = (int)(at & (known_slots - 1));
+        if (!s->known) w->queue[w->queued++] = (int)k;
         return s;
     }
 }
@@ -178,7 +190,7 @@ static void ask_ground(SkyWorker *w, const SkyVisibility *v, const int *slots, i
         place_ground(places, i, v, w->key[i]);
     }
     hemisphere_change(w->change, &v->scene.gather, places, v->scene.air_bands, ground_directions, look_m,
-                  w->near_reach_m, w->key, list, listed, &unused);
+                      w->near_reach_m, w->key, list, listed, w->notes, &unused);
     for (int i = 0; i < count; i++) {
         SkySlot     *s = &w->slot[slots[i]];
         const double n_enu[3] = {places->n_enu[0][i], places->n_enu[1][i], places->n_enu[2][i]};
@@ -375,7 +387,7 @@ bool sky_visibility_open(SkyOpen *out, const SkyVisibility *v, SkyWorker *w, con
     }
     if (skips(v->scene.skips_off, SKIP_LIGHT)) counters->skipped[SKIP_LIGHT] += (uint64_t)left;
     /* a corner lies within a cell of its hit */
-    near_count = sky_list_near(w, v, near_box, look_m + 32, false);
+    near_count = sky_list_near(w, v, near_box, paths_m + 32, false);
 
     w->block++;
     while (left > 0) {

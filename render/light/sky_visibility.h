@@ -12,7 +12,8 @@
  *             most 48 x 48, computed when a hit first needs one of them, by all threads that do; a hit takes those
  *             about it that face its way. The grid moves with the entity
  *
- * The value of a point depends on the scene and the view only, so it is the same whichever thread computes it. The
+ * The value of a point depends on the scene and the view only, so it is the same whichever thread computes it. What its
+ * paths meet is kept from frame to frame while nothing near moves (render/light/sky_kept.h); its light never. The
  * ground is treated only within reach of an entity: beyond, it hides less than 2 % of a level plane's sky. Sky hidden
  * by terrain is not included, and mirror reflections are unaffected.
  *
@@ -22,6 +23,7 @@
 #define RENDER_LIGHT_SKY_VISIBILITY_H
 
 #include "render/light/hemisphere.h"
+#include "render/light/sky_kept.h"
 #include "render/scene/view.h"
 #include "terrain/landscape/landscape.h"
 
@@ -36,11 +38,14 @@ typedef struct SkyVisibilityScene {
     unsigned         air_bands;   /* 1 << AirBand: all that the frame may need */
     unsigned         skips_off;
     int              hidden_entity; /* index of the entity whose parts the eye does not see; -1: none */
+    SkyKept         *kept;        /* of earlier frames, over the same ground and materials; NULL: none */
 } SkyVisibilityScene;
 
 /* The scene's parts must outlive it. STATUS_NO_MEMORY: of the arena. */
 Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scene, Arena *arena);
 Status sky_worker_create(SkyWorker **out, const SkyVisibility *v, Arena *arena);
+/* When its threads are done: what they found is kept. Accepts NULL. */
+void   sky_visibility_close(SkyVisibility *v, VisibilityCounters *counters);
 
 /* Evaluates the points on every entity beforehand, in so many tasks for a pool; hits ask for those of entities that they
  * show otherwise. The same bits. */

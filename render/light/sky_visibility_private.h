@@ -14,6 +14,9 @@ enum {
     coarsest_log2_m = 4,
 };
 static const double look_m = 50;          /* farther objects do not change the light of a point */
+/* Whatever a path from a point may meet at any of its bounces is within this: the light of a point must not depend on the
+ * block of hits that it was computed for. */
+static const double paths_m = hemisphere_change_bounces * 50; /* x look_m */
 
 /* Result of a point. */
 typedef struct SkyAnswer {
@@ -49,6 +52,7 @@ struct SkyVisibility {
     int                tasks;
     double             px_rad;
     double             level_w_m2[AIR_BAND_COUNT]; /* of open, level ground */
+    SkyKeptFrame      *keeper;    /* NULL: nothing is kept for other frames */
     _Atomic uint64_t  *cached_key;  /* [cached_slots]; 0: free */
     _Atomic uint8_t   *cached_done; /* [cached_slots]: 1: the place may be read */
     SkyAnswer         *kept;
@@ -56,7 +60,6 @@ struct SkyVisibility {
 
 typedef struct SkySlot {
     uint64_t key;
-    uint32_t block;  /* number of the block in which it was written: others are free */
     bool     known;
     SkyAnswer place;
 } SkySlot;
@@ -87,7 +90,8 @@ typedef struct SkyEnd {
 struct SkyWorker {
     SkyEnd       end;
     SkyCell      cell[coarsest_log2_m + lattice_steps + 1];
-    SkySlot      slot[known_slots];
+    SkySlot     *slot;       /* [known_slots] */
+    uint32_t    *slot_block; /* [known_slots]: number of the block in which it was written: others are free */
     uint32_t     block;
     int          queue[known_slots], queued; /* slots to be evaluated */
     SkyHit       hit[hits_capacity];
@@ -95,6 +99,7 @@ struct SkyWorker {
     Rays         rays;
     uint64_t     key[hits_capacity];
     HemisphereChange change[hits_capacity];
+    SkyNotes    *notes;      /* NULL: nothing is kept */
     int         *near;       /* [entities] */
     double      *near_reach_m; /* of each: distance from its box within which the ground is treated */
     int8_t      *near_step;  /* of each: first_step_of */

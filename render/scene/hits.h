@@ -75,6 +75,40 @@ static inline void hits_copy(Hits *hits, Rays *rays, int to, const Hits *from_hi
     }
 }
 
+/* All of them, of several returns a ray: no more rows than there are. */
+static inline void hits_copy_all(Hits *hits, Rays *rays, const Hits *from_hits, const Rays *from_rays)
+{
+    const size_t n = (size_t)from_hits->count;
+#define COPY_ROWS(to, from) memcpy(to, from, n * sizeof *(to))
+    hits->count = from_hits->count, hits->columns = from_hits->columns, hits->several = from_hits->several;
+    rays->count = from_rays->count, rays->columns = from_rays->columns;
+    COPY_ROWS(hits->ray, from_hits->ray);
+    COPY_ROWS(hits->weight, from_hits->weight);
+    COPY_ROWS(hits->range_m, from_hits->range_m);
+    COPY_ROWS(hits->kind, from_hits->kind);
+    COPY_ROWS(hits->material, from_hits->material);
+    COPY_ROWS(hits->facet, from_hits->facet);
+    COPY_ROWS(hits->entity, from_hits->entity);
+    COPY_ROWS(hits->part, from_hits->part);
+    COPY_ROWS(hits->model, from_hits->model);
+    COPY_ROWS(hits->inside, from_hits->inside);
+    COPY_ROWS(hits->surface, from_hits->surface);
+    COPY_ROWS(hits->plant, from_hits->plant);
+    COPY_ROWS(hits->albedo, from_hits->albedo);
+    COPY_ROWS(hits->radius_m, from_hits->radius_m);
+    COPY_ROWS(hits->open_up, from_hits->open_up);
+    COPY_ROWS(hits->open_down, from_hits->open_down);
+    COPY_ROWS(rays->far_m, from_rays->far_m);
+    for (int k = 0; k < 3; k++) {
+        COPY_ROWS(hits->p_enu[k], from_hits->p_enu[k]);
+        COPY_ROWS(hits->n_geo[k], from_hits->n_geo[k]);
+        COPY_ROWS(hits->n_enu[k], from_hits->n_enu[k]);
+        COPY_ROWS(rays->o_enu[k], from_rays->o_enu[k]);
+        COPY_ROWS(rays->d_enu[k], from_rays->d_enu[k]);
+    }
+#undef COPY_ROWS
+}
+
 /* The traced ray of a hit; and the hit's share of that ray's light. */
 static inline int   hit_ray(const Hits *hits, int i) { return hits->several ? hits->ray[i] : i; }
 static inline float hit_weight(const Hits *hits, int i) { return hits->several ? hits->weight[i] : 1; }

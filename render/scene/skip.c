@@ -19,6 +19,7 @@ static const struct {
     [SKIP_SMOKE]         = {"smoke", "smoke and dust outside a block of pixels: block-volume pairs"},
     [SKIP_LIGHT]         = {"light", "light of places near vehicles, asked for once a frame: hits that may share it"},
     [SKIP_TREE]          = {"tree", "entities left out by the tree of their spheres: block-entity, ray-entity pairs"},
+    [SKIP_KEPT]          = {"kept", "what paths from sample points meet, kept from earlier frames: points"},
 };
 
 const char *skip_name(Skip skip) { return rows[skip].name; }

@@ -24,6 +24,7 @@ typedef enum Skip {
     SKIP_SMOKE,         /* smoke and dust that a block of pixels cannot see */
     SKIP_LIGHT,         /* light of sample points that a neighbouring hit has computed already in this frame, or none needs */
     SKIP_TREE,          /* entities that the tree of their spheres leaves out: blocks, rays, sun rays, places near */
+    SKIP_KEPT,          /* paths from sample points whose meetings an earlier frame left (render/light/sky_kept.h) */
     SKIP_COUNT
 } Skip;
 

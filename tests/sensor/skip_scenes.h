@@ -102,7 +102,7 @@ static inline void keeps_the_bits(int n)
     char                hash[sha256_text_size], other[sha256_text_size], what[64];
     place_all(n);
     TrialFrame frame = {.scene = &stage.scene, .request = request_of(n), .pool = stage.pool, .arena = stage.arena};
-    trial_frame(&frame);
+    for (int k = 0; k < 3; k++) trial_frame(&frame); /* what stood in the second is kept in the third */
     assert_int_equal(frame.status, STATUS_OK);
     assert_int_equal(trial_frame_hash(hash, &frame), STATUS_OK);
     memcpy(target, frame.picture.target, (size_t)frame.snapshot.count * sizeof *target);
