@@ -25,7 +25,7 @@ Status elevation_import_open(Import *m)
         Raster         *raster = &m->set.raster[k];
         Grid           *g = &m->grid[k];
         ElevationSurvey survey;
-        status = elevation_survey(&survey, raster, key, m->pool);
+        const Status status = elevation_survey(&survey, raster, key, m->pool);
         if (status != STATUS_OK) return status;
         g->raster      = raster;
         g->units[0]    = raster->posting_m[0];

@@ -19,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 void *__libc_malloc(size_t size);
@@ -28,10 +29,11 @@ void *__libc_memalign(size_t alignment, size_t size);
 void _ZSt17__throw_bad_allocv(void) __attribute__((noreturn)); /* of libstdc++ */
 #pragma weak _ZSt17__throw_bad_allocv
 
-enum { depth_most = 4, unwound_most = 24, places_most = 1 << 16 };
+/* list_octets: lines, then zeros; where the next line goes at the end. */
+enum { list_octets = 1 << 21, depth_most = 4, unwound_most = 24, places_most = 1 << 16 };
 
 static uintptr_t       base, text_begin, text_end;
-static int             list = -1;
+static char           *list;      /* FILE in memory, shared by all processes: one that is confined may write no file */
 static uint64_t        chosen;
 static bool            has_chosen, stays;
 static atomic_bool     failed;
@@ -58,7 +60,14 @@ __attribute__((constructor)) static void begin(void)
     const char *path = getenv("FAIL_ALLOC_LIST"), *place = getenv("FAIL_ALLOC");
     busy = true;
     backtrace(warm, 2); /* loads what it needs, which allocates */
-    if (path) list = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    if (path) {
+        const int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+        void     *shared = file >= 0 && ftruncate(file, list_octets) == 0
+                               ? mmap(NULL, list_octets, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0) : MAP_FAILED;
+        if (shared == MAP_FAILED) abort();
+        close(file);
+        list = shared;
+    }
     if (place) {
         chosen = strtoull(place, NULL, 16);
         has_chosen = true;
@@ -70,7 +79,10 @@ __attribute__((constructor)) static void begin(void)
 
 static void say(const char *line, int length)
 {
-    if (list >= 0 && write(list, line, (size_t)length) != length) abort();
+    if (!list || length <= 0) return;
+    const uint64_t at = atomic_fetch_add((_Atomic uint64_t *)(void *)(list + list_octets - sizeof(uint64_t)), (uint64_t)length);
+    if (at + (uint64_t)length > list_octets - sizeof(uint64_t)) abort();
+    memcpy(list + at, line, (size_t)length);
 }
 
 /* False when this place was met before. */

@@ -62,7 +62,7 @@ one() {
         1) grep -q memory stderr || echo "$1 $2: ended with 1 and did not say of memory: $(tail -n 1 stderr)" ;;
         *) echo "$1 $2: ended with $code: $(tail -n 1 stderr)" ;;
     esac
-    grep -qs '^failed' list || echo "$1 $2: the place was not met again"
+    grep -aqs '^failed' list || echo "$1 $2: the place was not met again"
     cd "$tmp" && rm -rf "$folder"
 }
 export -f pv command_of outcome row_says_why one
@@ -94,7 +94,7 @@ head -n "$chosen" "$tmp/places/each" | xargs -P "$(nproc)" -L 1 bash -c 'one "$@
 checks=$((checks + chosen))
 while read -r line; do
     fail "$line"
-    grep -h "^$(awk '{ print $2 }' <<<"${line/:/}") " "$tmp"/list-* | head -n 1 | cut -d ' ' -f 2- |
+    grep -ah "^$(awk '{ print $2 }' <<<"${line/:/}") " "$tmp"/list-* | head -n 1 | cut -d ' ' -f 2- |
         xargs addr2line -f -s -i -e "$pitviper" 2>/dev/null | grep -v '^??' | tr '\n' ' '
     echo
 done <"$tmp/wrong"

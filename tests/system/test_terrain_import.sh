@@ -17,7 +17,7 @@ few=(--horizon 1 --threads 2)
 
 run terrain import "$tmp/west.asc" "$tmp/east.asc" -o "$tmp/a.store" "${few[@]}"
 check "two sheets: exit code" [ $code = 0 ]
-check "two sheets: what there is to do comes first" eval 'head -n 1 "$tmp/stdout" | grep -qE "^to do: [0-9.]+ M posts, .* M pixels to read; [0-9.]+ GB to write"'
+check "two sheets: what there is to do comes first" eval 'head -n 6 "$tmp/stdout" | grep -qE "^to do: [0-9.]+ M posts, .* M pixels to read; [0-9.]+ GB to write"'
 check "two sheets: posts and files" said 'M posts, .* from 2 files'
 check "two sheets: error against the files" said 'resampling: .*rms'
 check "two sheets: the hole is counted" said 'voids: [1-9][0-9]* posts filled'
