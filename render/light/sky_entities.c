@@ -147,12 +147,12 @@ static void leave_eye(Rays *rays, int i, const View *view, const double at_px[2]
     rays->far_m[i] = INFINITY;
 }
 
-/* Parallel rays from beside the body. */
+/* Parallel rays from look_m beside the body. */
 static void leave_body(Rays *rays, int i, const SkyEntity *e, const PosedEntity *posed, const double at_m[2])
 {
     double to_centre[3];
     v3_sub(to_centre, posed->centre_enu, posed->p_enu);
-    const double away_m = v3_dot(to_centre, e->from_enu) + posed->radius_m + 1;
+    const double away_m = v3_dot(to_centre, e->from_enu) + posed->radius_m + look_m;
     for (int c = 0; c < 3; c++) {
         rays->o_enu[c][i] = posed->p_enu[c] + at_m[0] * e->across_enu[0][c] + at_m[1] * e->across_enu[1][c] +
                             away_m * e->from_enu[c];
@@ -182,12 +182,16 @@ static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
         if (e->of_body) leave_body(rays, i, e, visibility_posed(scene->visibility, index), at);
         else leave_eye(rays, i, view, at);
     }
+    if (skips(v->scene.skips_off, SKIP_LIGHT))
+        count = keep_meeting(rays, point, scene->visibility, index, !skips(v->scene.skips_off, SKIP_PART));
+    if (count == 0) return;
     if (e->of_body) {
-        visibility_first_part(met, scene->visibility, rays, &index, 1, &unused);
+        /* what stands before it from there hides points of it */
+        const double *c = visibility_posed(scene->visibility, index)->centre_enu;
+        const int     near = visibility_near(w->near, scene->visibility, c, c,
+                                             look_m + 2 * visibility_posed(scene->visibility, index)->radius_m);
+        visibility_first_part(met, scene->visibility, rays, w->near, near, &unused);
     } else {
-        if (skips(v->scene.skips_off, SKIP_LIGHT))
-            count = keep_meeting(rays, point, scene->visibility, index, !skips(v->scene.skips_off, SKIP_PART));
-        if (count == 0) return;
         /* those that the rows of these points may see: with many entities a fraction of all */
         const double y_px = e->low[1] + e->step[1] * (point[0] / e->columns),
                      end_px = e->low[1] + e->step[1] * (point[count - 1] / e->columns + 1);
