@@ -8,7 +8,60 @@
 
 enum { grid_directions = 28 /* a point */, grid_least = 3, grid_most = 48 /* places over an entity's box, a side */ };
 enum { task_places = 32 }; /* points that are traced together */
+enum { aspect_bins = 12 };  /* a quarter of the way round: 5 to 10 degrees each */
 static const double grid_px = 2.75;
+
+/* Middle of the bin of a direction: a cube about it has so many a side on each face. Exact operations alone: the same on
+ * every machine. */
+static void middle_of_bin(double out[3], const double d[3])
+{
+    int axis = 0;
+    for (int c = 1; c < 3; c++)
+        if (fabs(d[c]) > fabs(d[axis])) axis = c;
+    for (int c = 0; c < 3; c++) {
+        const double at = floor(0.5 * (d[c] / fabs(d[axis]) + 1) * aspect_bins);
+        out[c] = (clamp(at, 0, aspect_bins - 1) + 0.5) * 2 / aspect_bins - 1;
+    }
+    out[axis] = d[axis] < 0 ? -1 : 1;
+    v3_normalize(out, out);
+}
+
+/* The nearest of 2^(n / 2). */
+static double nearest_step(double x)
+{
+    int          exponent;
+    const double half = frexp(x * 1.1892071150027210667, &exponent);
+    return ldexp(half < 0.70710678118654752 ? 0.5 : 0.70710678118654752, exponent);
+}
+
+/* A grid that stands on the entity's body while the eye stays within a bin of aspects and of distances. */
+static void grid_of_body(SkyEntity *e, const SkyVisibility *v, const PosedEntity *posed, const double offset_enu[3])
+{
+    double towards[3], from[3], across[2][3], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    m3_tmul_v3(towards, posed->r_enu_from_body, offset_enu);
+    v3_scale(towards, -1, towards);
+    middle_of_bin(from, towards);
+    across[0][0] = from[1], across[0][1] = -from[0], across[0][2] = 0; /* level */
+    if (!(v3_dot(across[0], across[0]) > 1e-6)) across[0][0] = 1, across[0][1] = 0;
+    v3_normalize(across[0], across[0]);
+    v3_cross(across[1], from, across[0]);
+    for (int corner = 0; corner < 8; corner++)
+        for (int k = 0; k < 2; k++) {
+            double at = 0;
+            for (int c = 0; c < 3; c++) at += across[k][c] * (corner >> c & 1 ? posed->box_high[c] : posed->box_low[c]);
+            low[k] = fmin(low[k], at), high[k] = fmax(high[k], at);
+        }
+    const double pitch_m = nearest_step(fmax(v3_length(offset_enu), 1) * v->px_rad * grid_px);
+    e->of_body = true;
+    e->columns = (int)clamp(ceil((high[0] - low[0]) / pitch_m), grid_least, grid_most);
+    e->rows    = (int)clamp(ceil((high[1] - low[1]) / pitch_m), grid_least, grid_most);
+    for (int k = 0; k < 2; k++) {
+        e->low[k] = low[k], e->step[k] = (high[k] - low[k]) / (k == 0 ? e->columns : e->rows);
+        m3_mul_v3(e->across_enu[k], posed->r_enu_from_body, across[k]);
+    }
+    m3_mul_v3(e->from_enu, posed->r_enu_from_body, from);
+    e->pitch_m = fmax(e->step[0], e->step[1]);
+}
 
 Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity *posed, const double box_px[4],
                         Arena *arena)
@@ -19,11 +72,15 @@ Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity
     double       offset_enu[3];
     if (!(x1 > x0 && y1 > y0)) return STATUS_OK;
     v3_sub(offset_enu, posed->centre_enu, view->p_enu);
-    e->columns = (int)clamp(ceil((x1 - x0) / grid_px), grid_least, grid_most);
-    e->rows    = (int)clamp(ceil((y1 - y0) / grid_px), grid_least, grid_most);
-    e->x0_px = x0, e->y0_px = y0;
-    e->step_px[0] = (x1 - x0) / e->columns, e->step_px[1] = (y1 - y0) / e->rows;
-    e->pitch_m = fmax(v3_length(offset_enu), 1) * v->px_rad * fmax(e->step_px[0], e->step_px[1]);
+    if (fmax(box_px[2] - box_px[0], box_px[3] - box_px[1]) <= grid_most * grid_px) {
+        grid_of_body(e, v, posed, offset_enu);
+    } else {
+        e->columns = (int)clamp(ceil((x1 - x0) / grid_px), grid_least, grid_most);
+        e->rows    = (int)clamp(ceil((y1 - y0) / grid_px), grid_least, grid_most);
+        e->low[0] = x0, e->low[1] = y0;
+        e->step[0] = (x1 - x0) / e->columns, e->step[1] = (y1 - y0) / e->rows;
+        e->pitch_m = fmax(v3_length(offset_enu), 1) * v->px_rad * fmax(e->step[0], e->step[1]);
+    }
     const size_t spots = (size_t)(e->columns * e->rows) + 8;
     bool         got = (e->spot.factor = arena_alloc(arena, spots, sizeof *e->spot.factor)) != NULL;
     for (int k = 0; k < spot_values; k++)
@@ -82,6 +139,28 @@ static int keep_meeting(Rays *rays, int point[task_places], const Visibility *v,
     return rays->count = kept;
 }
 
+static void leave_eye(Rays *rays, int i, const View *view, const double at_px[2])
+{
+    double d_enu[3];
+    view_ray(d_enu, view, at_px[0], at_px[1]);
+    for (int c = 0; c < 3; c++) rays->o_enu[c][i] = view->p_enu[c], rays->d_enu[c][i] = d_enu[c];
+    rays->far_m[i] = INFINITY;
+}
+
+/* Parallel rays from look_m beside the body. */
+static void leave_body(Rays *rays, int i, const SkyEntity *e, const PosedEntity *posed, const double at_m[2])
+{
+    double to_centre[3];
+    v3_sub(to_centre, posed->centre_enu, posed->p_enu);
+    const double away_m = v3_dot(to_centre, e->from_enu) + posed->radius_m + look_m;
+    for (int c = 0; c < 3; c++) {
+        rays->o_enu[c][i] = posed->p_enu[c] + at_m[0] * e->across_enu[0][c] + at_m[1] * e->across_enu[1][c] +
+                            away_m * e->from_enu[c];
+        rays->d_enu[c][i] = -e->from_enu[c];
+    }
+    rays->far_m[i] = INFINITY;
+}
+
 /* Traces the visible surface of the entity at some points of its grid, and computes the light there. */
 static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
 {
@@ -95,25 +174,32 @@ static void ask_points(const SkyVisibility *v, SkyWorker *w, int task)
     Hits               *met = &w->met, *places = &w->places;
     int                 of[task_places], point[task_places], count = all - first < task_places ? all - first : task_places;
     double              box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (int i = 0; i < count; i++) {
-        double d_enu[3];
-        view_ray(d_enu, view, e->x0_px + e->step_px[0] * ((first + i) % e->columns + 0.5),
-                 e->y0_px + e->step_px[1] * ((first + i) / e->columns + 0.5));
-        for (int c = 0; c < 3; c++) rays->o_enu[c][i] = view->p_enu[c], rays->d_enu[c][i] = d_enu[c];
-        rays->far_m[i] = INFINITY;
-        point[i] = first + i;
-    }
     rays->count = count, rays->columns = 0;
-    if (skips(v->scene.skips_off, SKIP_LIGHT)) count = keep_meeting(rays, point, scene->visibility, index,
-                                                                              !skips(v->scene.skips_off, SKIP_PART));
+    for (int i = 0; i < count; i++) {
+        const double at[2] = {e->low[0] + e->step[0] * ((first + i) % e->columns + 0.5),
+                              e->low[1] + e->step[1] * ((first + i) / e->columns + 0.5)};
+        point[i] = first + i;
+        if (e->of_body) leave_body(rays, i, e, visibility_posed(scene->visibility, index), at);
+        else leave_eye(rays, i, view, at);
+    }
+    if (skips(v->scene.skips_off, SKIP_LIGHT))
+        count = keep_meeting(rays, point, scene->visibility, index, !skips(v->scene.skips_off, SKIP_PART));
     if (count == 0) return;
-    /* those that the rows of these points may see: with many entities a fraction of all */
-    const double y_px = e->y0_px + e->step_px[1] * (point[0] / e->columns),
-                 end_px = e->y0_px + e->step_px[1] * (point[count - 1] / e->columns + 1);
-    const int    seen = visibility_block_entities(w->near, scene->visibility, view, e->x0_px, y_px,
-                                                  e->x0_px + e->step_px[0] * e->columns, end_px, v->scene.hidden_entity,
-                                                  &unused);
-    visibility_first_hit(met, scene->visibility, rays, w->near, seen, v->scene.hidden_entity, &unused);
+    if (e->of_body) {
+        /* what stands before it from there hides points of it */
+        const double *c = visibility_posed(scene->visibility, index)->centre_enu;
+        const int     near = visibility_near(w->near, scene->visibility, c, c,
+                                             look_m + 2 * visibility_posed(scene->visibility, index)->radius_m);
+        visibility_first_part(met, scene->visibility, rays, w->near, near, &unused);
+    } else {
+        /* those that the rows of these points may see: with many entities a fraction of all */
+        const double y_px = e->low[1] + e->step[1] * (point[0] / e->columns),
+                     end_px = e->low[1] + e->step[1] * (point[count - 1] / e->columns + 1);
+        const int    seen = visibility_block_entities(w->near, scene->visibility, view, e->low[0], y_px,
+                                                      e->low[0] + e->step[0] * e->columns, end_px, v->scene.hidden_entity,
+                                                      &unused);
+        visibility_first_hit(met, scene->visibility, rays, w->near, seen, v->scene.hidden_entity, &unused);
+    }
     places->count = 0;
     for (int i = 0; i < count; i++) {
         if (met->entity[i] != (uint32_t)index + 1) continue;
@@ -223,27 +309,37 @@ static void span_about(int span[4], const SkyEntity *e, int column, int row, int
     span[3] = row + more + 1 < e->rows ? row + more + 1 : e->rows;
 }
 
+static void place_on_grid(double at[2], const SkyEntity *e, const SkyVisibility *v, const double p_enu[3])
+{
+    const View *view = v->scene.view;
+    double      offset_enu[3], p_cam[3];
+    if (e->of_body) {
+        v3_sub(offset_enu, p_enu, visibility_posed(v->scene.gather.visibility, e->index)->p_enu);
+        for (int k = 0; k < 2; k++) at[k] = v3_dot(offset_enu, e->across_enu[k]);
+        return;
+    }
+    v3_sub(offset_enu, p_enu, view->p_enu);
+    m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
+    view_project(at, view, p_cam);
+}
+
 void sky_entities_open(SkyOpen *out, int i, const SkyVisibility *v, const Hits *hits)
 {
     static const float enough = 0.3f; /* one point of the part two steps away */
     const int          index = (int)hits->entity[i] - 1;
     if (v->grid_of[index] == 0) return;
     const SkyEntity   *e = &v->entity[v->grid_of[index] - 1];
-    const View        *view = v->scene.view;
     const double      *centre_enu = visibility_posed(v->scene.gather.visibility, index)->centre_enu;
     const float        n_enu[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
-    double             offset_enu[3], p_cam[3], image_px[2];
+    double             at[2];
     float              p_m[3], factor[8];
     int                span[4];
     if (e->columns == 0) return;
-    for (int c = 0; c < 3; c++) {
-        offset_enu[c] = hits->p_enu[c][i] - view->p_enu[c];
-        p_m[c] = (float)(hits->p_enu[c][i] - centre_enu[c]);
-    }
-    m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
-    view_project(image_px, view, p_cam);
-    const int    column = (int)clamp(floor((image_px[0] - e->x0_px) / e->step_px[0]), 0, e->columns - 1);
-    const int    row = (int)clamp(floor((image_px[1] - e->y0_px) / e->step_px[1]), 0, e->rows - 1);
+    const double p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
+    for (int c = 0; c < 3; c++) p_m[c] = (float)(p_enu[c] - centre_enu[c]);
+    place_on_grid(at, e, v, p_enu);
+    const int    column = (int)clamp(floor((at[0] - e->low[0]) / e->step[0]), 0, e->columns - 1);
+    const int    row = (int)clamp(floor((at[1] - e->low[1]) / e->step[1]), 0, e->rows - 1);
     F32x8        sum = f32x8_set(0);
     float        all = 0;
     for (int more = 1; more <= 4 && !(all > enough); more += 3) {

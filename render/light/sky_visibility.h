@@ -8,9 +8,11 @@
  *
  *   ground    points of a square lattice that is fixed to the ground, finer where their values differ and never finer
  *             than the picture's resolution; computed when a hit needs them, cached for the frame
- *   entities  the visible surface of each on a grid over its box on the image, 2.75 px apart, at least 3 x 3 and at
- *             most 48 x 48, computed when a hit first needs one of them, by all threads that do; a hit takes those
- *             about it that face its way. The grid moves with the entity
+ *   entities  the surface of each on a grid over its box, some 2.75 px apart, at least 3 x 3 and at most 48 x 48,
+ *             computed when a hit first needs one of them, by all threads that do; a hit takes those about it that face
+ *             its way. The grid stands on the body, across the middle of a bin of aspects (5 to 10 degrees) and at the
+ *             nearest of spacings a half octave apart, so that it is the same while the eye stays within these. On
+ *             entities too large for that (132 px) it lies over the box on the image
  *
  * The value of a point depends on the scene and the view only, so it is the same whichever thread computes it. What its
  * paths meet is kept from frame to frame while nothing near moves (render/light/sky_kept.h); its light never. The

@@ -35,7 +35,9 @@ typedef struct SkySpots {
 typedef struct SkyEntity {
     int      index;          /* in the snapshot */
     int      columns, rows;  /* of its grid; 0: not on the image */
-    double   x0_px, y0_px, step_px[2];
+    bool     of_body;        /* the grid is seen from the middle of its aspect's bin, else from the eye */
+    double   low[2], step[2]; /* px on the image; of_body: m along across_enu from the entity's place */
+    double   from_enu[3], across_enu[2][3]; /* of_body: unit vectors, towards where the grid is seen from and across */
     double   pitch_m;        /* of the grid at its distance */
     SkySpots spot;           /* [rows * columns], and eight more */
     int      first_task, tasks;
