@@ -14,7 +14,7 @@ static const double       density_of[far_densities] = {0.4, 1.2}, hides = 2.5;
 /* ---- once ------------------------------------------------------------------------------------- */
 
 /* Half of what leaves scatter, as the row's reflectance: the tables say what is seen against it. */
-static Material row_of(const Stand *stand)
+static Material row_of(const WoodStand *stand)
 {
     Material m = stand->leaf;
     for (int c = 0; c < optical_channel_count; c++)
@@ -74,7 +74,7 @@ typedef struct Sunlight {
 
 /* One view and azimuth. */
 typedef struct Look {
-    const Stand     *stand;
+    const WoodStand     *stand;
     const StandView *view;
     StandLit         lit;
     CanopyPlace      among, on_ground;
@@ -99,15 +99,23 @@ static void normal_of(double n[3], const double mean[2], double azimuth_rad)
     if (!v3_normalize(n, raw)) n[0] = n[1] = 0, n[2] = 1;
 }
 
-static Look look_of(const Sunlight *s, const Stand *stand, int view, int azimuth)
+/* Thickets shade glades, which stands that are everywhere as dense lack: found beside planted woods (test_far_woods.c). */
+static double past_thickets(double sin_sun)
+{
+    static const double takes = 0.015;
+    return sin_sun > 0 ? exp(-takes * sqrt(1 - fmin(sin_sun * sin_sun, 1)) / sin_sun) : 1;
+}
+
+static Look look_of(const Sunlight *s, const WoodStand *stand, int view, int azimuth)
 {
     Look            look = {.stand = stand, .view = &stand->view[view]};
     const double    x = s->air->light.sun_d_enu[0], y = s->air->light.sun_d_enu[1];
     const double    towards_rad = atan2(y, x) + stand_azimuth(azimuth); /* the eye */
     const StandLit *a = &stand->lit[view][s->sun][azimuth], *b = &stand->lit[view][s->sun + 1][azimuth];
-    look.lit = (StandLit){between(a->leaf, b->leaf, s->sun_share), between(a->leaf_front, b->leaf_front, s->sun_share),
-                          between(a->leaf_back, b->leaf_back, s->sun_share),
-                          between(a->bark_front, b->bark_front, s->sun_share), between(a->ground, b->ground, s->sun_share)};
+    const double share = s->sun_share, past = past_thickets(s->sin_sun);
+    look.lit = (StandLit){past * between(a->leaf, b->leaf, share), past * between(a->leaf_front, b->leaf_front, share),
+                          past * between(a->leaf_back, b->leaf_back, share), past * between(a->bark_front, b->bark_front, share),
+                          past * between(a->ground, b->ground, share)};
     place_between(&look.among, &look.view->among[s->sun], s->sun_share);
     place_between(&look.on_ground, &look.view->on_ground[s->sun], s->sun_share);
     look.through = between(look.view->ground_through[s->sun], look.view->ground_through[s->sun + 1], s->sun_share);
@@ -178,14 +186,15 @@ static double ground_k(const Look *l, const Air *air, int surface)
     return heat_ground_k(now, kind, level, heat_taken(now, kind, level, shadow), l->view->ground_open, 1);
 }
 
-/* Of upright branches, whose sides are seen as the cosine to the eye. */
+/* Of branches of every tilt, whose sides are seen as the cosine to the eye. */
 static double bark_k(const Look *l, const HeatNow *now)
 {
-    static const double turned_deg[5] = {-65, -35, 0, 35, 65};
-    const double        azimuth_rad = atan2(l->n_bark[1], l->n_bark[0]), up = clamp(l->view->bark.n[1], -1, 1);
+    static const double turned_deg[5] = {-65, -35, 0, 35, 65}, tilt[3] = {-0.6, 0, 0.6};
+    const double        azimuth_rad = atan2(l->n_bark[1], l->n_bark[0]);
     double              sum = 0, weights = 0;
-    for (int k = 0; k < 5; k++) {
-        const double turned_rad = turned_deg[k] * rad_per_deg, level = sqrt(1 - up * up), weight = cos(turned_rad);
+    for (int k = 0; k < 15; k++) {
+        const double turned_rad = turned_deg[k % 5] * rad_per_deg, up = clamp(l->view->bark.n[1] + tilt[k / 5], -0.95, 0.95);
+        const double level = sqrt(1 - up * up), weight = cos(turned_rad) * level;
         const double n[3] = {level * cos(azimuth_rad + turned_rad), level * sin(azimuth_rad + turned_rad), up};
         sum += weight * heat_branch_k(now, l->stand->bark_row, l->view->bark.radius_m, n, l->view->bark.open);
         weights += weight;
@@ -307,10 +316,10 @@ static void add_node(FarNode *sum, const FarNode *n, float share)
 }
 
 /* Of a hit, between the nodes of the dense stand (share dense) and those of the sparse one. */
-static void look_there(FarNode *out, const FarWoodsFrame *f, int stand, float dense, const Hits *hits, const Rays *rays, int i)
+static void look_there(FarNode *out, const FarWoodsFrame *f, int stand, float dense, double to_eye, const Hits *hits,
+                       const Rays *rays, int i)
 {
-    double up_share, azimuth_share, to_eye = 0;
-    for (int c = 0; c < 3; c++) to_eye -= (double)hits->n_geo[c][i] * rays->d_enu[c][i];
+    double up_share, azimuth_share;
     const double from_sun_rad = remainder(atan2(-rays->d_enu[1][i], -rays->d_enu[0][i]) - f->sun_azimuth_rad, 2 * pi_rad);
     const int    v = stand_at_view(&up_share, asin(clamp(to_eye, 0, 1))), a = stand_at_azimuth(&azimuth_share, fabs(from_sun_rad));
     const int    g = hits->surface[i] != class_of[stand];
@@ -325,9 +334,10 @@ static void look_there(FarNode *out, const FarWoodsFrame *f, int stand, float de
 }
 
 /* Share of the canopy at a place, and that of the dense stand in it: by the density, or by the cover of a canopy layer. */
-static float canopy_share(float *dense, const FarWoods *far, int stand, double cover, double density)
+static float canopy_share(float *dense, const FarWoods *far, int stand, double cover, double density, double to_eye)
 {
-    const double open = exp(-hides * density), sparse_open = exp(-hides * density_of[0]), dense_open = exp(-hides * density_of[1]);
+    const double along = hides / fmax(to_eye, 0.2);
+    const double open = exp(-along * density), sparse_open = exp(-along * density_of[0]), dense_open = exp(-along * density_of[1]);
     *dense = 1;
     if (cover >= 0) return (float)fmin(cover / fmax(1 - far->stand[stand][far_densities - 1]->view[stand_views - 1].ground, 0.1), 1);
     *dense = (float)clamp((sparse_open - open) / (sparse_open - dense_open), 0, 1);
@@ -353,8 +363,10 @@ void far_woods_apply(const FarInputs *in, const FarWoodsFrame *f, const Material
         if (stand < 0) continue;
         const Material *row = &materials->material[f->far->row[stand]], *own = &materials->material[hits->material[i]];
         const float     lit = in->sun[i];
-        const float     share = canopy_share(&dense, f->far, stand, (double)in->places->cover[i], (double)in->places->density[i]);
-        look_there(&node, f, stand, dense, hits, rays, i);
+        double          to_eye = 0; /* cosine from the ground's normal */
+        for (int c = 0; c < 3; c++) to_eye -= (double)hits->n_geo[c][i] * rays->d_enu[c][i];
+        const float share = canopy_share(&dense, f->far, stand, (double)in->places->cover[i], (double)in->places->density[i], to_eye);
+        look_there(&node, f, stand, dense, to_eye, hits, rays, i);
         for (int c = 0; c < optical_channel_count; c++) {
             if (!in->texture[c]) continue;
             const float reflects = node.reflects[0][c] + lit * (node.reflects[1][c] - node.reflects[0][c]);

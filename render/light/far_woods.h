@@ -8,7 +8,7 @@
  * the temperatures those of leaves, bark and shaded ground (plant_heat.h, render/heat), each of the mean of its organ; the
  * temperature of all is that of their radiance in 8-12 um, so 3-5 um differ by what is hotter than its mean.
  *
- * Between the densities, open ground included, by the share of it that is hidden: exp(-2.5 density). So glades and thickets
+ * Between the densities, open ground included, by the share of it that is open to the eye: exp(-2.5 density / sine of its height). So glades and thickets
  * are where the plants would have them; groves of one kind are not.
  *
  * Relief and hills shade them as any ground, from the crowns' height. Slopes change the angle of the eye alone. Errors, beside the same
@@ -23,7 +23,7 @@ enum { far_stands = 2 /* broadleaf, conifer */, far_densities = 2, far_grounds =
 
 typedef struct FarWoods {
     const Woods *woods;
-    Stand       *stand[far_stands][far_densities];
+    WoodStand       *stand[far_stands][far_densities];
     int          row[far_stands];   /* of Materials: what the tables stand on, without gloss */
 } FarWoods;
 

@@ -5,7 +5,7 @@
 
 enum { squares = 8, ray_block = 64, most_suns = stand_suns * stand_azimuths };
 static const double stand_seed = 1995;
-static const double view_deg[stand_views] = {4, 10, 20, 36, 60, 90}, sun_deg[stand_suns] = {4, 12, 26, 46, 75};
+static const double view_deg[stand_views] = {4, 10, 20, 36, 60, 90}, sun_deg[stand_suns] = {4, 10, 20, 36, 60, 90};
 static const double azimuth_deg[stand_azimuths] = {0, 25, 65, 115, 180};
 
 double stand_view(int node) { return view_deg[node] * rad_per_deg; }
@@ -33,7 +33,7 @@ typedef struct Seen {
 } Seen;
 
 typedef struct Job {
-    Stand             *stand;
+    WoodStand             *stand;
     const Materials   *materials;
     const ForestFrame *frame;
     Seen               seen[stand_views];
@@ -73,10 +73,10 @@ typedef struct Met {
 
 /* ---- sums ------------------------------------------------------------------------------------- */
 
-static void add_place(CanopyPlace *sum, const CanopyPlace *p)
+static void add_place(CanopyPlace *sum, const CanopyPlace *p, double weight)
 {
-    sum->up += p->up, sum->down += p->down, sum->up_from_ground += p->up_from_ground;
-    sum->sun_here += p->sun_here, sum->sun_on_ground += p->sun_on_ground;
+    sum->up += weight * p->up, sum->down += weight * p->down, sum->up_from_ground += weight * p->up_from_ground;
+    sum->sun_here += weight * p->sun_here, sum->sun_on_ground += weight * p->sun_on_ground;
 }
 
 static void scale_place(CanopyPlace *sum, double by)
@@ -84,34 +84,34 @@ static void scale_place(CanopyPlace *sum, double by)
     sum->up *= by, sum->down *= by, sum->up_from_ground *= by, sum->sun_here *= by, sum->sun_on_ground *= by;
 }
 
-static void add_plant(StandView *v, const Stand *stand, const Met *m, const ForestSurface *s)
+static void add_plant(StandView *v, const WoodStand *stand, const Met *m, const ForestSurface *s)
 {
     StandOrgan *o = m->organ == PLANT_LEAF ? &v->leaf : &v->bark;
     CanopyPlace place;
-    for (int k = 0; k < stand_suns; k++) {
-        CanopyPlace of_plant;
-        canopy_place(&place, stand->canopy, m->p[0], m->p[1], fmax(m->p[2], 0), sin(stand_sun(k)));
-        of_plant = place;
-        canopy_place_of_plant(&of_plant, stand->canopy);
-        add_place(&v->among[k], &of_plant);
-    }
+    canopy_place(&place, stand->canopy, m->p[0], m->p[1], fmax(m->p[2], 0), 1);
     const double up = fmin(place.up, (double)s->open_up), down = fmin(place.down, (double)s->open_down);
-    const double faces = 0.5 * (1 + m->n[2]);
+    const double faces = 0.5 * (1 + m->n[2]), sees_leaves = 2 - up - down;
+    v->sees_leaves += sees_leaves;
+    for (int k = 0; k < stand_suns; k++) {
+        canopy_place(&place, stand->canopy, m->p[0], m->p[1], fmax(m->p[2], 0), sin(stand_sun(k)));
+        canopy_place_of_plant(&place, stand->canopy);
+        add_place(&v->among[k], &place, sees_leaves);
+    }
     o->share += 1, o->bright += m->albedo;
     o->front_up += m->albedo * up * faces, o->front_down += m->albedo * down * (1 - faces);
     o->back_up += m->albedo * up * (1 - faces), o->back_down += m->albedo * down * faces;
     o->n[0] += m->n[0] * cos(m->azimuth_rad) + m->n[1] * sin(m->azimuth_rad), o->n[1] += m->n[2];
-    o->open += (double)s->open_up, o->radius_m += (double)s->radius_m;
+    o->open += (double)s->open_up, o->radius_m += log(fmax((double)s->radius_m, 1e-3));
 }
 
-static void add_ground(StandView *v, const Stand *stand, const Met *m)
+static void add_ground(StandView *v, const WoodStand *stand, const Met *m)
 {
     CanopyPlace place;
     CanopyStand there;
     canopy_stand(&there, stand->canopy, m->p[0], m->p[1]);
     for (int k = 0; k < stand_suns; k++) {
         canopy_place(&place, stand->canopy, m->p[0], m->p[1], 0, sin(stand_sun(k)));
-        add_place(&v->on_ground[k], &place);
+        add_place(&v->on_ground[k], &place, 1);
         v->ground_through[k] += exp(-0.5 * there.leaf_area / sin(stand_sun(k)));
     }
     v->ground += 1, v->ground_up += place.up, v->ground_open += there.open;
@@ -174,9 +174,9 @@ static void take_hit(Job *job, int view, int ray, const ForestHit *hit, bool met
 
 static void by_rays(StandView *v, StandLit lit[stand_suns][stand_azimuths])
 {
-    const double plants = v->leaf.share + v->bark.share, per = 1.0 / stand_rays;
+    const double per = 1.0 / stand_rays;
     for (int k = 0; k < stand_suns; k++) {
-        if (plants > 0) scale_place(&v->among[k], 1 / plants);
+        if (v->sees_leaves > 0) scale_place(&v->among[k], 1 / v->sees_leaves);
         if (v->ground > 0) scale_place(&v->on_ground[k], 1 / v->ground), v->ground_through[k] /= v->ground;
         for (int a = 0; a < stand_azimuths; a++) {
             StandLit *l = &lit[k][a];
@@ -186,7 +186,7 @@ static void by_rays(StandView *v, StandLit lit[stand_suns][stand_azimuths])
     StandOrgan *const organ[2] = {&v->leaf, &v->bark};
     for (int k = 0; k < 2; k++) {
         StandOrgan *o = organ[k];
-        if (o->share > 0) o->n[0] /= o->share, o->n[1] /= o->share, o->open /= o->share, o->radius_m /= o->share;
+        if (o->share > 0) o->n[0] /= o->share, o->n[1] /= o->share, o->open /= o->share, o->radius_m = exp(o->radius_m / o->share);
         o->share *= per, o->bright *= per, o->front_up *= per, o->front_down *= per, o->back_up *= per, o->back_down *= per;
     }
     if (v->ground > 0) v->ground_up /= v->ground, v->ground_open /= v->ground;
@@ -252,7 +252,7 @@ static void mix_materials(Job *job)
 
 /* ---- all of it -------------------------------------------------------------------------------- */
 
-static Status trace_stand(Stand *stand, const Forest *forest, const Materials *materials, Pool *pool)
+static Status trace_stand(WoodStand *stand, const Forest *forest, const Materials *materials, Pool *pool)
 {
     static const double eye_enu[3] = {0, 0, 1e6}, calm_mps[2] = {0, 0};
     ForestFrame         frame; /* seen from so far that every plant is at its lesser detail; without wind */
@@ -270,12 +270,12 @@ static Status trace_stand(Stand *stand, const Forest *forest, const Materials *m
     return status;
 }
 
-Status stand_create(Stand **out, SurfaceClass surface, double density, const Forest *forest, const Materials *materials,
+Status stand_create(WoodStand **out, SurfaceClass surface, double density, const Forest *forest, const Materials *materials,
                     bool leaves, Pool *pool)
 {
     Woods   woods = {0};
     Forest *own = NULL;
-    Stand  *stand = calloc(1, sizeof *stand);
+    WoodStand  *stand = calloc(1, sizeof *stand);
     if (!stand) return STATUS_NO_MEMORY;
     Status status = woods_of_class(&woods, surface, density, (uint64_t)stand_seed, squares);
     if (status == STATUS_OK) status = canopy_create(&stand->canopy, &woods, forest_plants(forest), materials, leaves);
@@ -288,7 +288,7 @@ Status stand_create(Stand **out, SurfaceClass surface, double density, const For
     return status;
 }
 
-void stand_destroy(Stand *stand)
+void stand_destroy(WoodStand *stand)
 {
     if (!stand) return;
     canopy_destroy(stand->canopy);

@@ -11,7 +11,7 @@
 #include "render/forest/forest.h"
 #include "render/light/canopy.h"
 
-enum { stand_views = 6, stand_suns = 5, stand_azimuths = 5, stand_rays = 384 };
+enum { stand_views = 6, stand_suns = 6, stand_azimuths = 5, stand_rays = 512 };
 
 /* Of what one organ shows a view: sums over its hits, by the number of all rays. */
 typedef struct StandOrgan {
@@ -20,14 +20,15 @@ typedef struct StandOrgan {
     double front_up, front_down;      /* shares of sky and ground on the side that is seen, times what that faces of them */
     double back_up, back_down;        /* on the other one */
     double n[2];                      /* normal: towards the eye's azimuth, up; not weighted */
-    double open, radius_m;            /* not weighted */
+    double open, radius_m;            /* not weighted; of radii the geometric mean */
 } StandOrgan;
 
 typedef struct StandView {
     StandOrgan  leaf, bark;
     double      ground, ground_up, ground_open;             /* share; of that the sky's that reaches it; by the heat's map */
     double      ground_through[stand_suns];                 /* of the sun, by the heat's map */
-    CanopyPlace among[stand_suns], on_ground[stand_suns];   /* means over plants, and over the ground */
+    double      sees_leaves;                                /* sum over plants: of other leaves; for the means of */
+    CanopyPlace among[stand_suns], on_ground[stand_suns];   /* places over plants, by what they see of leaves; over the ground */
 } StandView;
 
 /* Of the sun: shares that it reaches, and those times the cosine to it, by the number of all rays. */
@@ -35,20 +36,20 @@ typedef struct StandLit {
     double leaf, leaf_front, leaf_back, bark_front, ground;
 } StandLit;
 
-typedef struct Stand {
+typedef struct WoodStand {
     Canopy   *canopy;
     Material  leaf, bark;      /* means of what is seen */
     int       bark_row;        /* the most frequent */
     double    top_m;           /* height of the crowns that are seen, about */
     StandView view[stand_views];
     StandLit  lit[stand_views][stand_suns][stand_azimuths];
-} Stand;
+} WoodStand;
 
 /* surface: a class of forest; density: over its mean. forest: whose prototypes stand in it; leaves: as that has. pool: may be
  * NULL; the same bits either way. */
-Status stand_create(Stand **out, SurfaceClass surface, double density, const Forest *forest, const Materials *materials,
+Status stand_create(WoodStand **out, SurfaceClass surface, double density, const Forest *forest, const Materials *materials,
                     bool leaves, Pool *pool);
-void   stand_destroy(Stand *stand); /* accepts NULL */
+void   stand_destroy(WoodStand *stand); /* accepts NULL */
 
 /* Nodes: elevation of eye or sun over the ground, and azimuth of the sun from that of the eye, rad. */
 double stand_view(int node);
