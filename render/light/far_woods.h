@@ -11,8 +11,11 @@
  * Between the densities, open ground included, by the share of it that is open to the eye: exp(-2.5 density / sine of its height). So glades and thickets
  * are where the plants would have them; groves of one kind are not.
  *
- * Relief and hills shade them as any ground, from the crowns' height. Slopes change the angle of the eye alone. Errors, beside the same
- * woods planted: tests/render/test_far_woods.c. */
+ * Relief and hills shade them as any ground, from the crowns' height. Slopes change the angle of the eye alone.
+ *
+ * Errors beside the same woods planted (tests/render/test_far_woods.c: means over 1.2 km; eye at 15 to 60 degrees, sun at 9 to
+ * 63): optical channels 8 % rms, within 12 % (near infrared 18 %), with the sun behind the eye within 12 degrees 18 %; 0.7 K
+ * apparent in 3-5 um, 0.6 K in 8-12 um. Without leaves 14 % rms, within 23 %; 2.1 K, 1.6 K. */
 #ifndef RENDER_LIGHT_FAR_WOODS_H
 #define RENDER_LIGHT_FAR_WOODS_H
 
