@@ -140,11 +140,27 @@ Status forest_create(Forest **out, const Woods *woods, const Plants *plants, con
     return STATUS_OK;
 }
 
+Status forest_create_beside(Forest **out, const Forest *of, const Woods *woods)
+{
+    Forest *forest = malloc(sizeof *forest);
+    if (!forest) return STATUS_NO_MEMORY;
+    *forest = *of;
+    rtcRetainDevice(forest->device); /* errors of either are latched by `of` */
+    forest->borrows = true, forest->woods = woods, forest->error = RTC_ERROR_NONE;
+    forest->standing = (PlantList){.forest = forest, .plant = woods->plant, .count = woods->count};
+    memcpy(forest->standing.origin_enu, woods->origin_enu, sizeof woods->origin_enu);
+    Status status = plant_list_commit(&forest->standing, forest, true);
+    if (status == STATUS_OK) status = forest_status(of);
+    if (status == STATUS_OK) *out = forest;
+    else forest_destroy(forest);
+    return status;
+}
+
 void forest_destroy(Forest *forest)
 {
     if (!forest) return;
     plant_list_close(&forest->standing);
-    for (int kind = 0; kind < PLANT_KINDS; kind++)
+    for (int kind = 0; kind < PLANT_KINDS && !forest->borrows; kind++)
         for (int level = 0; level < plant_levels; level++)
             if (forest->shape[kind][level].scene) rtcReleaseScene(forest->shape[kind][level].scene);
     rtcReleaseDevice(forest->device);

@@ -21,6 +21,8 @@ typedef struct ForestConfig {
 /* woods and plants must outlive it. isa: as tracer_create. Memory: 140 octets or less a standing plant, Plant's own 20
  * included. */
 Status forest_create(Forest **out, const Woods *woods, const Plants *plants, const ForestConfig *config, const char *isa);
+/* Other woods of the same prototypes, by the scenes of `of`, which must outlive it. */
+Status forest_create_beside(Forest **out, const Forest *of, const Woods *woods);
 void   forest_destroy(Forest *forest);
 /* Fills in PlantQuad.open_up and open_down of the forest's own prototypes, by rays through them: 24 a leaf, 8 a side of a
  * branch, so a leaf's are within 0.15 (rms), and their mean within 0.03 (tests/render/test_forest.c). pool: may be NULL. */

@@ -36,6 +36,7 @@ struct Forest {
     const Plants *plants;
     ForestConfig  config;
     ShapeScene    shape[PLANT_KINDS][plant_levels];
+    bool          borrows;           /* their scenes */
     PlantList     standing;
 };
 

@@ -46,6 +46,8 @@ Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *s
     if (status != STATUS_OK) return status;
     status = open_plants(out, posed, request, pool, arena);
     if (status != STATUS_OK) return status;
+    status = far_woods_frame(&out->far, world->far_woods, air, &world->materials, arena);
+    if (status != STATUS_OK) return status;
     return surface_light_prepare(&out->surface_light, air, &world->materials, arena);
 }
 
@@ -72,6 +74,17 @@ void samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const in
     shader->visibility_s += wall_clock_s() - t0;
 }
 
+/* Shadows fall on crowns, not on the ground below them: raises hits in far woods, and lowers them again. */
+static bool raise_far(double z_m[hits_capacity], Shader *shader, const ShadeScene *scene, Hits *hits)
+{
+    const FarWoods *far = scene->world->far_woods;
+    if (!scene->far || !far_woods_find(&shader->far, far, hits)) return false;
+    memcpy(z_m, hits->p_enu[2], (size_t)hits->count * sizeof *z_m);
+    for (int i = 0; i < hits->count; i++)
+        if (shader->far.stand[i]) hits->p_enu[2][i] += far_woods_top_m(far, shader->far.stand[i] - 1);
+    return true;
+}
+
 void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const double t0 = wall_clock_s();
@@ -81,8 +94,11 @@ void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
     const bool   heat = s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature;
     for (int i = 0; i < s->hits.count && heat; i++) leaves += s->hits.kind[i] == hit_plant;
     if (light) shader->counters.rays_sun_for_heat += (uint64_t)leaves;
+    double     z_m[hits_capacity];
+    const bool raised = (leaves > 0 || light) && raise_far(z_m, shader, scene, &s->hits);
     if (leaves > 0 || light)
         visibility_shadow(dark, scene->visibility, &s->hits, scene->air->light.sun_d_enu, &shader->counters);
+    if (raised) memcpy(s->hits.p_enu[2], z_m, (size_t)s->hits.count * sizeof *z_m);
     for (int i = 0; i < s->hits.count; i++) s->sun[i] = dark[i] ? 0 : 1;
     shader->shadow_s += wall_clock_s() - t0;
 }
@@ -184,18 +200,55 @@ static void bend_normals(Hits *hits, const Shader *shader)
     }
 }
 
-/* Bends the normals of the ground for the light, and gives them back. */
+/* Bends the normals of the ground for the light, levels those of far woods, and gives them back. */
 static void keep_normals(Shader *shader, Hits *hits)
 {
-    if (!shader->sloped) return;
+    if (!shader->sloped && !shader->any_far) return;
     for (int k = 0; k < 3; k++) memcpy(shader->n_enu[k], hits->n_enu[k], (size_t)hits->count * sizeof(float));
-    bend_normals(hits, shader);
+    if (shader->sloped) bend_normals(hits, shader);
+    for (int i = 0; i < hits->count && shader->any_far; i++)
+        if (shader->far.stand[i]) hits->n_enu[0][i] = hits->n_enu[1][i] = 0, hits->n_enu[2][i] = 1;
 }
 
 static void restore_normals(const Shader *shader, Hits *hits)
 {
-    if (!shader->sloped) return;
+    if (!shader->sloped && !shader->any_far) return;
     for (int k = 0; k < 3; k++) memcpy(hits->n_enu[k], shader->n_enu[k], (size_t)hits->count * sizeof(float));
+}
+
+/* Ground of woods that were left out takes their canopy's place in what light needs. */
+static void find_far(Shader *shader, const ShadeScene *scene, const Samples *s)
+{
+    const size_t n = (size_t)s->hits.count;
+    shader->any_far = scene->far && far_woods_find(&shader->far, scene->world->far_woods, &s->hits);
+    if (!shader->any_far) return;
+    FarInputs in = {.places = &shader->far, .sun = s->sun, .material = shader->far_material,
+                    .far_sun = shader->far_sun, .radar = shader->radar, .warmer_k = shader->far_k, .of_far = shader->of_far};
+    memcpy(in.material, s->hits.material, n * sizeof *in.material);
+    memcpy(in.far_sun, s->sun, n * sizeof *in.far_sun);
+    for (int c = 0; c < optical_channel_count; c++) in.texture[c] = s->channels >> c & 1 ? shader->texture[c] : NULL;
+    far_woods_apply(&in, scene->far, &scene->world->materials, &s->hits, &s->rays);
+}
+
+/* The canopy's own temperature, and no plants about what stands for them. */
+static void warm_far(Shader *shader, const ShadeScene *scene, Samples *s)
+{
+    for (int i = 0; i < s->hits.count && shader->any_far; i++) {
+        const double p_enu[3] = {s->hits.p_enu[0][i], s->hits.p_enu[1][i], s->hits.p_enu[2][i]};
+        if (!shader->far.stand[i]) continue;
+        const float canopy_k = (float)daylight_temp_at(&scene->air->light, p_enu) + shader->far_k[i] + shader->warmth_k[i];
+        s->temp_k[i] += shader->of_far[i] * (canopy_k - s->temp_k[i]);
+    }
+}
+
+static void open_far(Shader *shader, const Samples *s)
+{
+    CanopyLight *c = &shader->canopy;
+    for (int i = 0; i < s->hits.count && shader->any_far && shader->any_canopy; i++) {
+        if (!shader->far.stand[i]) continue;
+        c->up[i] = c->down[i] = 1;
+        for (int k = 0; k < optical_channel_count; k++) c->ground[k][i] = 1, c->leaves_w_m2[k][i] = 0;
+    }
 }
 
 /* ---- light ------------------------------------------------------------------------------------ */
@@ -217,17 +270,24 @@ static void shade_beyond(const Shader *shader, const ShadeScene *scene, const Sa
     }
 }
 
+static const uint16_t *material_of(const Shader *shader, const Samples *s)
+{
+    return shader->any_far ? shader->far_material : s->hits.material;
+}
+static const float *sun_of(const Shader *shader, const Samples *s) { return shader->any_far ? shader->far_sun : s->sun; }
+
 static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const World *world = scene->world;
     if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature)
         thermal_temperature(s->temp_k, scene->air, &world->materials,
                             &(PartTemps){scene->snapshot, world->patches, scene->visibility}, &s->hits, s->hits.material, s->sun, shader->photo, shader->warmth_k);
+    if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature) warm_far(shader, scene, s);
     if (!s->channels) return;
     air_paths_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
 
-    SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = s->hits.material, .temp_k = s->temp_k,
-                          .sun = s->sun, .veils = shader->air, .canopy = shader->any_canopy ? &shader->canopy : NULL};
+    SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = material_of(shader, s), .temp_k = s->temp_k,
+                          .sun = sun_of(shader, s), .veils = shader->air, .canopy = shader->any_canopy ? &shader->canopy : NULL};
     float       *out[AIR_BAND_COUNT] = {NULL};
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(s->channels >> b & 1)) continue;
@@ -262,6 +322,7 @@ void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
     const HemisphereScene around = {scene->visibility, scene->air, &scene->world->materials, scene->world->patches,
                                 scene->snapshot};
     resolve_detail(shader, scene, s);
+    find_far(shader, scene, s);
     samples_smoke(scene, s);
     if (scene->sky_samples > 0)
         hemisphere_light(&shader->gathered, &around, &s->hits, s->channels, scene->sky_samples, s->key, &shader->counters);
@@ -270,6 +331,7 @@ void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
     shader->any_canopy = scene->world->canopy && scene->sky_samples == 0 && s->channels &&
                          canopy_light(&shader->canopy, scene->world->canopy, scene->world->landscape, &scene->air->light,
                                       scene->world->materials.ground_rho, &s->hits, s->channels);
+    open_far(shader, s);
     light_channels(shader, scene, s);
     const double t1 = wall_clock_s();
     if (s->radar) light_radar(shader, scene, s);
@@ -309,7 +371,7 @@ static const float *light_around(float room[hits_capacity], const Shader *shader
         b >= AIR_MWIR ? air->light.ground_w_m2_sr[b] * pi_rad : optical_ground_w_m2((int)b, air, &scene->world->materials);
     for (int i = 0; i < s->hits.count; i++) {
         const double n_enu[3] = {s->hits.n_enu[0][i], s->hits.n_enu[1][i], s->hits.n_enu[2][i]};
-        const double through = material_through(&scene->world->materials.material[s->hits.material[i]], (int)b);
+        const double through = material_through(&scene->world->materials.material[material_of(shader, s)[i]], (int)b);
         double       both = light_on_side(shader, scene, b, i, n_enu, level_w_m2);
         if (through > 0) both += through * light_on_side(shader, scene, b, i, (const double[3]){-n_enu[0], -n_enu[1], -n_enu[2]}, level_w_m2);
         room[i] = (float)((shader->any_open ? (double)shader->open.factor[b][i] : 1) * both);
@@ -328,9 +390,9 @@ void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s,
         const float *around = light_around(room, shader, scene, s, (AirBand)b);
         if (b >= AIR_MWIR)
             thermal_shade(out, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, scene->air, materials, &s->hits, &s->rays,
-                          s->hits.material, s->temp_k, s->sun, around, &direct[b], NULL);
+                          material_of(shader, s), s->temp_k, sun_of(shader, s), around, &direct[b], NULL);
         else
-            optical_shade(out, b, scene->air, materials, &s->hits, &s->rays, s->hits.material, shader->texture[b], s->sun,
+            optical_shade(out, b, scene->air, materials, &s->hits, &s->rays, material_of(shader, s), shader->texture[b], sun_of(shader, s),
                           around, &direct[b], NULL);
         smoke_apply(out, &s->smoke, b, s->hits.count);
     }

@@ -24,6 +24,7 @@ typedef struct ShadeScene {
     ForestFrame       plants;        /* where visibility has some */
     EffectScene       effects;       /* smoke, dust, flames and bursts */
     SurfaceLight      surface_light;
+    FarWoodsFrame    *far;           /* NULL: no woods were left out */
     SkyVisibility    *sky;           /* NULL: sky and ground irradiance follow from the surface tilt alone */
     int               sky_samples;   /* directions of hemisphere sampling a hit; 0: the quick form */
     const int        *all_volumes;   /* 0, 1, 2 ...: all of the effects */
@@ -79,6 +80,10 @@ typedef struct Shader {
     bool               any_open;      /* `open` has factors of these hits */
     CanopyLight        canopy;
     bool               any_canopy;    /* `canopy` is of these hits */
+    bool               any_far;       /* some of these hits lie in far woods; else the rest is not set */
+    FarPlaces          far;
+    uint16_t           far_material[hits_capacity];
+    float              far_sun[hits_capacity], far_k[hits_capacity], of_far[hits_capacity];
     VisibilityCounters counters;
     double             visibility_s, shadow_s, shade_s, radar_s;
 } Shader;

@@ -65,7 +65,9 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
     if (status == STATUS_OK) status = forest_create(&world->forest, woods, world->plants, config, isa);
     if (status != STATUS_OK) return status;
     forest_openness(world->plants, world->forest, pool);
-    return canopy_create(&world->canopy, woods, world->plants, &world->materials, config->leaves);
+    status = canopy_create(&world->canopy, woods, world->plants, &world->materials, config->leaves);
+    if (status != STATUS_OK) return status;
+    return far_woods_create(&world->far_woods, woods, world->forest, &world->materials, config->leaves, pool);
 }
 
 void world_close(World *world)
@@ -73,6 +75,7 @@ void world_close(World *world)
     world_cool(world);
     forest_destroy(world->forest);
     canopy_destroy(world->canopy);
+    far_woods_destroy(world->far_woods);
     plants_destroy(world->plants);
     atmosphere_close(world->atmosphere);
     planck_table_destroy(world->planck_lwir);

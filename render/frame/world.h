@@ -8,6 +8,7 @@
 #include "render/heat/part_table.h"
 #include "render/heat/patch_set.h"
 #include "render/light/canopy.h"
+#include "render/light/far_woods.h"
 #include "render/radar/radar_image.h"
 #include "render/visibility/visibility.h"
 #include "terrain/landscape/detail.h"
@@ -23,6 +24,7 @@ typedef struct World {
     Plants          *plants;         /* NULL after world_open, with forest: no plants */
     Forest          *forest;
     Canopy          *canopy;
+    FarWoods        *far_woods;      /* NULL: every plant stands */
     PlanckTable     *planck_mwir, *planck_lwir;
     Atmosphere      *atmosphere;     /* NULL after world_open; the caller may open one here; world_close closes it */
     RadarConfig      radar;

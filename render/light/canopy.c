@@ -199,25 +199,44 @@ void canopy_stand(CanopyStand *out, const Canopy *c, double x_m, double y_m)
 
 /* ---- hits ------------------------------------------------------------------------------------- */
 
-/* A place: what layers above and below it let through, of the sky and the ground, and of the sun on level ground. */
-typedef struct Place {
-    double up, down, up_from_ground;
-    double sun_here, sun_on_ground;
-} Place;
-
-static bool place_of(Place *out, const Canopy *c, double x_m, double y_m, double height_m, double sin_sun)
+bool canopy_place(CanopyPlace *out, const Canopy *c, double x_m, double y_m, double height_m, double sin_sun)
 {
     const double all = canopy_leaf_area_above(c, x_m, y_m, 0);
     const double above = height_m > 0 ? canopy_leaf_area_above(c, x_m, y_m, height_m) : all;
     const double slant = 0.5 / fmax(sin_sun, 0.05);
     if (!(all > 0)) {
-        *out = (Place){1, 1, 1, 1, 1};
+        *out = (CanopyPlace){1, 1, 1, 1, 1};
         return false;
     }
-    *out = (Place){.up = gap_at(c, 0.5 * above), .down = gap_at(c, 0.5 * fmax(all - above, 0)),
+    *out = (CanopyPlace){.up = gap_at(c, 0.5 * above), .down = gap_at(c, 0.5 * fmax(all - above, 0)),
                    .up_from_ground = gap_at(c, 0.5 * all), .sun_here = exp(-slant * above),
                    .sun_on_ground = exp(-slant * all)};
     return true;
+}
+
+void canopy_place_of_plant(CanopyPlace *p, const Canopy *c)
+{
+    p->up = fmin(c->open_up, p->up), p->down = fmin(c->open_down, p->down), p->sun_here = fmin(c->open_up, p->sun_here);
+}
+
+/* half: of what a surface scatters. */
+static inline double exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlace *p, double half, double sun_w_m2,
+                              double sky_w_m2, double sin_sun, double ground_rho)
+{
+    const double up = fmin(c->open_up, p->up), down = fmin(c->open_down, p->down);
+    const double from_above = sun_w_m2 * sin_sun * p->sun_on_ground + sky_w_m2 * p->up_from_ground;
+    const double on_leaf = 0.5 * sun_w_m2 * (sin_sun > 0 ? fmin(c->open_up, p->sun_here) : 0);
+    const double from_below = down * ground_rho, shaded = 1 - p->up_from_ground;
+    const double leaves = half * (on_leaf + up * sky_w_m2 + from_below * from_above) /
+                          fmax(1 - half * (2 - up - down + from_below * shaded), 1e-6);
+    *on_ground_w_m2 = from_above + shaded * leaves;
+    return leaves;
+}
+
+double canopy_exitance(double *on_ground_w_m2, const Canopy *c, const CanopyPlace *place, int channel, double sun_w_m2,
+                       double sky_w_m2, double sin_sun, double ground_rho)
+{
+    return exitance(on_ground_w_m2, c, place, 0.5 * c->scattered[channel], sun_w_m2, sky_w_m2, sin_sun, ground_rho);
 }
 
 bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape, const Daylight *light,
@@ -225,15 +244,15 @@ bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape,
 {
     const double sin_sun = fmax(light->sun_d_enu[2], 0);
     bool         any = false;
-    Place        place[hits_capacity];
+    CanopyPlace  place[hits_capacity];
     for (int i = 0; i < hits->count; i++) {
         const double x_m = hits->p_enu[0][i], y_m = hits->p_enu[1][i];
         double       height_m = 0;
-        place[i] = (Place){1, 1, 1, 1, 1};
+        place[i] = (CanopyPlace){1, 1, 1, 1, 1};
         if (!(hits->range_m[i] < INFINITY)) continue;
         if (hits->kind[i] != hit_ground && landscape)
             height_m = hits->p_enu[2][i] - elevation_height(&landscape->elevation, x_m, y_m, NULL);
-        any |= place_of(&place[i], c, x_m, y_m, isfinite(height_m) ? height_m : 0, sin_sun) | (hits->kind[i] == hit_plant);
+        any |= canopy_place(&place[i], c, x_m, y_m, isfinite(height_m) ? height_m : 0, sin_sun) | (hits->kind[i] == hit_plant);
     }
     if (!any) return false;
     for (int i = 0; i < hits->count; i++) {
@@ -246,15 +265,11 @@ bool canopy_light(CanopyLight *out, const Canopy *c, const Landscape *landscape,
         const double sun_w_m2 = light->sun_w_m2[k], sky_w_m2 = light->sky_w_m2[k], half = 0.5 * c->scattered[k];
         const double open_w_m2 = sun_w_m2 * sin_sun + sky_w_m2;
         for (int i = 0; i < hits->count; i++) {
-            const Place *p = &place[i];
-            const double up = fmin(c->open_up, p->up), down = fmin(c->open_down, p->down);
-            const double from_above = sun_w_m2 * sin_sun * p->sun_on_ground + sky_w_m2 * p->up_from_ground;
-            const double on_leaf = 0.5 * sun_w_m2 * (sin_sun > 0 ? fmin(c->open_up, p->sun_here) : 0);
-            const double from_below = down * (double)ground_rho[k], shaded = 1 - p->up_from_ground;
-            const double leaves = half * (on_leaf + up * sky_w_m2 + from_below * from_above) /
-                                  fmax(1 - half * (2 - up - down + from_below * shaded), 1e-6);
+            double       from_above_and_leaves;
+            const double leaves = exitance(&from_above_and_leaves, c, &place[i], half, sun_w_m2, sky_w_m2, sin_sun,
+                                           (double)ground_rho[k]);
             out->leaves_w_m2[k][i] = (float)leaves;
-            out->ground[k][i] = (float)(open_w_m2 > 0 ? (from_above + shaded * leaves) / open_w_m2 : 1);
+            out->ground[k][i] = (float)(open_w_m2 > 0 ? from_above_and_leaves / open_w_m2 : 1);
         }
     }
     return true;

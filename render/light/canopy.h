@@ -44,6 +44,19 @@ void canopy_stand(CanopyStand *out, const Canopy *canopy, double x_m, double y_m
 /* 2 E3(x), x >= 0: within 1e-4. */
 double canopy_gap(double x);
 
+/* A place among plants: what layers above and below it let through, of the sky and the ground, and of the sun on level
+ * ground. Sun of this sine of elevation. False: no plants there, all 1. */
+typedef struct CanopyPlace {
+    double up, down, up_from_ground;
+    double sun_here, sun_on_ground;
+} CanopyPlace;
+bool   canopy_place(CanopyPlace *out, const Canopy *canopy, double x_m, double y_m, double height_m, double sin_sun);
+/* The same for a leaf or branch there, which its own plant leaves no more than the mean of all. */
+void   canopy_place_of_plant(CanopyPlace *place, const Canopy *canopy);
+/* M there in an optical channel, W/m2, and what falls on its ground, W/m2. sun, facing it, and sky: W/m2. */
+double canopy_exitance(double *on_ground_w_m2, const Canopy *canopy, const CanopyPlace *place, int channel,
+                       double sun_w_m2, double sky_w_m2, double sin_sun, double ground_rho);
+
 /* Light at hits, of optical channels: a surface of normal n receives
  *     up E_sky(n) + down ground E_ground(n) + (1 - up (1 + n_z) / 2 - down (1 - n_z) / 2) leaves_w_m2,
  * E_sky and E_ground as in the open; of leaves, each of both sides. */

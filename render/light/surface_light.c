@@ -33,14 +33,15 @@ Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials 
 {
     memset(out, 0, sizeof *out);
     out->air = air;
-    out->rho = arena_alloc(arena, (size_t)materials->count, sizeof *out->rho);
-    out->gloss = arena_alloc(arena, (size_t)materials->count, sizeof *out->gloss);
+    const int rows = materials->count + materials->more;
+    out->rho = arena_alloc(arena, (size_t)rows, sizeof *out->rho);
+    out->gloss = arena_alloc(arena, (size_t)rows, sizeof *out->gloss);
     if (!out->rho || !out->gloss) return STATUS_NO_MEMORY;
-    for (int m = 0; m < materials->count; m++) fill_row(out->rho[m], out->gloss[m], &materials->material[m]);
+    for (int m = 0; m < rows; m++) fill_row(out->rho[m], out->gloss[m], &materials->material[m]);
     if (materials_let_through(materials)) {
-        out->tau = arena_alloc(arena, (size_t)materials->count, sizeof *out->tau);
+        out->tau = arena_alloc(arena, (size_t)rows, sizeof *out->tau);
         if (!out->tau) return STATUS_NO_MEMORY;
-        for (int m = 0; m < materials->count; m++) fill_tau(out->tau[m], &materials->material[m]);
+        for (int m = 0; m < rows; m++) fill_tau(out->tau[m], &materials->material[m]);
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         const AirSky *sky = &air->light.sky[b];

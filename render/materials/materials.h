@@ -34,6 +34,7 @@ typedef struct Material {
 typedef struct Materials {
     int       count;
     Material *material;              /* [0] is "none", black */
+    int       more;                  /* rows behind count that no class or part has: canopies (render/light/far_woods.h) */
     int       own_first;             /* the first with a new name of the user's; count: there is none */
     int       surface[SURFACE_COUNT];/* material of each surface class */
     int       plant[PLANT_KINDS][PLANT_ORGANS]; /* rows of etc/plant_optics.csv; 0: the kind has no such organ */

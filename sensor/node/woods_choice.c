@@ -209,7 +209,7 @@ static void report(Choices *choices, const WoodsChoice *w, const Config *config,
     choice_add(choices, "woods: %d trees%s%s%s, %d bushes and hedges, %.1f km about the aim (terrain.woods)", trees,
                *kinds ? " (" : "", kinds, *kinds ? ")" : "", woods->count - trees, 1e-3 * w->config.half_width_m);
     if (woods->left_out > 0)
-        choice_add(choices, "woods: %d more are left out, those beyond %.0f m of the aim (terrain.woods_trees)",
+        choice_add(choices, "woods: %d more are left out, those beyond %.0f m of the aim: the ground there shows their canopy (terrain.woods_trees)",
                    woods->left_out, woods->reach_m);
     if (!real)
         choice_add(choices, "woods: cleared along the paths of %d entit%s on the ground, where %d shot%s hit it, and "

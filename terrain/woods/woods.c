@@ -117,7 +117,11 @@ static Status keep_nearest(Woods *out, const WoodsSource *s, SquarePlants *squar
     const size_t squares = (size_t)s->nx * (size_t)s->ny;
     SquareAway  *away = malloc(squares * sizeof *away);
     int64_t      kept = 0;
-    if (!away) return STATUS_NO_MEMORY;
+    out->bare = calloc(squares, 1);
+    if (!away || !out->bare) {
+        free(away);
+        return STATUS_NO_MEMORY;
+    }
     for (size_t n = 0; n < squares; n++) {
         const double x_m = s->origin_enu[0] + ((double)(n % (size_t)s->nx) + 0.5) * woods_square_m;
         const double y_m = s->origin_enu[1] + ((double)(n / (size_t)s->nx) + 0.5) * woods_square_m;
@@ -135,6 +139,7 @@ static Status keep_nearest(Woods *out, const WoodsSource *s, SquarePlants *squar
         if (full) {
             out->left_out += one->count;
             one->count = 0;
+            out->bare[away[k].square] = 1;
         }
         kept += one->count;
     }
@@ -213,7 +218,7 @@ Status woods_create(Woods *out, const Landscape *landscape, const WoodsConfig *c
 
 void woods_destroy(Woods *woods)
 {
-    free(woods->first), free(woods->plant);
+    free(woods->first), free(woods->plant), free(woods->bare);
     free_source(woods->low);
     memset(woods, 0, sizeof *woods);
 }

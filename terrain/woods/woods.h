@@ -40,6 +40,7 @@ typedef struct Woods {
     Plant    *plant;           /* [count] square by square, and in a fixed order within a square */
     int       by_kind[PLANT_KINDS];
     int       left_out;        /* trees beyond most_trees */
+    uint8_t  *bare;            /* [nx * ny] 1: of such a square; NULL: none is */
     double    reach_m;         /* from centre_m: trees within are complete */
     int       from_crowns, from_canopy, from_classes, from_hedges; /* sources of the plants */
     const Landscape *landscape; /* borrowed */
@@ -55,6 +56,15 @@ void   woods_destroy(Woods *woods);
 static const double woods_low_m = 8;
 enum { woods_low_most = 4096 };
 int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i, int64_t j);
+
+/* Woods of which nothing stands: of squares that were left out, and beyond them all. stand[count]: the class of forest
+ * whose canopy covers the ground there, SURFACE_NONE: none; cover[count]: the share of it by a store's canopy layer, -1: that
+ * of the class; density[count]: plants there over the class's mean. surface: of the places. */
+void   woods_not_standing(uint8_t *stand, float *cover, float *density, const Woods *woods, int count, const uint8_t *surface,
+                          const double *x_m, const double *y_m);
+/* Plants of one class alone on level ground of height 0, squares x squares about the origin, everywhere as many, over the
+ * class's mean, and with all its kinds. */
+Status woods_of_class(Woods *out, SurfaceClass surface, double density, uint64_t seed, int squares);
 
 /* The standing plants whose trunk or stem (woods_trunk_m of radius) a circle touches: at most `most` of their indices;
  * returns how many there are. */

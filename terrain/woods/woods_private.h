@@ -69,5 +69,17 @@ typedef struct SquarePlants {
     bool   lost;
 } SquarePlants;
 void   woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j);
+void   woods_add_plant(SquarePlants *out, const WoodsSource *s, Plant plant, double x_m, double y_m);
+
+/* Square (i, j) has woods_side_cells squared candidates: place of number k, and the hash that it is drawn with. */
+enum { woods_cell_m = 4, woods_side_cells = 16 };
+uint64_t woods_candidate(double *x_m, double *y_m, const WoodsSource *s, int i, int j, int k);
+/* A plant of a class, of the kinds that are frequent there; and plants there over the class's mean. */
+void   woods_draw_of_class(Plant *out, const WoodsSource *s, const WoodsClass *class, double x_m, double y_m, uint64_t hash);
+double woods_density(const WoodsSource *s, double x_m, double y_m);
+/* The class whose plants stand on a surface. */
+SurfaceClass woods_class_at(const WoodsSource *s, uint8_t surface, double x_m, double y_m);
+/* The canopy layers of the store; false: none there. */
+bool   woods_canopy_at(double *cover, double *height_m, const WoodsSource *s, double x_m, double y_m);
 
 #endif

@@ -10,8 +10,8 @@
 
 #include <stdlib.h>
 
-enum { side_cells = 16, square_cells = side_cells * side_cells };
-static const double cell_m = 4;
+enum { square_cells = woods_side_cells * woods_side_cells };
+static const double cell_m = woods_cell_m;
 static const double grove_m = 140, patch_m = 70; /* waves of species, and of density */
 static const double hedges_reach_m = 3000;       /* from the centre: farther off they are the colour of their ground */
 
@@ -65,12 +65,12 @@ static PlantKind kind_at(const WoodsSource *s, const double share[PLANT_STANDING
 }
 
 /* Denser and thinner in patches; mean 1. */
-static double patch_at(const WoodsSource *s, double x_m, double y_m)
+double woods_density(const WoodsSource *s, double x_m, double y_m)
 {
     return 1 + 0.7 * woods_noise(s->seed, 30, x_m, y_m, patch_m) + 0.3 * woods_noise(s->seed, 31, x_m, y_m, 4 * patch_m);
 }
 
-static void add_plant(SquarePlants *out, const WoodsSource *s, Plant plant, double x_m, double y_m)
+void woods_add_plant(SquarePlants *out, const WoodsSource *s, Plant plant, double x_m, double y_m)
 {
     if (out->count == out->room) {
         const int room = out->room ? 2 * out->room : 64;
@@ -81,7 +81,7 @@ static void add_plant(SquarePlants *out, const WoodsSource *s, Plant plant, doub
         }
         out->plant = larger, out->room = room;
     }
-    const double z_m = elevation_height(&s->landscape->elevation, x_m, y_m, NULL);
+    const double z_m = s->landscape ? elevation_height(&s->landscape->elevation, x_m, y_m, NULL) : 0;
     if (!isfinite(z_m)) return;
     plant.p_m[0] = (float)(x_m - s->origin_enu[0]), plant.p_m[1] = (float)(y_m - s->origin_enu[1]);
     plant.p_m[2] = (float)(z_m - s->origin_enu[2]);
@@ -126,7 +126,7 @@ static void add_crowns(SquarePlants *out, const WoodsSource *s, int i, int j)
         if (woods_is_cleared(&s->clearings, x_m, y_m, 0, false)) continue;
         const PlantKind kind = crown->height_m < 3 ? PLANT_BUSH : kind_at(s, shares_of(s, surface), x_m, y_m, hash);
         const double    width = (double)crown->radius_m / ((double)crown->height_m * plant_crown_share(kind));
-        add_plant(out, s, woods_draw_plant(hash, kind, (double)crown->height_m, clamp(width, 0.4, 1.99)), x_m, y_m);
+        woods_add_plant(out, s, woods_draw_plant(hash, kind, (double)crown->height_m, clamp(width, 0.4, 1.99)), x_m, y_m);
         out->from_crowns++;
     }
 }
@@ -144,13 +144,18 @@ typedef struct Candidates {
 
 enum { source_canopy, source_class };
 
+bool woods_canopy_at(double *cover, double *height_m, const WoodsSource *s, double x_m, double y_m)
+{
+    return s->has_store &&
+           layer_at(cover, &s->store.canopy_cover_grid, s->store.canopy_cover, store_canopy_cover, x_m, y_m) &&
+           layer_at(height_m, &s->store.canopy_height_grid, s->store.canopy_height, store_canopy_height_m, x_m, y_m);
+}
+
 /* A plant of the canopy layers; false: none here. found: the layers have a value. */
 static bool from_canopy(Plant *out, bool *found, const WoodsSource *s, uint8_t surface, double x_m, double y_m, uint64_t hash)
 {
     double cover, height_m;
-    *found = s->has_store &&
-             layer_at(&cover, &s->store.canopy_cover_grid, s->store.canopy_cover, store_canopy_cover, x_m, y_m) &&
-             layer_at(&height_m, &s->store.canopy_height_grid, s->store.canopy_height, store_canopy_height_m, x_m, y_m);
+    *found = woods_canopy_at(&cover, &height_m, s, x_m, y_m);
     if (!*found || !(cover > 0 && height_m >= 1)) return false;
     const double    each_m = height_m * (0.8 + 0.3 * woods_unit(woods_hash(hash, 5, 0, 0)));
     const PlantKind kind = each_m < 2.5 ? PLANT_BUSH : kind_at(s, shares_of(s, surface), x_m, y_m, hash);
@@ -164,25 +169,29 @@ static bool from_canopy(Plant *out, bool *found, const WoodsSource *s, uint8_t s
 }
 
 /* The synthetic terrain has no class of woods: its wild patches are scrub, and most of them are wooded. */
-static const WoodsClass *class_at(const WoodsSource *s, uint8_t surface, double x_m, double y_m)
+SurfaceClass woods_class_at(const WoodsSource *s, uint8_t surface, double x_m, double y_m)
 {
     static const double wood_m = 260;
     if (surface != SURFACE_SCRUB || !s->synthetic || woods_noise(s->seed, 32, x_m, y_m, wood_m) < -0.25)
-        return &s->table.of[surface];
-    return &s->table.of[woods_noise(s->seed, 33, x_m, y_m, 3 * wood_m) > 0.3 ? SURFACE_FOREST_CONIFER
-                                                                             : SURFACE_FOREST_BROADLEAF];
+        return (SurfaceClass)surface;
+    return woods_noise(s->seed, 33, x_m, y_m, 3 * wood_m) > 0.3 ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF;
 }
 
-static bool from_class(Plant *out, const WoodsSource *s, uint8_t surface, double x_m, double y_m, uint64_t hash)
+void woods_draw_of_class(Plant *out, const WoodsSource *s, const WoodsClass *class, double x_m, double y_m, uint64_t hash)
 {
-    const WoodsClass *class = class_at(s, surface, x_m, y_m);
-    const double      chance = class->per_m2 * cell_m * cell_m;
-    const double      u = woods_unit(woods_hash(hash, 7, 0, 0));
-    if (!(u < 2 * chance) || !(u < chance * patch_at(s, x_m, y_m))) return false;
     const PlantKind kind = kind_at(s, class->share, x_m, y_m, hash);
     double          height_m = height_of(hash, class->low_m, class->high_m);
     if (kind == PLANT_BUSH) height_m = fmin(height_m, 1 + 2.5 * woods_unit(woods_hash(hash, 8, 0, 0)));
     *out = woods_draw_plant(hash, kind, height_m, 0.8 + 0.4 * woods_unit(woods_hash(hash, 9, 0, 0)));
+}
+
+static bool from_class(Plant *out, const WoodsSource *s, uint8_t surface, double x_m, double y_m, uint64_t hash)
+{
+    const WoodsClass *class = &s->table.of[woods_class_at(s, surface, x_m, y_m)];
+    const double      chance = class->per_m2 * cell_m * cell_m;
+    const double      u = woods_unit(woods_hash(hash, 7, 0, 0));
+    if (!(u < 2 * chance) || !(u < chance * woods_density(s, x_m, y_m))) return false;
+    woods_draw_of_class(out, s, class, x_m, y_m, hash);
     return true;
 }
 
@@ -211,9 +220,9 @@ static bool add_hedge(SquarePlants *out, const WoodsSource *s, double x_m, doubl
         if (tree) {
             static const double share[PLANT_STANDING] = {[PLANT_ALDER] = 0.3, [PLANT_BIRCH] = 0.2, [PLANT_ENGLISH_OAK] = 0.5};
             const PlantKind     kind = kind_at(s, share, h->x_m, h->y_m, hash);
-            add_plant(out, s, woods_draw_plant(hash, kind, 6 + 9 * u, 1), h->x_m, h->y_m);
+            woods_add_plant(out, s, woods_draw_plant(hash, kind, 6 + 9 * u, 1), h->x_m, h->y_m);
         } else {
-            add_plant(out, s, woods_draw_plant(hash, h->height == HEDGE_CUT ? PLANT_HEDGE : PLANT_BUSH, height_m,
+            woods_add_plant(out, s, woods_draw_plant(hash, h->height == HEDGE_CUT ? PLANT_HEDGE : PLANT_BUSH, height_m,
                                                clamp(1.5 / (height_m * 0.44), 0.6, 1.99)), h->x_m, h->y_m);
         }
         out->from_hedges++;
@@ -241,16 +250,20 @@ static void offer(Candidates *c, SquarePlants *out, const WoodsSource *s, int k)
     c->plant[c->count] = plant, c->source[c->count++] = source;
 }
 
+uint64_t woods_candidate(double *x_m, double *y_m, const WoodsSource *s, int i, int j, int k)
+{
+    const int64_t  a = (s->i0 + i) * woods_side_cells + k % woods_side_cells, b = (s->j0 + j) * woods_side_cells + k / woods_side_cells;
+    const uint64_t hash = woods_hash(s->seed, a, b, 20);
+    *x_m = ((double)a + 0.1 + 0.8 * woods_unit(woods_hash(hash, 1, 0, 0))) * cell_m;
+    *y_m = ((double)b + 0.1 + 0.8 * woods_unit(woods_hash(hash, 2, 0, 0))) * cell_m;
+    return hash;
+}
+
 void woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j)
 {
     Candidates c = {.count = 0};
     uint8_t    bears[square_cells];
-    for (int k = 0; k < square_cells; k++) {
-        const int64_t a = (s->i0 + i) * side_cells + k % side_cells, b = (s->j0 + j) * side_cells + k / side_cells;
-        c.hash[k] = woods_hash(s->seed, a, b, 20);
-        c.x_m[k] = ((double)a + 0.1 + 0.8 * woods_unit(woods_hash(c.hash[k], 1, 0, 0))) * cell_m;
-        c.y_m[k] = ((double)b + 0.1 + 0.8 * woods_unit(woods_hash(c.hash[k], 2, 0, 0))) * cell_m;
-    }
+    for (int k = 0; k < square_cells; k++) c.hash[k] = woods_candidate(&c.x_m[k], &c.y_m[k], s, i, j, k);
     landscape_surfaces(c.surface, s->landscape, square_cells, c.x_m, c.y_m);
     if (s->crowns.first) add_crowns(out, s, i, j);
     for (int k = 0; k < square_cells; k++) offer(&c, out, s, k);
@@ -258,7 +271,7 @@ void woods_fill_square(SquarePlants *out, const WoodsSource *s, int i, int j)
     for (int k = 0; k < c.count; k++) {
         if (!bears[k]) continue;
         const int before = out->count;
-        add_plant(out, s, c.plant[k], c.x_m[k], c.y_m[k]);
+        woods_add_plant(out, s, c.plant[k], c.x_m[k], c.y_m[k]);
         *(c.source[k] == source_class ? &out->from_classes : &out->from_canopy) += out->count - before;
     }
 }

@@ -11,6 +11,7 @@ replay "$tmp/demo.pcap" "$tmp/one" "${few[@]}" "${woods[@]}" --threads 1 --save-
 check "a replay" [ "$code" = 0 ] || cat "$tmp/stderr"
 check "it says what stands there" said '^woods: [0-9]+ trees \(.*terrain\.woods'
 check "it says what is cleared" said '^woods: cleared along the paths of 5 entities'
+check "it says what the ground shows where trees are left out" said '^woods: [0-9]+ more are left out, .*: the ground there shows their canopy'
 check "two frames" [ "$(frames "$tmp/one")" = 2 ]
 check "their planes" [ -z "$(find "$tmp/one/frames/truth" -name '*.exr' -size -2k)" ]
 
