@@ -42,14 +42,21 @@ size=$(od -An -tu1 -j16 -N8 "$tmp/own/frames/lwir/000000.png" | tr -s ' ')
 check "a picture of 384 x 288" [ "$size" = " 0 0 1 128 0 0 1 32" ]
 check "raw=false: no raw counts" [ ! -e "$tmp/own/raw" ]
 
-# counts of a truck of 1.5 x 0.6 px: it stands where it stands in a picture of four times as many pixels, not in the middle
-# of a pixel. 0.06 px rms of what ground and sky behind it differ by within a pixel; 0.16 px if its pixels alone were blurred.
-# A second earlier it has 60 counts in all, whose rounding alone moves it by 0.1 px
-near=(--bands lwir --rate 1 --from 1363 --to 1367 --set sensor.preset=staring_lwir --set sensor.hfov_deg=12
+# counts of a helicopter of 1.5 px that leaves nothing on the ground and in the air: it is where it is in a picture of four
+# times as many pixels, not in the middle of a pixel
+cat >"$tmp/small.yaml" <<'YAML'
+duration_s: 6
+vehicles:
+  - {name: H, id: 22, type: helicopter, engine: false, height_m: 60, route_m: [0, 0]}
+YAML
+run exercise "$tmp/small.yaml" -o "$tmp/small.pcap"
+near=(--host observer --set exercise.aim=1:3001:22 --set observer.range_m=2800 --set observer.height_m=500
+      --set exercise.utc=2026-06-21T20:00:00Z
+      --bands lwir --rate 1 --from +1 --to +5 --set sensor.preset=staring_lwir --set sensor.hfov_deg=12
       --set detector.noise=0 --set detector.bad_share=0 --set detector.smear=false --pairs target
       --threads 1 --set models.sag_m=0.02 --set quality.budget=off)
-run replay "$tmp/demo.pcap" --out "$tmp/coarse" --size 96x64 "${near[@]}"
-run replay "$tmp/demo.pcap" --out "$tmp/fine" --size 384x256 "${near[@]}"
+run replay "$tmp/small.pcap" --out "$tmp/coarse" --size 96x64 "${near[@]}"
+run replay "$tmp/small.pcap" --out "$tmp/fine" --size 384x256 "${near[@]}"
 check "a small target's counts are where it is" python3 - "$tmp/coarse" "$tmp/fine" <<'END'
 import json, struct, sys, zlib
 
@@ -86,7 +93,7 @@ def place(out, frame, scale, box):
 square = n = 0
 for line in open(sys.argv[1] + "/truth.jsonl"):
     frame = json.loads(line)
-    b = [t for t in frame["targets"] if t["marking"] == "Truck 22"][0]["amodal_box_px"]
+    b = [t for t in frame["targets"] if t["entity"] == "1:3001:22"][0]["amodal_box_px"]
     box = int(b[0]) - 6, int(b[1]) - 6, int(b[2]) + 7, int(b[3]) + 7
     for ours, want in zip(place(sys.argv[1], frame["frame"], 1, box), place(sys.argv[2], frame["frame"], 4, box)):
         square, n = square + (ours - want) ** 2, n + 1
