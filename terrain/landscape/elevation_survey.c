@@ -44,6 +44,7 @@ static int alone(const Lowest *l, double gap_m)
 typedef struct Counts {
     Lowest lowest;
     double posts, voids, outside, high_m;
+    double lengths;      /* of those outside: what might be heights in another unit, 1e7 at most */
     bool   beside;       /* numbers that are alone were seen beside others */
     double least_out_m, most_out_m;
 } Counts;
@@ -55,6 +56,7 @@ static void counts_add(Counts *to, const Counts *from)
     to->posts += from->posts;
     to->voids += from->voids;
     to->outside += from->outside;
+    to->lengths += from->lengths;
     to->high_m      = fmax(to->high_m, from->high_m);
     to->least_out_m = fmin(to->least_out_m, from->least_out_m);
     to->most_out_m  = fmax(to->most_out_m, from->most_out_m);
@@ -71,6 +73,7 @@ static void count_posts(Counts *c, const float *value, size_t count, double unit
         if (isnan(h_m)) c->voids++;
         else if (!(h_m >= elevation_lowest_m && h_m <= elevation_highest_m)) {
             c->outside++;
+            c->lengths += fabs(h_m) <= 1e7;
             c->least_out_m = fmin(c->least_out_m, h_m);
             c->most_out_m  = fmax(c->most_out_m, h_m);
         } else {
@@ -211,8 +214,8 @@ static Status judge_counts(ElevationSurvey *s, Raster *raster, const Counts *c, 
 {
     const double unit_m = raster->metres_per_unit, heights = c->posts - c->voids - c->outside;
     const char  *path = path_of(raster);
-    const bool constant = c->least_out_m == c->most_out_m; /* one number, however often, is a void beside heights */
-    if (c->outside > heights && !(constant && heights >= least_posts)) {
+    const bool constant = !(c->least_out_m < c->most_out_m); /* one number, however often, is a void */
+    if (!constant && (c->lengths > heights || !(heights > 0))) {
         log_error("%s: %s: numbers of %.6g .. %.6g, which are no heights on Earth in %s; say what they are: %s@cm, %s@dm "
                   "(terrain import: --unit), or declare its voids: %s@nodata=%.7g", key, path,
                   fmin(c->least_out_m / unit_m, c->most_out_m / unit_m),
