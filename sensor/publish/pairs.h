@@ -10,7 +10,8 @@
  * Radiance and radar contain no detector noise: a noiseless member names those of its noisy one. Without: the entity
  * is not drawn, and neither are its shadow, its echoes, the light it reflects onto others, its smoke, dust and flames, and
  * what it left on the ground: where it stood or stands, its tracks. All else stays: the ground, burnt ground, the other
- * entities and what is theirs, motion for the smear. Each member has detectors of its own: exposure, gain, level and coupling follow its own image.
+ * entities and what is theirs, motion for the smear. Each member has detectors of its own: exposure, gain, level and
+ * coupling follow its own image.
  * Noise is a function of (seed, frame, pixel), the same for all; without a sensor its sigma, too, is that of the
  * frame with the target.
  *
@@ -33,7 +34,8 @@ typedef struct PairsOf {
 
 /* Requires each frame without its target too (Frame.without). */
 Status consume_pairs(Consumer **out, const PairsOf *made_of);
-/* The same snapshot, including its indices, without the removed entities and what is theirs; their ids are listed: aim, or all. host:
+/* The same snapshot, including its indices, without the removed entities and what is theirs; their ids are listed: aim,
+ * or all. host:
  * snapshot index, stays; -1. */
 Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_count, const Snapshot *with, bool all,
                        DisEntityId aim, int host, Arena *arena);

@@ -48,29 +48,13 @@ void raster_kept_free(RasterKept *kept)
     free(kept);
 }
 
-static bool write_whole(int file, const float *at, size_t count, size_t offset)
-{
-    const char *octets = (const char *)at;
-    size_t      left = count * sizeof *at;
-    off_t       where = (off_t)(offset * sizeof *at);
-    while (left > 0) {
-        const ssize_t n = pwrite(file, octets, left, where);
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return false;
-        octets += n;
-        where += n;
-        left -= (size_t)n;
-    }
-    return true;
-}
-
-static bool read_whole(int file, float *at, size_t count, size_t offset)
+static bool whole_io(bool write, int file, float *at, size_t count, size_t offset)
 {
     char  *octets = (char *)at;
     size_t left = count * sizeof *at;
     off_t  where = (off_t)(offset * sizeof *at);
     while (left > 0) {
-        const ssize_t n = pread(file, octets, left, where);
+        const ssize_t n = write ? pwrite(file, octets, left, where) : pread(file, octets, left, where);
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0) return false;
         octets += n;
@@ -80,7 +64,7 @@ static bool read_whole(int file, float *at, size_t count, size_t offset)
     return true;
 }
 
-void raster_keep_rows(const Raster *raster, const float *rows, int x0, int y0, int width, int height)
+void raster_keep_rows(const Raster *raster, float *rows, int x0, int y0, int width, int height)
 {
     RasterKept *kept = raster->kept;
     const bool  whole = x0 % kept->piece == 0 && (x0 + width == raster->width || width % kept->piece == 0);
@@ -96,8 +80,8 @@ void raster_keep_rows(const Raster *raster, const float *rows, int x0, int y0, i
             atomic_fetch_add(&kept->left, octets);
             return;
         }
-        if (!write_whole(kept->file, rows + (size_t)(y - y0) * (size_t)width, (size_t)width,
-                         (size_t)y * (size_t)raster->width + (size_t)x0))
+        if (!whole_io(true, kept->file, rows + (size_t)(y - y0) * (size_t)width, (size_t)width,
+                      (size_t)y * (size_t)raster->width + (size_t)x0))
             return;
         for (int p = 0; p < pieces; p++) atomic_store(&has[p], 1);
     }
@@ -111,9 +95,9 @@ bool raster_read_kept(float *out, const Raster *raster, int x0, int y0, int widt
         for (int p = x0 / kept->piece; p <= (x0 + width - 1) / kept->piece; p++)
             if (!atomic_load(&kept->has[(size_t)y * (size_t)kept->pieces + (size_t)p])) return false;
     if (x0 == 0 && width == raster->width)
-        return read_whole(kept->file, out, (size_t)width * (size_t)height, (size_t)y0 * (size_t)width);
+        return whole_io(false, kept->file, out, (size_t)width * (size_t)height, (size_t)y0 * (size_t)width);
     for (int y = y0; y < y0 + height; y++)
-        if (!read_whole(kept->file, out + (size_t)(y - y0) * (size_t)width, (size_t)width,
+        if (!whole_io(false, kept->file, out + (size_t)(y - y0) * (size_t)width, (size_t)width,
                         (size_t)y * (size_t)raster->width + (size_t)x0))
             return false;
     return true;

@@ -2,8 +2,8 @@
  * each other.
  *
  * The program starts one process, `pitviper-rasters`, which loads GDAL and opens no file of the user's; it is asked, over its
- * first descriptor after the usual three, for a process for each set (WireOrder), and forks it. A channel is a pair of connected sockets and a piece of shared memory. The program writes a request there and sends an
- * octet; the reader writes the reply, what it would log, and data, and sends one back. A channel carries one request at a
+ * first descriptor after the usual three, for a process for each set (WireOrder), and forks it. A channel is a pair of
+ * connected sockets and a piece of shared memory. The program writes a request there and sends an octet; the reader writes the reply, what it would log, and data, and sends one back. A channel carries one request at a
  * time; there are several so that threads read at once. The reader believes the program. The program copies each reply
  * before it looks at it, and believes nothing: the reader has parsed other people's files. */
 #ifndef TERRAIN_ELEVATION_RASTER_WIRE_H

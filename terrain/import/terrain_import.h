@@ -14,7 +14,7 @@ typedef bool TerrainProgress(void *user, const char *stage, double share);
 
 typedef struct TerrainWatch {
     TerrainProgress *progress;                                   /* NULL: never stopped */
-    void (*heard)(void *user, const ElevationSurvey *survey);    /* of each grid of heights, before it is used; NULL: nobody */
+    void (*heard)(void *user, const ElevationSurvey *survey);    /* of each grid of heights, before it is used; NULL: it is not told */
     void *user;
 } TerrainWatch;
 

@@ -25,7 +25,7 @@ typedef struct ElevationFiles {
     double            horizon_m;  /* half width of the outermost level */
     double            size_m[2];  /* width of level 0, about the origin, x and y; 0: all data */
     const char       *keep_folder; /* large files are decoded once into a nameless file here; NULL: as often as needed */
-    void            (*heard)(void *user, const ElevationSurvey *survey); /* of each grid, before its use; NULL: nobody */
+    void            (*heard)(void *user, const ElevationSurvey *survey); /* of each grid, before its use; NULL: it is not told */
     void             *heard_user;
 } ElevationFiles;
 

@@ -33,6 +33,9 @@ static void lowest_add(Lowest *l, double h_m, double posts)
     l->posts[at] = posts;
 }
 
+/* More than ground falls between two posts. */
+static double least_gap_m(const Raster *raster) { return clamp(4 * raster->posting_m[0], 300, 5000); }
+
 /* How many of the lowest lie below all others by more than gap_m; 0: none. */
 static int alone(const Lowest *l, double gap_m)
 {
@@ -228,7 +231,7 @@ static Status judge_counts(ElevationSurvey *s, Raster *raster, const Counts *c, 
         log_warn("%s: %s: %s%.0f posts are no heights on Earth (%.6g .. %.6g m): taken for voids that no tag declares, and "
                  "filled; %s@nodata=%.7g says so (terrain import: --nodata)", key, path, s->whole ? "" : "at least ",
                  c->outside, c->least_out_m, c->most_out_m, path, c->least_out_m / unit_m);
-    int n = raster->choice.no_void || heights < least_posts ? 0 : alone(&c->lowest, clamp(4 * raster->posting_m[0], 300, 5000));
+    int n = raster->choice.no_void || heights < least_posts ? 0 : alone(&c->lowest, least_gap_m(raster));
     if (n > 0 && !s->whole && !c->beside)
         for (int k = 0; k < n; k++)
             if (!is_usual(c->lowest.h_m[k] / unit_m)) n = 0;
@@ -253,7 +256,7 @@ Status elevation_survey(ElevationSurvey *out, Raster *raster, const char *key, P
 {
     ElevationSurvey s = {.raster = raster, .low_m = NAN, .high_m = NAN};
     Job job = {.raster = raster, .key = key, .band = 1, .rows = raster->row_block > 0 ? raster->row_block : 64,
-               .gap_m = clamp(4 * raster->posting_m[0], 300, 5000)};
+               .gap_m = least_gap_m(raster)};
     Counts counts = no_counts;
     Status status = judge_stated(raster, key);
     if (status == STATUS_OK) {

@@ -328,7 +328,6 @@ static void the_ground_decides(void **state)
     elevation_destroy(&ground);
 }
 
-/* A jump is no drive, and neither is a lift by a crane or a vehicle in the air. */
 /* The sender's ground is level; ours is a slope of one in five, 15 m lower where it starts. */
 static void marks_lie_where_their_entity_is_shown(void **state)
 {
@@ -370,6 +369,7 @@ static void marks_lie_where_their_entity_is_shown(void **state)
     elevation_destroy(&ground);
 }
 
+/* A jump is no drive, and neither is a lift by a crane or a vehicle in the air. */
 static void jumps_leave_no_tracks(void **state)
 {
     (void)state;
