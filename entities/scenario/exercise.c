@@ -428,7 +428,7 @@ bool exercise_step(Exercise *x)
     for (int i = 0; i < x->cast->entity_count; i++)
         if (x->look[i] <= x->tick) look_at(x, i, t_s);
     link_flush(&x->link);
-    for (; s->faults.bad_every_s > 0 && !x->link.stopped && (x->bad + 0.5) * s->faults.bad_every_s <= t_s; x->bad++)
+    for (; s->faults.bad_every_s > 0 && !x->link.stopped && ((double)x->bad + 0.5) * s->faults.bad_every_s <= t_s; x->bad++)
         exercise_send_bad(&x->link, x->cast, &x->es, (int)(x->bad % exercise_bad_kinds), t_s);
     x->tick++;
     return true;

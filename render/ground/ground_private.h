@@ -110,7 +110,7 @@ static inline void ground_cell_posts(int32_t z[4], const GroundLevel *g, int i, 
     const unsigned  tile = cell_j / elevation_tile_cells * (unsigned)g->tiles_x + cell_i / elevation_tile_cells;
     const uint16_t *post = g->stored + (size_t)tile * elevation_tile_posts +
                            cell_j % elevation_tile_cells * elevation_tile_side + cell_i % elevation_tile_cells;
-    const int       sw = post[0], se = post[1], nw = post[elevation_tile_side], ne = post[elevation_tile_side + 1];
+    const uint16_t  sw = post[0], se = post[1], nw = post[elevation_tile_side], ne = post[elevation_tile_side + 1];
     if (g->plain) {
         z[0] = sw, z[1] = se, z[2] = nw, z[3] = ne;
         return;

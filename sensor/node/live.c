@@ -120,7 +120,7 @@ static void check_health(Live *l, const Session *session)
 {
     char         line[health_line_size];
     const double now_s = wall_clock_s();
-    if (now_s - l->health_s < 1e-9 * check_ns) return;
+    if (now_s - l->health_s < 1e-9 * (double)check_ns) return;
     l->health_s = now_s;
     read_counters(l);
     if (session) {

@@ -103,7 +103,7 @@ static void mark_beyond(float *plane, const ChannelPlanes *p, const ChannelResul
 {
     for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) {
         const double was = (double)p->expected[i], d = fabs((double)p->difference[i]);
-        plane[i] = !(d <= found->limit + (isfinite(was) ? found->relative * fabs(was) : 0));
+        plane[i] = (float)!(d <= found->limit + (isfinite(was) ? found->relative * fabs(was) : 0));
     }
 }
 

@@ -154,7 +154,7 @@ static Status make_grids(Coast *coast)
                 const double off_m = to_sea_m - to_land_m;
                 const double room_m = most_wander_at(to_sea_m + reach_m, to_land_m + reach_m);
                 const double doubt_m = 2 * reach_m + room_m + 2 * beach_m;
-                if (fabs(off_m) > doubt_m) *cell = off_m > 0 ? COAST_LAND : COAST_SEA;
+                if (fabs(off_m) > doubt_m) *cell = (uint8_t)(off_m > 0 ? COAST_LAND : COAST_SEA);
             }
     }
     return STATUS_OK;
@@ -250,7 +250,7 @@ static void shape_block(WorkLevel *level, const Coast *coast, const Coast *local
             const double to_sea_m = nearest_m(local->sea, local->sea_count, x, y);
             const double to_land_m = nearest_m(local->land, local->land_count, x, y);
             const double inland = inland_m(coast, to_sea_m, to_land_m, x, y);
-            level->water[at] = !(inland > 0);
+            level->water[at] = (uint8_t)!(inland > 0);
             const double above_m = (double)z->v[at] - coast->h_m;
             z->v[at] = (float)coast->h_m;
             if (!level->water[at]) z->v[at] = (float)(coast->h_m + led_down_m(above_m, inland, to_sea_m, to_land_m));

@@ -34,8 +34,8 @@ Plant woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double wi
         const double u = woods_unit(woods_hash(hash, k, 1, 0)) + woods_unit(woods_hash(hash, k, 2, 0)) - 1;
         p.lean[k] = (int8_t)lrint(clamp(u * 62, -89, 89)); /* both at once stay within 15 degrees */
     }
-    p.height = (uint16_t)clamp(lrint(height_m / plant_height_step_m), 1, 65535);
-    p.width  = (uint8_t)clamp(lrint(128 * width), 16, 255);
+    p.height = (uint16_t)clamp(rint(height_m / plant_height_step_m), 1, 65535);
+    p.width  = (uint8_t)clamp(rint(128 * width), 16, 255);
     return p;
 }
 

@@ -17,7 +17,7 @@ static GroundPlane level(double height_m) { return (GroundPlane){{0, 0, -1}, hei
 
 /* ---- the plane and its legs ------------------------------------------------------------------------------ */
 
-static GroundPlane tilted(uint64_t i)
+static GroundPlane tilted(uint32_t i)
 {
     GroundPlane plane = {{0.3 * (random_uniform(1, i, 0, 0) - 0.5), 0.3 * (random_uniform(1, i, 0, 1) - 0.5), -1},
                          20 * random_uniform(1, i, 0, 2)};
@@ -30,7 +30,7 @@ static GroundPlane tilted(uint64_t i)
 static void an_image_is_as_far_from_the_plane(void **state)
 {
     (void)state;
-    for (uint64_t i = 0; i < 200; i++) {
+    for (uint32_t i = 0; i < 200; i++) {
         const GroundPlane    plane = tilted(i);
         const ScatterAntenna a = antenna_at(360 * random_uniform(2, i, 0, 0), 60 * random_uniform(2, i, 0, 1) + 12,
                                                 pow(10, 2 + 3 * random_uniform(2, i, 0, 2)));
@@ -64,7 +64,7 @@ static void a_mirror_has_no_field_along_it(void **state)
 {
     (void)state;
     double worst = 0;
-    for (uint64_t i = 0; i < 500; i++) {
+    for (uint32_t i = 0; i < 500; i++) {
         const GroundPlane plane = tilted(i);
         double            right[3] = {random_uniform(5, i, 0, 0) - 0.5, random_uniform(5, i, 0, 1) - 0.5,
                                       random_uniform(5, i, 0, 2) - 0.5};

@@ -207,7 +207,7 @@ static void make_hits(LightSet *s)
         }
         s->hits.surface[i] = (uint8_t)(1 + i / 8 % (SURFACE_COUNT - 1));
         s->material[i] = (uint16_t)s->materials->surface[s->hits.surface[i]];
-        s->sun[i]      = dice(4, i, 0, 1) < 0.3 ? 0 : 1;
+        s->sun[i]      = dice(4, i, 0, 1) < 0.3 ? 0.0F : 1.0F;
         s->texture[i]  = (float)dice(5, i, 0.6, 1.4);
         s->temp_k[i]   = (float)dice(6, i, 270, 330);
     }

@@ -50,7 +50,7 @@ static float height_over_float(const ElevationLevel *g, const float u[2], float 
 {
     if (!(u[0] >= 0 && u[1] >= 0 && u[0] < g->nx - 1 && u[1] < g->ny - 1)) return NAN;
     const int       i = (int)u[0], j = (int)u[1];
-    const float     a = u[0] - i, b = u[1] - j;
+    const float     a = u[0] - (float)i, b = u[1] - (float)j;
     int32_t         post[4];
     elevation_cell(post, g, i, j);
     const float sw = (float)post[0], se = (float)post[1], nw = (float)post[2], ne = (float)post[3];

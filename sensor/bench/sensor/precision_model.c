@@ -116,8 +116,9 @@ static void facet_errors(double *range_m, double *area, const Faceted *got, cons
 
 static double bytes_of(const Model *model)
 {
-    return model->vertex_count * (sizeof *model->vertex + sizeof *model->normal) +
-           model->triangle_count * (sizeof *model->triangle + sizeof *model->triangle_part);
+    const size_t vertex = sizeof *model->vertex + sizeof *model->normal,
+                 triangle = sizeof *model->triangle + sizeof *model->triangle_part;
+    return (double)((size_t)model->vertex_count * vertex + (size_t)model->triangle_count * triangle);
 }
 
 static Status knob_facets(Bench *bench)
