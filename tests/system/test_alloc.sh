@@ -6,7 +6,7 @@
 build=$(realpath "$build")
 pitviper=$build/pitviper preload=$build/tests/libfail_alloc.so
 needs "$preload (sanitizers have an allocator of their own)" test -f "$preload"
-places_most=${PITVIPER_ALLOC_PLACES:-24} # for all commands together
+places_most=${PITVIPER_ALLOC_PLACES:-14} # for all commands together
 export pitviper preload tmp
 
 # ---- small things to read: three models, one visibility, a ground of 30 m; a model of somebody else's
