@@ -1,24 +1,14 @@
 /* main.c: the table of commands, their common options, and `probe` and `help`. */
 #include "entities/probe.h"
 #include "render/probe.h"
-#include "sensor/commands/check.h"
+#include "sensor/commands/commands.h"
 #include "sensor/bench/sensor/suites.h"
-#include "sensor/commands/exercise.h"
-#include "sensor/commands/frame.h"
-#include "sensor/commands/heat.h"
-#include "sensor/commands/inspect.h"
-#include "sensor/node/live.h"
-#include "sensor/node/stop.h"
-#include "sensor/commands/model.h"
-#include "sensor/commands/rcs.h"
-#include "sensor/commands/record.h"
-#include "sensor/commands/replay.h"
-#include "sensor/commands/terrain.h"
+#include "sensor/node/run/stop.h"
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
 #include "sensor/regress/regress.h"
 #include "sensor/settings/config.h"
-#include "sensor/settings/next_option.h"
+#include "sensor/settings/command_line.h"
 #include "terrain/probe.h"
 
 #include <errno.h>
@@ -78,7 +68,7 @@ static void probe_usage(FILE *to)
 static int probe_command(int argc, char **argv)
 {
     size_t state[2] = {0};
-    if (argc < 2) return wrong_line("probe", "no probe is named: usage: pitviper probe WHAT [ARGUMENT ...] < rows.csv");
+    if (argc < 2) return command_line_wrong("probe", "no probe is named: usage: pitviper probe WHAT [ARGUMENT ...] < rows.csv");
     WordMeant meant = word_meant(argv[1]);
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
@@ -86,7 +76,7 @@ static int probe_command(int argc, char **argv)
             return 0;
         }
     if (strcmp(argv[1], "-c") == 0 || strcmp(argv[1], "--config") == 0) {
-        if (argc < 4) return wrong_line("probe", "%s needs a file of settings, and after it a probe", argv[1]);
+        if (argc < 4) return command_line_wrong("probe", "%s needs a file of settings, and after it a probe", argv[1]);
         if (config_tables_of(argv[2]) != STATUS_OK) return 1;
         argc -= 2, argv += 2;
         meant = word_meant(argv[1]);
@@ -95,11 +85,11 @@ static int probe_command(int argc, char **argv)
         word_consider(&meant, probe->name);
         if (strcmp(argv[1], probe->name) != 0) continue;
         if (!probe->arguments && argc > 2)
-            return wrong_line("probe", "%s takes no argument, but '%s' was given; rows are read from standard input",
+            return command_line_wrong("probe", "%s takes no argument, but '%s' was given; rows are read from standard input",
                               probe->name, argv[2]);
         return probe_run(probe, argc - 1, argv + 1, stdin, stdout) == STATUS_OK ? 0 : 1;
     }
-    return wrong_line("probe", "no such %s: %s%s", argv[1][0] == '-' ? "option" : "probe", argv[1], word_hint(&meant));
+    return command_line_wrong("probe", "no such %s: %s%s", argv[1][0] == '-' ? "option" : "probe", argv[1], word_hint(&meant));
 }
 
 static int run_bench(int argc, char **argv) { return bench_command(argc, argv, bench_next_suite); }

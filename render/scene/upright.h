@@ -4,7 +4,7 @@
 
 #include "pitviper.h"
 
-static const double camera_vertical_rad = 2e-3; /* reason: sensor/node/seeker.h */
+static const double camera_vertical_rad = 2e-3; /* reason: sensor/node/session/seeker.h */
 
 bool camera_near_vertical(const double d_enu[3]);
 

@@ -6,7 +6,7 @@
  * rows changed alike the cause is the machine: the median of all ratios is reported. An error is the same on the
  * same inputs: a tenth is a change. */
 #include "sensor/bench/bench_private.h"
-#include "sensor/settings/next_option.h"
+#include "sensor/settings/command_line.h"
 
 #include <stdlib.h>
 
@@ -376,20 +376,20 @@ int bench_compare(int argc, char **argv)
     static char called[] = "pitviper bench";
     argv[0] = called; /* of messages */
     optind  = 0;      /* restart getopt */
-    for (int option; (option = next_option(argc, argv, "", options)) != -1;)
+    for (int option; (option = command_line_option(argc, argv, "", options)) != -1;)
         switch (option) {
         case REPORT: report = optarg; break;
         case LIMIT:
             if (!text_to_double(&slower, optarg) || !(slower >= 1))
-                return wrong_line("bench", "--slower: '%s' is not a factor from 1 up", optarg);
+                return command_line_wrong("bench", "--slower: '%s' is not a factor from 1 up", optarg);
             break;
         case HELP:
             fputs("usage: pitviper bench compare A.csv B.csv [--report FILE] [--slower FACTOR]\n", stdout);
             return 0;
-        default: return 2; /* reported by next_option */
+        default: return 2; /* reported by command_line_option */
         }
     if (argc - optind != 2)
-        return wrong_line("bench", "compare needs two tables: pitviper bench compare A.csv B.csv");
+        return command_line_wrong("bench", "compare needs two tables: pitviper bench compare A.csv B.csv");
     for (int k = 0; k < 2; k++) path[k] = argv[optind + k];
     Status status = run_read(&a, path[0]);
     if (status == STATUS_OK) status = run_read(&b, path[1]);

@@ -1,7 +1,7 @@
 /* sensor/bench/run.c: the bench command: the selected suites, the machine, and the results. */
 #include "sensor/bench/bench_private.h"
 #include "pitviper_output.h"
-#include "sensor/settings/next_option.h"
+#include "sensor/settings/command_line.h"
 
 #include <errno.h>
 #include <time.h>
@@ -69,7 +69,7 @@ static bool parse_threads(int *out, const char *value)
 {
     long long number;
     if (!text_to_long(&number, value) || number < 1 || number > 256) {
-        wrong_line("bench", "--threads: '%s' is not a whole number in 1 .. 256", value);
+        command_line_wrong("bench", "--threads: '%s' is not a whole number in 1 .. 256", value);
         return false;
     }
     *out = (int)number;
@@ -112,7 +112,7 @@ static int parse(Bench *bench, Outputs *out, int argc, char **argv, BenchNext *n
     list_options(list, bench, next);
     argv[0] = called; /* of messages */
     optind  = 0;      /* restart getopt */
-    for (int option; (option = next_option(argc, argv, "", list)) != -1;)
+    for (int option; (option = command_line_option(argc, argv, "", list)) != -1;)
         switch (option) {
         case CSV: out->csv = optarg; break;
         case REPORT: out->report = optarg; break;
@@ -125,10 +125,10 @@ static int parse(Bench *bench, Outputs *out, int argc, char **argv, BenchNext *n
             if (bench->all) usage(stdout, next);
             else usage_of(stdout, bench->suite, next);
             return 1 + 0;
-        case '?': return 1 + 2; /* reported by next_option */
+        case '?': return 1 + 2; /* reported by command_line_option */
         default: bench->option[option - OF_SUITE].value = optarg;
         }
-    if (optind < argc) return 1 + wrong_line("bench", "%s takes no '%s'", bench->suite, argv[optind]);
+    if (optind < argc) return 1 + command_line_wrong("bench", "%s takes no '%s'", bench->suite, argv[optind]);
     return 0;
 }
 
@@ -243,7 +243,7 @@ int bench_command(int argc, char **argv, BenchNext *next)
     Outputs      out = {NULL, NULL};
     char         line[512];
     const double begun_s = wall_clock_s();
-    if (argc < 2) return wrong_line("bench", "no bench is named: usage: pitviper bench WHAT [options]");
+    if (argc < 2) return command_line_wrong("bench", "no bench is named: usage: pitviper bench WHAT [options]");
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         usage(stdout, next);
         return 0;
@@ -254,7 +254,7 @@ int bench_command(int argc, char **argv, BenchNext *next)
     bench.all   = strcmp(argv[1], "all") == 0;
     WordMeant meant;
     if (!bench.all && !known_suite(&meant, argv[1], next))
-        return wrong_line("bench", "no such bench: %s%s", argv[1], word_hint(&meant));
+        return command_line_wrong("bench", "no such bench: %s%s", argv[1], word_hint(&meant));
     const char *only = argv[1];
     const int   stop = parse(&bench, &out, argc - 1, argv + 1, next);
     if (stop) return stop - 1;

@@ -5,7 +5,7 @@
 #include "sensor/framefile/frame_ground.h"
 #include "sensor/framefile/frame_tables.h"
 #include "sensor/world/frame_world.h"
-#include "sensor/settings/band_choice.h"
+#include "sensor/settings/config.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -33,7 +33,7 @@ static Status choose_sensors(FrameScene *s, const FrameFile *file)
 {
     const RenderRequest *r = &file->request;
     unsigned             bands;
-    if (!bands_choose(&bands, s->config.sensor.bands)) return STATUS_BAD_VALUE;
+    if (!config_bands_choose(&bands, s->config.sensor.bands)) return STATUS_BAD_VALUE;
     if (bands != r->bands) {
         log_error("frame: the bands of the request are not those of the settings (sensor.bands)");
         return STATUS_BAD_VALUE;

@@ -2,7 +2,7 @@
  *
  * The session holds a list of consumers and knows none by name. It renders the union of what they need, and nothing
  * else. A new one is a file of its own with a function that creates it, and a line where lists are created
- * (sensor/node/session_consumers.c). */
+ * (sensor/node/session/session_consumers.c). */
 #ifndef SENSOR_PUBLISH_CONSUMER_H
 #define SENSOR_PUBLISH_CONSUMER_H
 

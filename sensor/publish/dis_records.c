@@ -2,7 +2,7 @@
 #include "sensor/publish/dis_records.h"
 
 #include "dis/reader.h"
-#include "sensor/settings/video_choice.h"
+#include "sensor/settings/publish_choice.h"
 
 #include <stdlib.h>
 
@@ -272,8 +272,8 @@ size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSender *s
     StreamUrl   url;
     Octets      o   = {.used = 0};
     DisData     pdu = data_pdu(sender);
-    if (!stream_url_parse(&url, &why, config->publish.stream)) return 0;
-    const int port = url.port + stream * stream_port_step;
+    if (!publish_stream_parse(&url, &why, config->publish.stream)) return 0;
+    const int port = url.port + stream * publish_stream_port_step;
     if (port > UINT16_MAX) return 0;
     add_fixed(&pdu, datum_band, (uint32_t)band);
     add_fixed(&pdu, datum_kind, datum_kind_stream);

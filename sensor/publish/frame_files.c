@@ -2,7 +2,7 @@
 #include "sensor/publish/frame_files.h"
 #include "pitviper_output.h"
 
-#include "sensor/settings/plane_choice.h"
+#include "sensor/settings/publish_choice.h"
 #include "sensor/publish/emissivity.h"
 #include "sensor/publish/image_file.h"
 
@@ -42,7 +42,7 @@ bool frame_path(char path[frame_path_size], const FrameFiles *frame, const char 
 static unsigned planes_of(const Config *config)
 {
     unsigned planes;
-    return plane_choice_parse(&planes, config->publish.planes) ? planes : planes_all; /* it was checked */
+    return publish_planes_parse(&planes, config->publish.planes) ? planes : planes_all; /* it was checked */
 }
 
 bool frame_files_truth(const Config *config) { return planes_of(config) != planes_none; }

@@ -1,4 +1,4 @@
-/* sensor/publish/variant_record.h: manifest.jsonl and variant.json of a sweep (sensor/commands/sweep.h), and the
+/* sensor/publish/variant_record.h: manifest.jsonl and variant.json of a sweep (sensor/commands/sweep/sweep.h), and the
  * fields that they and run.json share for a completed run. */
 #ifndef SENSOR_PUBLISH_VARIANT_RECORD_H
 #define SENSOR_PUBLISH_VARIANT_RECORD_H

@@ -1,14 +1,14 @@
 /* sensor/quality/quality.h: selects settings from a measured Pareto front, where error or time is configured instead
  * of settings.
  *
- * etc/quality.csv: rows of rays per pixel, at edges and over small targets, for each kind of scene, with the largest error
- * over several views and the time; `pitviper bench quality --table FILE` writes it. The selection is a function of table and
- * configuration alone: times are the table's times quality.machine_factor, never a clock's, and the scene is one of woods
- * where terrain.woods lets plants grow, so that a frame rendered alone has the settings it has in a run. */
+ * etc/quality.csv: rows of rays per pixel, at edges and over small targets, for each kind of scene, with the largest
+ * error over several views and the time; `pitviper bench quality --table FILE` writes it. The selection is a function
+ * of table and configuration alone: times are the table's times quality.machine_factor, never a clock's, and the
+ * scene is one of woods where terrain.woods lets plants grow, so that a frame rendered alone has the settings it has
+ * in a run. */
 #ifndef SENSOR_QUALITY_QUALITY_H
 #define SENSOR_QUALITY_QUALITY_H
 
-#include "sensor/settings/choice_lines.h"
 #include "sensor/settings/config.h"
 
 /* The bands with an error in the table; not the radar. */
@@ -44,9 +44,9 @@ typedef struct QualityTarget {
     QualityScene scene;
 } QualityTarget;
 
-/* Of the scene's rows: the fastest row that meets every target; if there is none, the closest: within frame_ms if any row is, then with the
- * smallest ratio of error to target. Ties: the first. With frame_ms alone: the smallest error within it. reached: all
- * targets are met. */
+/* Of the scene's rows: the fastest row that meets every target; if there is none, the closest: within frame_ms if any
+ * row is, then with the smallest ratio of error to target. Ties: the first. With frame_ms alone: the smallest error
+ * within it. reached: all targets are met. */
 int  quality_pick(bool *reached, const QualityTable *table, const QualityTarget *target);
 
 /* Whether any targets select this row; else a faster row of its scene is at least as good in all. */

@@ -39,8 +39,9 @@ Status trial_scene_place(const TrialScene *scene, const TrialPlace *place);
 /* A view of the origin from this far south of it and this high above it. */
 View trial_view(const TrialScene *scene, double back_m, double above_m, double hfov_rad, int width, int height);
 
-/* What a node asks for with the default settings (sensor/node/session.c): all bands and planes of truth, antialiasing,
- * the estimate of its error, low plants where the world has a forest, and the radar's profile about range_m. */
+/* What a node asks for with the default settings (sensor/node/session/session_frame.c): all bands and planes of
+ * truth, antialiasing, the estimate of its error, low plants where the world has a forest, and the radar's profile
+ * about range_m. */
 RenderRequest trial_default_request(const TrialScene *scene, const View *view, double range_m);
 
 /* The stages of a frame, in order. Of those summed over threads the mean per thread: on one thread they add up to

@@ -3,7 +3,7 @@
 
 #include "dis/pdu.h"
 #include "render/scene/skip.h"
-#include "sensor/node/session.h"
+#include "sensor/node/session/session.h"
 
 static const char *drop(int i) { return i < DIS_DROP_COUNT ? dis_drop_name((DisDrop)i) : NULL; }
 static const char *skip(int i) { return i < SKIP_COUNT ? skip_name((Skip)i) : NULL; }

@@ -3,7 +3,7 @@
 #include "pitviper_output.h"
 
 #include "pitviper_file.h"
-#include "sensor/node/stop.h"
+#include "sensor/node/run/stop.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -2,11 +2,11 @@
 #include "sensor/regress/regress.h"
 #include "pitviper_output.h"
 
-#include "sensor/node/stop.h"
+#include "sensor/node/run/stop.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/publish/image_file.h"
 #include "sensor/regress/report.h"
-#include "sensor/settings/next_option.h"
+#include "sensor/settings/command_line.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -80,7 +80,7 @@ static int refuse(const char *format, const char *text)
 {
     char line[512];
     snprintf(line, sizeof line, format, text);
-    return 1 + wrong_line("regress", "%s", line);
+    return 1 + command_line_wrong("regress", "%s", line);
 }
 
 static bool parse_count(int *out, const char *text)
@@ -100,7 +100,7 @@ static int parse(Options *o, int argc, char **argv)
         {"work", 1, NULL, WORK}, {"jobs", 1, NULL, JOBS}, {"threads", 1, NULL, THREADS}, {"isa", 1, NULL, ISA},
         {"keys", 0, NULL, KEYS}, {"allow-missing", 0, NULL, ALLOW}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     optind = 0;
-    for (int option; (option = next_option(argc, argv, "", options)) != -1;) {
+    for (int option; (option = command_line_option(argc, argv, "", options)) != -1;) {
         switch (option) {
         case UPDATE: o->update = true; break;
         case WHY: o->why = optarg; break;
@@ -123,7 +123,7 @@ static int parse(Options *o, int argc, char **argv)
         case ALLOW: o->allow_missing = true; break;
         case KEYS: case_write_keys(stdout); return 1;
         case HELP: fputs(help, stdout); return 1;
-        default: return 1 + 2; /* reported by next_option */
+        default: return 1 + 2; /* reported by command_line_option */
         }
     }
     if (optind == argc) return refuse("no CASE is named: usage: pitviper regress CASE ... [options]%s", "");

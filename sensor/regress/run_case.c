@@ -4,7 +4,7 @@
 
 #include "sensor/settings/config.h"
 #include "sensor/publish/frame_files.h"
-#include "sensor/node/stop.h"
+#include "sensor/node/run/stop.h"
 #include "sensor/regress/child.h"
 #include "sensor/regress/update.h"
 

@@ -7,6 +7,7 @@
 #define SENSOR_SETTINGS_CONFIG_H
 
 #include "render/scene/view.h"
+#include "pitviper.h"
 
 enum { config_keys_max = 256, config_paths_size = 4096, config_text_size = 65536 };
 
@@ -67,7 +68,7 @@ typedef struct Config {
         char   local_solar[32];    /* likewise, in mean solar time; not with utc */
         char   host[24];           /* an id; munition: munitions as they appear, causal only; observer; empty: chosen */
         char   aim[24];            /* empty: chosen */
-        char   from[32], to[32];   /* a time as in sensor/settings/span.h; empty: no limit */
+        char   from[32], to[32];   /* a time as in sensor/settings/config.h; empty: no limit */
         double listen_s;           /* causal: time until the choices are made */
     } exercise;
     struct {
@@ -207,5 +208,35 @@ void   config_write_given(FILE *to, const Config *config);
 /* The canonical text, hashed as config_sha256: every key and value, in table order; keys that change no plane
  * (network, publish, record, port, time span) with their defaults. */
 void   config_text(char *out, size_t out_size, const Config *config);
+
+/* ---- settings whose text has a grammar --------------------------------------------------------------- */
+
+/* sensor.bands as a set of bands. A further channel of etc/channels.csv takes the place of a band: these channels are
+ * chosen for the process, before tables are read (channel_choose). False, logged: the text is no list of bands. */
+bool config_bands_choose(unsigned *bands, const char *text);
+
+/* exercise.from_s and to_s: a time in a recording. A plain number, 3471.5, is exercise time, as `pitviper inspect`
+ * shows it; +12 is seconds after the start of the recording, -5 seconds before its end. An empty text is valid: no
+ * limit. */
+bool   config_span_good(const char *text);
+/* NaN: empty, or not a time. */
+double config_span_time_s(const char *text, double first_s, double last_s);
+/* Whether `from` is after `to` in every recording: both are of one kind. */
+bool   config_span_backward(const char *from, const char *to);
+/* Whether a recording of that span holds nothing at or after `from`, or nothing up to `to`: logged, with the span. */
+bool   config_span_outside(const char *from, const char *to, double first_s, double last_s);
+
+/* ---- automatic choices, where settings are open ------------------------------------------------------- */
+
+enum { choices_capacity = 32, choice_text_size = 200 };
+
+/* A line for each choice, with the key that changes it. */
+typedef struct Choices {
+    int  count;
+    char line[choices_capacity][choice_text_size];
+} Choices;
+
+/* Dropped when the list is full. */
+void choice_add(Choices *choices, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #endif

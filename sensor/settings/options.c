@@ -3,7 +3,7 @@
 #include "sensor/settings/options.h"
 
 #include "pitviper_channels.h"
-#include "sensor/settings/next_option.h"
+#include "sensor/settings/command_line.h"
 
 #include <getopt.h>
 #include <stdio.h>
@@ -197,7 +197,7 @@ static int compare_ints(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* 3,7,12: sorted, without duplicates. */
+/* Parses a list of frames, such as 3,7,12, and sorts it without duplicates. */
 static bool parse_frames(int out[options_only_max], int *out_count, const char *name, const char *text)
 {
     char      one[16];
@@ -271,7 +271,7 @@ static bool of_sweep(const struct Row *row)
     return row->what == OUT || row->what == OVERWRITE || row->what == SWEEP || row->what == HELP;
 }
 
-/* Options that change no product: a variant made with another value is kept. */
+/* Whether an option changes no product: a variant of a sweep made with another value of it is kept. */
 static bool same_products(const struct Row *row)
 {
     return row->what == THREADS || row->what == SPEED || row->what == NO_SKIP || row->what == ISA;
@@ -334,7 +334,7 @@ static const struct Row *row_of(int option)
     return option > KEY ? &rows[option - KEY - 1] : NULL;
 }
 
-/* The configuration file first, wherever it is on the command line: options override it. */
+/* Reads the configuration file first, wherever it is on the command line: options override it. */
 static Status read_config(Config *config, const struct option *list, int argc, char **argv)
 {
     Status status = STATUS_OK;
@@ -362,8 +362,8 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     if (status == STATUS_NO_MEMORY) log_error("%s: out of memory", name);
     if (status != STATUS_OK) return 1 + (status == STATUS_NO_MEMORY ? 1 : 2);
     optind = 0;
-    for (int option; (option = next_option(argc, argv, "c:", list)) != -1;) {
-        const struct Row *row = row_of(option); /* NULL: already reported by next_option */
+    for (int option; (option = command_line_option(argc, argv, "c:", list)) != -1;) {
+        const struct Row *row = row_of(option); /* NULL: already reported by command_line_option */
         if (row && row->what == HELP) {
             print_help(command);
             return 1 + 0;
@@ -372,10 +372,11 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     }
     if (optind + (command == COMMAND_REPLAY) != argc) {
         if (command == COMMAND_RUN)
-            return 1 + wrong_line(name, "'%s' is not an option; a live node takes no log, `pitviper replay` does",
+            return 1 + command_line_wrong(name, "'%s' is not an option; a live node takes no log, `pitviper replay` does",
                                   argv[optind]);
-        if (optind == argc) return 1 + wrong_line(name, "no LOG is named: usage: pitviper replay LOG [options]");
-        return 1 + wrong_line(name, "one LOG at a time, not also '%s'", argv[optind + 1]);
+        if (optind == argc)
+            return 1 + command_line_wrong(name, "no LOG is named: usage: pitviper replay LOG [options]");
+        return 1 + command_line_wrong(name, "one LOG at a time, not also '%s'", argv[optind + 1]);
     }
     if (command == COMMAND_REPLAY) o->log = argv[optind];
     if (o->host_count == 1 && config_set(&o->config, "exercise.host", o->host[0], "--host") != STATUS_OK) return 1 + 2;

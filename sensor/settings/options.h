@@ -21,7 +21,7 @@ typedef struct OptionGiven {
 typedef struct Options {
     CommandName command;
     const char *log, *out, *isa;
-    const char *sweep;          /* a file of sensor/commands/sweep_file.h; NULL: one run */
+    const char *sweep;          /* a file of sensor/commands/sweep/sweep.h; NULL: one run */
     int         threads, host_count, frames; /* frames: stop after so many; 0: never */
     double      speed, for_s;   /* exercise seconds per second, INFINITY: as fast as possible; stop after */
     bool        no_skip, overwrite;

@@ -3,7 +3,6 @@
 #define SENSOR_SETTINGS_SENSORS_H
 
 #include "sensor/detector/chain.h"
-#include "sensor/settings/choice_lines.h"
 #include "sensor/settings/config.h"
 
 typedef struct Sensors {

@@ -47,7 +47,7 @@ static Status add_csv_of(TablesUsed *out, const char *folder, const char *prefix
 
 static int is_plain(const struct dirent *entry) { return entry->d_name[0] != '.'; }
 
-/* Path and hash of every *.csv below folder, a line each, sorted by name. */
+/* Lists path and hash of every *.csv below the folder, a line each, sorted by name. */
 static Status list_files(FILE *to, const char *folder, const char *below, int depth)
 {
     struct dirent **entry;
@@ -72,7 +72,7 @@ static Status list_files(FILE *to, const char *folder, const char *below, int de
     return status;
 }
 
-/* A folder of some sixty files as one entry. */
+/* Adds a folder of some sixty files as one entry: the hash of lines of their paths and hashes. */
 static Status add_folder(TablesUsed *out, const char *name)
 {
     char       folder[path_size], *text = NULL;
@@ -94,7 +94,7 @@ static Status add_folder(TablesUsed *out, const char *name)
     return status;
 }
 
-/* Model files of the catalog, relative to it, and the sidecar of each. */
+/* Adds the model files of the catalog, relative to it, and the sidecar of each. */
 static Status add_models(TablesUsed *out, const char *catalog)
 {
     Table       table;
@@ -120,7 +120,7 @@ static Status add_models(TablesUsed *out, const char *catalog)
     return status;
 }
 
-/* A file of the user's, by its name in this folder. */
+/* Adds a file of the user's, by its name in its folder. */
 static Status add_in(TablesUsed *out, const char *folder, const char *path)
 {
     char        name[table_used_name_size];

@@ -2,7 +2,7 @@
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "sensor/settings/config.h"
-#include "sensor/settings/video_choice.h"
+#include "sensor/settings/publish_choice.h"
 
 #include <stdlib.h>
 
@@ -50,7 +50,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     StreamUrl   url;
     const char *why = NULL;
     if (config_check(&config) == STATUS_OK && *config.publish.stream &&
-        !(stream_url_parse(&url, &why, config.publish.stream) && url.port > 0))
+        !(publish_stream_parse(&url, &why, config.publish.stream) && url.port > 0))
         abort();
     return 0;
 }

@@ -4,7 +4,7 @@
 #include "tests/dis/random_pdu.h"
 
 #include "entities/survey/survey.h"
-#include "sensor/node/player.h"
+#include "sensor/node/player/player.h"
 
 #include <stdlib.h>
 

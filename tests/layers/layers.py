@@ -39,7 +39,7 @@ LIBRARIES = (
     ('cpl_*', 'terrain/elevation/reader/*'), ('ogr_*', 'terrain/elevation/reader/*'), ('erfa.h', 'terrain/*'),
     ('OpenImageIO/*', 'sensor/publish/image_module.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
     ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),
-    ('jansson.h', 'sensor/publish/*'), ('jansson.h', 'entities/import/gltf*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep_file.c'),
+    ('jansson.h', 'sensor/publish/*'), ('jansson.h', 'entities/import/gltf*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep/sweep_file.c'),
 )
 
 # Files are opened for writing, and renamed, by pitviper_output.c alone, which follows no link; shared memory has names of its own; pitviper_confine.c forbids it.
@@ -213,7 +213,7 @@ def twins():
 
     for path, header in re.findall(r'(\S+) (\S+)', """
         pitviper_log.c dis/pdu.h                        pitviper_log.c sensor/bench/bench_private.h
-        dis/pdu.c sensor/bench/bench_private.h          sensor/node/live.c sensor/bench/sensor/quality.h
+        dis/pdu.c sensor/bench/bench_private.h          sensor/commands/run_command.c sensor/bench/sensor/quality.h
         sensor/publish/html.c sensor/bench/bench.h      dis/pdu.c terrain/earth/geodesy.h
         dis/pdu.c entities/models/model.h               terrain/earth/sun.c dis/pdu.h
         entities/models/model.c render/frame/render.h   render/frame/render.c entities/table/entity_table.h
@@ -231,7 +231,7 @@ def twins():
         render/air/air.c pitviper_simd.h                entities/table/entity_table.c dis/entity_state.h
         render/frame/render.c entities/table/snapshot.h sensor/node/loop.c dis/log.h
         sensor/publish/truth.c <jansson.h>              tests/dis/test_pdu.c tests/check.h
-        main.c sensor/commands/replay.h"""):
+        main.c sensor/commands/commands.h"""):
         one(False, path, header)
     # circles: of two files, through a third, of wings by different files; a line of wings, a file and its own headers
     plant(True, **{'dis/a.c': 'dis/a.h dis/b.h', 'dis/a.h': '', 'dis/b.h': '', 'dis/b.c': 'dis/a.h'})
@@ -315,7 +315,7 @@ def changed_twins():
     for paths, good, bad in (
             (['dis/pdu.c'], 'dis/test_pdu entities/test_survey sensor/test_truth system/test_live fuzz/fuzz_pdu', 'terrain/test_sun base/test_log'),
             (['render/air/air.c'], 'render/test_air sensor/test_truth', 'dis/test_pdu entities/test_survey terrain/test_sun'),
-            (['sensor/node/live.c'], 'sensor/test_truth system/test_live', 'render/test_air'),
+            (['sensor/commands/run_command.c'], 'sensor/test_truth system/test_live', 'render/test_air'),
             (['tests/dis/test_pdu.c'], 'dis/test_pdu system/test_layers', 'dis/test_data dis/test_pdu_more system/test_live'),
             (['tests/system/test_live.sh'], 'system/test_live', 'system/test_live_network dis/test_pdu'),
             (['pitviper.h'], 'base/test_log dis/test_pdu system/test_live', ''), (['etc/materials.csv'], 'render/test_air', ''),

@@ -8,7 +8,7 @@
 
 #include "dis/entity_state.h"
 #include "entities/motion/dead_reckoning.h"
-#include "sensor/node/session.h"
+#include "sensor/node/session/session.h"
 
 enum { lab_most_reports = 512, lab_most_frames = 512, lab_octets = 256 };
 
@@ -143,7 +143,7 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
     qsort(lab.datagram, (size_t)lab.reports, sizeof *lab.datagram, lab_compare);
     DisLog log = {.count = lab.reports, .datagram = lab.datagram};
     assert_int_equal(survey_log(&survey, &log, -1), STATUS_OK);
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     if (config.causal) plan.start_s = survey.first_s, plan.end_s = INFINITY;
     assert_int_equal(player_create(&player, -1, config.causal), STATUS_OK);
     assert_int_equal(player_add_log(player, &log), STATUS_OK);

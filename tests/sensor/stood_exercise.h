@@ -5,7 +5,7 @@
 #include "entities/motion/dead_reckoning.h"
 #include "tests/check.h"
 
-#include "sensor/node/choices.h"
+#include "sensor/node/choices/choices.h"
 
 enum { most_tracks = 24, most_points = 16 };
 

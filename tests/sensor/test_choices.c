@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "dis/entity_state.h"
-#include "sensor/node/choices.h"
+#include "sensor/node/choices/choices.h"
 
 static bool says(const Choices *choices, const char *text)
 {
@@ -25,18 +25,18 @@ static void the_exercise_heard_most_is_taken(void **state)
         datagram[k] = (DisDatagram){.octets = (uint32_t)dis_encode_entity_state(bytes[k], sizeof bytes[k], &pdu), .bytes = bytes[k]};
     }
     DisLog log = {.count = 5, .datagram = datagram};
-    assert_int_equal(choose_exercise(&choices, &log, &config), 7);
+    assert_int_equal(choice_exercise(&choices, &log, &config), 7);
     CHECK(says(&choices, "exercise: 7, heard most of 2 (exercise.exercise)"));
     choices.count            = 0;
     config.exercise.exercise = 3;
-    assert_int_equal(choose_exercise(&choices, &log, &config), 3);
+    assert_int_equal(choice_exercise(&choices, &log, &config), 3);
     config.exercise.exercise = -2;
-    assert_int_equal(choose_exercise(&choices, &log, &config), -1);
+    assert_int_equal(choice_exercise(&choices, &log, &config), -1);
     config.exercise.exercise = -1;
     log.count                = 1;
-    assert_int_equal(choose_exercise(&choices, &log, &config), -1); /* there is but one: nothing to choose */
+    assert_int_equal(choice_exercise(&choices, &log, &config), -1); /* there is but one: nothing to choose */
     config.causal = true;
-    assert_int_equal(choose_exercise(&choices, &log, &config), 7); /* and others may come */
+    assert_int_equal(choice_exercise(&choices, &log, &config), 7); /* and others may come */
     CHECK(choices.count == 0);
 }
 
@@ -72,24 +72,24 @@ static void stamps_that_are_no_clock_are_said(void **state)
     double     unix_s;
     for (int i = 0; i < 6; i++)
         survey.doubts.sender[i] = (ExerciseClockAnomaly){.site = 3, .application = (uint16_t)(40 + i), .pdus = 90, .by_arrival = 89};
-    CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
+    CHECK(choice_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
     CHECK(says(&choices, "time stamps of 3:40 stand still: 89 of its 90 PDUs count from their arrival"));
     CHECK(says(&choices, "3:43") && !says(&choices, "3:44") && says(&choices, "2 more senders"));
     CHECK(says(&choices, "1 of 20 absolute stamps disagree and are left out"));
     survey.absolute_unix_s = NAN;
     choices.count = 0;
-    CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
+    CHECK(choice_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
     CHECK(says(&choices, "local solar 10:00 on 21 June, the absolute stamps of the log do not agree"));
     choices.count = 0;
     survey.absolute_stamps = 1;
     survey.absolute_left_out = 0;
     survey.doubts = (ExerciseClockAnomalies){.unstamped = 7, .stamped = 93};
-    CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
+    CHECK(choice_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
     CHECK(says(&choices, "21 June, the log's one absolute stamp is too little to go by"));
     CHECK(says(&choices, "clock: 7 of 100 PDUs have no time stamp (0)"));
     choices.count = 0;
     survey.doubts.stamped = 0;
-    CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
+    CHECK(choice_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
     CHECK(says(&choices, "clock: no PDU has a time stamp, all are 0"));
 }
 
@@ -104,7 +104,7 @@ static void the_time_of_day_comes_from_the_best_that_is_known(void **state)
     log_set_sink(check_listen, NULL);
 
     /* local solar 10:00 at 90 E is 04:00 UTC; 2026-06-21 is 20625 days after 1970-01-01 */
-    assert_int_equal(choose_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
+    assert_int_equal(choice_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
     CHECK_NEAR(unix_s + 1000, 20625.0 * 86400 + 4 * 3600, 1e-3);
     CHECK(says(&choices, "local solar 10:00 on 21 June"));
 
@@ -113,33 +113,33 @@ static void the_time_of_day_comes_from_the_best_that_is_known(void **state)
     told.clock_start_unix_s = 6e8;
     frame.origin.lon_rad = -123.75 * rad_per_deg;
     strcpy(config.exercise.local_solar, "2026-06-21T10:00:00");
-    assert_int_equal(choose_time(&unix_s, &choices, &told, &config, &frame), STATUS_OK);
+    assert_int_equal(choice_time(&unix_s, &choices, &told, &config, &frame), STATUS_OK);
     CHECK_NEAR(unix_s + 1000, 20625.0 * 86400 + 18.25 * 3600, 1e-3);
     CHECK(says(&choices, "local solar 2026-06-21T10:00:00 is 2026-06-21T18:15:00Z (exercise.local_solar)"));
     strcpy(config.exercise.local_solar, "2026-06-21T10:00:00Z");
-    assert_int_equal(choose_time(&unix_s, &choices, &told, &config, &frame), STATUS_BAD_VALUE);
+    assert_int_equal(choice_time(&unix_s, &choices, &told, &config, &frame), STATUS_BAD_VALUE);
     *config.exercise.local_solar = 0;
     frame.origin.lon_rad = 90 * rad_per_deg;
 
     survey.absolute_unix_s = 5e8;
-    assert_int_equal(choose_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
+    assert_int_equal(choice_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
     CHECK_NEAR(unix_s, 5e8, 0);
     survey.clock_start_unix_s = 6e8;
-    assert_int_equal(choose_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
+    assert_int_equal(choice_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
     CHECK_NEAR(unix_s, 6e8, 0);
 
     static const struct { const char *text; double unix_s; } good[] = {
         {"1970-01-01T00:00:00Z", 0}, {"2000-02-29T12:30:15.5Z", 951827415.5}, {"2026-06-21T10:00:00Z", 1782036000}};
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) { /* wanted values: date -u -d TEXT +%s */
         strcpy(config.exercise.utc, good[i].text);
-        assert_int_equal(choose_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
+        assert_int_equal(choice_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
         CHECK_NEAR(unix_s + 1000, good[i].unix_s, 1e-6);
     }
     static const char *const bad[] = {"2026-02-31T00:00:00Z", "1900-02-29T00:00:00Z", "2026-06-21", "2026-13-01T00:00:00Z",
                                       "2026-06-21T24:00:00Z", "2026-06-21T10:00:00", "2026-06-21T10:00:00Zx", "noon"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         strcpy(config.exercise.utc, bad[i]);
-        if (choose_time(&unix_s, &choices, &survey, &config, &frame) != STATUS_BAD_VALUE) fail_msg("accepted: %s", bad[i]);
+        if (choice_time(&unix_s, &choices, &survey, &config, &frame) != STATUS_BAD_VALUE) fail_msg("accepted: %s", bad[i]);
         CHECK(strstr(check_said, "exercise.utc"));
     }
 }
@@ -168,29 +168,29 @@ static void the_longest_flight_that_hit_is_the_host(void **state)
     Choices  choices = {0};
     HostPlan plan;
     log_set_sink(check_listen, NULL);
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 21 && plan.aim.entity == 10 && plan.munition && plan.start_s == 5 && plan.end_s == 15);
     CHECK(says(&choices, "notional") && says(&choices, "target of its Fire PDU"));
 
     shots[1].result = shots[2].result = dis_result_ground_impact; /* nobody hit: the longest flight */
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 20);
 
     survey.track_count = 1; /* no munition: the observer */
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10 && !plan.munition);
 
     strcpy(config.exercise.host, "1:1:99");
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
     CHECK(strstr(check_said, "1:1:99 is not in the log"));
     strcpy(config.exercise.host, "1:1");
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
     config.exercise.host[0] = 0;
     strcpy(config.exercise.aim, "9:9:9");
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
     survey.track_count     = 0;
     config.exercise.aim[0] = 0;
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
 }
 
 /* What has been heard so far: 20 has burst, 21 flies since 5 s, 22 was taken away, 23 fell silent 13 s ago, 24 has just
@@ -213,30 +213,30 @@ static void a_causal_host_is_one_that_is_still_there(void **state)
     HostPlan plan;
     log_set_sink(check_listen, NULL);
     config.causal = true;
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 21 && plan.aim.entity == 10 && plan.munition && !plan.any_munition);
     tracks[2] = tracks[1]; /* 21 as ended as 20 is: the one seen once */
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 24 && dis_entity_id_is_none(plan.aim));
     CHECK(says(&choices, "once that is heard"));
     survey.track_count = 5;
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10 && !plan.any_munition &&
           says(&choices, "flies here now"));
 
     strcpy(config.exercise.host, "1:1:99"); /* may come */
     strcpy(config.exercise.aim, "9:9:9");
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 99 && plan.aim.entity == 9 && says(&choices, "1:1:99, not heard so far"));
     strcpy(config.exercise.host, "munition");
     config.exercise.aim[0] = 0;
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.any_munition && dis_entity_id_is_none(plan.host) && dis_entity_id_is_none(plan.aim));
     config.causal = false; /* of a whole log: from the first that flies to the end of the last */
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.any_munition && dis_entity_id_is_none(plan.host) && plan.start_s == 0 && plan.end_s == 29);
     survey.track_count = 1; /* a vehicle */
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
     CHECK(strstr(check_said, "none flies in the log") && strstr(check_said, "--host observer"));
 }
 
@@ -258,19 +258,19 @@ static void a_guided_munition_goes_before_any_other_and_a_mine_never(void **stat
     tracks[1].type.category = 3;
     tracks[2].type.category = 2;
     log_set_sink(check_listen, NULL);
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 23);
     tracks[3].type.category = tracks[4].type.category = 3; /* mines, too */
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 21 && says(&choices, "of unguided munitions"));
     for (int i = 1; i < 4; i++) points[2][i].p_ecef[1] = points[2][0].p_ecef[1]; /* of any category, but it lies there */
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10 && says(&choices, "no munition flies here"));
     points[2][0].v_ecef_mps[2] = 90; /* not so one that says that it flies */
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 21);
     tracks[2].type.category = 3;
-    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10);
 }
 
@@ -291,20 +291,20 @@ static void an_observer_may_be_asked_for(void **state)
         Choices choices = {0};
         config.causal = causal;
         config.exercise.aim[0] = 0;
-        assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+        assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
         CHECK(dis_entity_id_is_none(plan.host) && !plan.any_munition && !plan.munition && plan.aim.entity == 10);
         CHECK(says(&choices, "host: a stand-off observer (exercise.host)"));
         strcpy(config.exercise.aim, "1:1:11");
-        assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+        assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_OK);
         CHECK(plan.aim.entity == 11 && plan.start_s == 20);
-        assert_int_equal(plan_host(&plan, &choices, &survey, &config, (DisEntityId){0}), STATUS_OK); /* --host, several */
+        assert_int_equal(choice_named_host(&plan, &choices, &survey, &config, (DisEntityId){0}), STATUS_OK); /* --host, several */
         CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 11);
     }
     static const char *const bad[] = {"Observer", "observers", "0:0:0", "munitions"};
     for (int i = 0; i < 4; i++) {
         Choices choices = {0};
         strcpy(config.exercise.host, bad[i]);
-        assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+        assert_int_equal(choice_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
         CHECK(strstr(check_said, "nor observer"));
     }
 }

@@ -4,7 +4,7 @@
 
 #include "dis/enumerations.h"
 #include "entities/table/contact.h"
-#include "sensor/node/ground_evidence.h"
+#include "sensor/node/choices/ground_evidence.h"
 #include "tests/sensor/stood_exercise.h"
 
 static void gather(GroundEvidence *out, const Exercise *e)
@@ -20,7 +20,7 @@ static void choose(Landscape *out, GroundContact *contact, Choices *choices, con
     choices->count = 0;
     strcpy(config.terrain.ground, ground);
     config.terrain.spacing_m = 8; /* a quarter of the time */
-    assert_int_equal(choose_ground(out, contact, choices, &e->survey, &config, &frame, catalog, &plan), STATUS_OK);
+    assert_int_equal(choice_ground(out, contact, choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &frame), STATUS_OK);
 }
 
 /* Base of every report of a track above the ground, the farthest. */

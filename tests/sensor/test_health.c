@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "dis/entity_state.h"
-#include "sensor/node/health.h"
+#include "sensor/node/live/health.h"
 
 #include <errno.h>
 
@@ -53,7 +53,7 @@ static void what_is_heard(void **state)
     /* an entity at rest may report once a minute: as long as the table holds it, it is heard */
     s.away     = false;
     s.now_s    = 150;
-    s.making   = true;
+    s.rendering   = true;
     s.entities = 1;
     CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_FINE);
     s.entities = 0;
@@ -69,7 +69,7 @@ static void what_is_shown(void **state)
     s.host    = HEALTH_MUNITION;
     s.missing = 10;
     CHECK(judge(HEALTH_RENDER, s) == HEALTH_FINE); /* nothing is chosen yet */
-    s.making = true;
+    s.rendering = true;
     CHECK(judge(HEALTH_RENDER, s) == HEALTH_NO_MUNITION);
     s.frames = 1;
     CHECK(judge(HEALTH_RENDER, s) == HEALTH_MUNITION_GONE);
@@ -123,7 +123,7 @@ static void why_there_was_no_frame_at_all(void **state)
     CHECK(health_final(&s) == HEALTH_OTHER_EXERCISE);
     s.usable = 1;
     CHECK(health_final(&s) == HEALTH_EARLY);
-    s.making = true;
+    s.rendering = true;
     s.host   = HEALTH_MUNITION;
     CHECK(health_final(&s) == HEALTH_EARLY);
     s.missing = 1;
@@ -219,7 +219,7 @@ static void each_change_is_said_once(void **state)
         const double now_s = 0.1 * tenth;
         if (now_s >= 20 && now_s < 40 && tenth % 10 == 0) hear(&h, 3, now_s);
         if (now_s >= 40 && now_s < 100 && tenth % 10 == 0) hear(&h, 7, now_s), hear(&h, 3, now_s);
-        if (tenth == 450) health_making(&h, now_s);
+        if (tenth == 450) health_rendering(&h, now_s);
         h.sample.entities = now_s >= 40 && now_s < 112;
         if (now_s >= 45 && now_s < 112) show(&h, now_s);
         if (now_s >= 50 && now_s < 60) c.send_failed++;
@@ -246,7 +246,7 @@ static void what_flickers_is_said_once_a_minute(void **state)
     said = 0;
     log_set_sink(listen, NULL);
     health_begin(&h, 0);
-    health_making(&h, 0);
+    health_rendering(&h, 0);
     h.sample.host = HEALTH_MUNITION;
     for (int s = 0; s < 600; s++) {
         const bool there = s / 6 % 2 == 0; /* six seconds in turn */

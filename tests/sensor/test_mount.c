@@ -1,7 +1,7 @@
 /* Where the sensor sits on its host and which way it looks: sensor.mount*, by hand. labels: physics */
 #include "tests/sensor/eye_lab.h"
 
-#include "sensor/node/mount.h"
+#include "sensor/node/session/seeker.h"
 
 static const DisEntityType tank = {1, 1, 225, 1, 1, 1, 0}, plane = {1, 2, 225, 1, 1, 1, 0};
 
@@ -15,7 +15,7 @@ static void words_and_numbers_name_classes(void **state)
         {"primary turret 11", 0}, {"primary turrets", 0}, {"primary", 0}, {"turret", 0}, {"4097", 0}, {"32", 0},
         {"99999999999", 0}, {"-4096", 0}, {"primary turret ", 0}, {"", 0}};
     for (size_t i = 0; i < sizeof say / sizeof *say; i++)
-        if (mount_class(say[i].word) != say[i].want) fail_msg("%s: %u", say[i].word, mount_class(say[i].word));
+        if (seeker_mount_class(say[i].word) != say[i].want) fail_msg("%s: %u", say[i].word, seeker_mount_class(say[i].word));
 }
 
 static void names_find_nodes(void **state)
@@ -27,16 +27,16 @@ static void names_find_nodes(void **state)
         {"turret", 4096}, {"primary turret", 4096}, {"4096", 4096}, {"gun", 4416}, {"primary gun", 4416}};
     for (size_t i = 0; i < sizeof say / sizeof *say; i++) {
         strcpy(config.sensor.mount, say[i].name);
-        const Mount mount = mount_of(&config);
-        const int   node  = mount_node(&mount, model);
+        const Mount mount = seeker_mount(&config);
+        const int   node  = seeker_mount_node(&mount, model);
         CHECK(node >= 0 && model->node[node].dis_class == say[i].dis_class);
     }
     strcpy(config.sensor.mount, "auto");
-    Mount mount = mount_of(&config);
-    CHECK(mount_node(&mount, model) == mount_body);
+    Mount mount = seeker_mount(&config);
+    CHECK(seeker_mount_node(&mount, model) == mount_body);
     strcpy(config.sensor.mount, "primary radar 3");
-    mount = mount_of(&config);
-    CHECK(mount_node(&mount, model) == mount_missing);
+    mount = seeker_mount(&config);
+    CHECK(seeker_mount_node(&mount, model) == mount_missing);
 }
 
 static void report(const LabReport *like)

@@ -1,7 +1,7 @@
 /* tests/sensor/test_munitions.c: which munition a Detonation ends: by its id, by the Fire of its event, by place and time. */
 #include "tests/check.h"
 
-#include "sensor/node/munitions.h"
+#include "sensor/node/player/munitions.h"
 #include "tests/sensor/open_catalog.h"
 
 #include <stdlib.h>

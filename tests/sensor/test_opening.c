@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "dis/entity_state.h"
-#include "sensor/node/opening.h"
+#include "sensor/node/player/player.h"
 
 enum { most = 3000 };
 
@@ -39,23 +39,23 @@ static void it_begins_with_the_first_usable_report(void **state)
     make_pdus();
     log_.count = 0;
     config.exercise.listen_s = 2;
-    CHECK(!opening_of(&view, &heard, &until_s, &log_, &config)); /* nothing at all */
+    CHECK(!player_opening(&view, &heard, &until_s, &log_, &config)); /* nothing at all */
     add(comment, 32, 100);
     add(comment, 32, 101);
-    CHECK(!opening_of(&view, &heard, &until_s, &log_, &config)); /* nobody is anywhere */
+    CHECK(!player_opening(&view, &heard, &until_s, &log_, &config)); /* nobody is anywhere */
     add(report[0], report_octets, 150);
     add(report[0], report_octets, 152);                          /* to the moment */
     add(report[0], report_octets, nextafter(152, 200));
     add(report[0], report_octets, 160);
-    CHECK(opening_of(&view, &heard, &until_s, &log_, &config));
+    CHECK(player_opening(&view, &heard, &until_s, &log_, &config));
     CHECK(until_s == 152 && view.count == 6 && view.datagram == datagram && heard.count == 4 &&
           heard.datagram == datagram);
     config.exercise.listen_s = 100;
-    CHECK(opening_of(&view, &heard, &until_s, &log_, &config) && heard.count == 6); /* the log is shorter */
+    CHECK(player_opening(&view, &heard, &until_s, &log_, &config) && heard.count == 6); /* the log is shorter */
     config.exercise.exercise = 2;
-    CHECK(!opening_of(&view, &heard, &until_s, &log_, &config));
+    CHECK(!player_opening(&view, &heard, &until_s, &log_, &config));
     add(report[1], report_octets, 170);
-    CHECK(opening_of(&view, &heard, &until_s, &log_, &config) && until_s == 270 && heard.count == 7);
+    CHECK(player_opening(&view, &heard, &until_s, &log_, &config) && until_s == 270 && heard.count == 7);
 }
 
 static void a_long_murmur_before_is_not_kept(void **state)
@@ -69,9 +69,9 @@ static void a_long_murmur_before_is_not_kept(void **state)
     for (int i = 0; i < 2000; i++) add(comment, 32, i);
     add(report[0], report_octets, 2000);
     add(report[0], report_octets, 2500);
-    CHECK(opening_of(&view, &heard, &until_s, &log_, &config));
-    CHECK(view.datagram == datagram + 2000 - opening_before && view.count == opening_before + 2);
-    CHECK(heard.datagram == view.datagram && heard.count == opening_before + 1);
+    CHECK(player_opening(&view, &heard, &until_s, &log_, &config));
+    CHECK(view.datagram == datagram + 2000 - player_opening_before && view.count == player_opening_before + 2);
+    CHECK(heard.datagram == view.datagram && heard.count == player_opening_before + 1);
 }
 
 static void own_datagrams_are_known_by_their_sender(void **state)
@@ -86,13 +86,13 @@ static void own_datagrams_are_known_by_their_sender(void **state)
     add(report[0], report_octets, 2);
     add(comment, 32, 3);
     add(comment, 8, 4); /* nobody's: it is cut off */
-    CHECK(opening_own(&datagram[0], &config) && !opening_own(&datagram[1], &config) &&
-          !opening_own(&datagram[3], &config));
-    CHECK(opening_drop_own(&log_, &config) == 2 && log_.count == 2 && datagram[0].capture_s == 2 &&
+    CHECK(player_own(&datagram[0], &config) && !player_own(&datagram[1], &config) &&
+          !player_own(&datagram[3], &config));
+    CHECK(player_drop_own(&log_, &config) == 2 && log_.count == 2 && datagram[0].capture_s == 2 &&
           datagram[1].capture_s == 4);
     config.node.application = 20;
     config.node.site        = 10;
-    CHECK(opening_drop_own(&log_, &config) == 1); /* its own entities too */
+    CHECK(player_drop_own(&log_, &config) == 1); /* its own entities too */
 }
 
 static void a_report_must_be_somewhere(void **state)
@@ -110,7 +110,7 @@ static void a_report_must_be_somewhere(void **state)
         if (k == 3) bad.id = (DisEntityId){0, 0, 0};
         const size_t      n = dis_encode_entity_state(bytes, sizeof bytes, &bad);
         const DisDatagram one = {.bytes = bytes, .octets = (uint32_t)n};
-        CHECK(opening_starts(&header, &one, &config) == (k == 0));
+        CHECK(player_starts(&header, &one, &config) == (k == 0));
     }
     CHECK(header.exercise == 1 && header.version == 7);
 }

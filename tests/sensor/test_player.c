@@ -1,7 +1,7 @@
 /* The player: by stamp, or causally by arrival. */
 #include "tests/check.h"
 
-#include "sensor/node/player.h"
+#include "sensor/node/player/player.h"
 #include "tests/sensor/open_catalog.h"
 
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "render/scene/view.h"
-#include "sensor/node/scene_rate.h"
+#include "sensor/node/session/seeker.h"
 
 /* Rotation by an angle about a unit axis, Rodrigues. */
 static void rotation(double r[9], const double axis[3], double angle_rad)
@@ -41,10 +41,10 @@ static void a_point_at_rest_moves_as_projected(void **state)
             at[side][0] = focal_px * cam[0] / cam[2];
             at[side][1] = focal_px * cam[1] / cam[2];
         }
-        turn_rate(rate, attitude[0], attitude[1], 2 * h_s);
+        seeker_turn_rate(rate, attitude[0], attitude[1], 2 * h_s);
         for (int i = 0; i < 3; i++) CHECK_NEAR(rate[i], w[i], 1e-8); /* w^3 (2 h)^2 / 6 */
         m3_tmul_v3(v_cam, middle, v);
-        scene_rate(got, rate, v_cam, focal_px, cases[k][6]);
+        seeker_scene_rate(got, rate, v_cam, focal_px, cases[k][6]);
         /* second-order difference: third derivatives x h^2, and 1e-16 x focal / h */
         for (int i = 0; i < 2; i++) CHECK_NEAR(got[i], (at[1][i] - at[0][i]) / (2 * h_s), 1e-4);
     }

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "entities/motion/dead_reckoning.h"
-#include "sensor/node/seeker.h"
+#include "sensor/node/session/seeker.h"
 #include "terrain/earth/local_frame.h"
 #include "tests/sensor/attitude.h"
 

@@ -1,8 +1,8 @@
 /* tests/sensor/test_span.c: moments of a recording, and lists of planes, as people write them. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/settings/plane_choice.h"
-#include "sensor/settings/span.h"
+#include "sensor/settings/publish_choice.h"
+#include "sensor/settings/config.h"
 
 static void moments_are_of_three_kinds(void **state)
 {
@@ -12,14 +12,14 @@ static void moments_are_of_three_kinds(void **state)
         double      t_s; /* in a recording from 1350 to 1380 s */
     } moment[] = {{"1360.5", 1360.5}, {"+12", 1362}, {"+0", 1350}, {"-5", 1375}, {"-0", 1380}, {"-0.25", 1379.75}, {"0", 0}};
     for (size_t i = 0; i < sizeof moment / sizeof *moment; i++) {
-        CHECK(span_good(moment[i].text));
-        CHECK_NEAR(span_time_s(moment[i].text, 1350, 1380), moment[i].t_s, 0);
+        CHECK(config_span_good(moment[i].text));
+        CHECK_NEAR(config_span_time_s(moment[i].text, 1350, 1380), moment[i].t_s, 0);
     }
-    CHECK(span_good("") && isnan(span_time_s("", 1350, 1380)));
+    CHECK(config_span_good("") && isnan(config_span_time_s("", 1350, 1380)));
     static const char *const bad[] = {"noon", "+", "-", "++1", "1 s", "nan", "inf", "0x10"};
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(!span_good(bad[i]) && isnan(span_time_s(bad[i], 1350, 1380)));
-    CHECK(span_backward("5", "4") && span_backward("+5", "+4") && span_backward("-4", "-5"));
-    CHECK(!span_backward("4", "5") && !span_backward("5", "+4") && !span_backward("-4", "5") && !span_backward("", "5"));
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(!config_span_good(bad[i]) && isnan(config_span_time_s(bad[i], 1350, 1380)));
+    CHECK(config_span_backward("5", "4") && config_span_backward("+5", "+4") && config_span_backward("-4", "-5"));
+    CHECK(!config_span_backward("4", "5") && !config_span_backward("5", "+4") && !config_span_backward("-4", "5") && !config_span_backward("", "5"));
 }
 
 /* What lies outside names the span in absolute seconds and from both ends. */
@@ -37,12 +37,12 @@ static void what_lies_outside_states_the_span(void **state)
     log_set_sink(check_listen, NULL);
     for (size_t i = 0; i < sizeof outside / sizeof *outside; i++) {
         check_said[0] = 0;
-        CHECK(span_outside(outside[i].from, outside[i].to, 1350, 1380));
+        CHECK(config_span_outside(outside[i].from, outside[i].to, 1350, 1380));
         CHECK(strstr(check_said, outside[i].why) && strstr(check_said, "1350.000 to 1380.000 s") &&
               strstr(check_said, "+0 to +30.000") && strstr(check_said, "-30.000 to -0"));
     }
     check_said[0] = 0;
-    for (size_t i = 0; i < sizeof inside / sizeof *inside; i++) CHECK(!span_outside(inside[i].from, inside[i].to, 1350, 1380));
+    for (size_t i = 0; i < sizeof inside / sizeof *inside; i++) CHECK(!config_span_outside(inside[i].from, inside[i].to, 1350, 1380));
     CHECK(!*check_said);
     log_set_sink(NULL, NULL);
 }
@@ -51,14 +51,14 @@ static void planes_are_listed_by_name(void **state)
 {
     (void)state;
     unsigned planes;
-    CHECK(plane_choice_parse(&planes, "all") && planes == 511);
-    CHECK(plane_choice_parse(&planes, "none") && planes == 0);
-    CHECK(plane_choice_parse(&planes, "range,entity,part,material,temperature,normal") && planes == 63);
-    CHECK(plane_choice_parse(&planes, "instance,cover") && planes == (1u << PLANE_INSTANCE | 1u << PLANE_COVER));
-    CHECK(plane_choice_parse(&planes, "emissivity") && planes == 1u << PLANE_EMISSIVITY);
-    CHECK(plane_choice_parse(&planes, "normal") && planes == 1u << PLANE_NORMAL);
+    CHECK(publish_planes_parse(&planes, "all") && planes == 511);
+    CHECK(publish_planes_parse(&planes, "none") && planes == 0);
+    CHECK(publish_planes_parse(&planes, "range,entity,part,material,temperature,normal") && planes == 63);
+    CHECK(publish_planes_parse(&planes, "instance,cover") && planes == (1u << PLANE_INSTANCE | 1u << PLANE_COVER));
+    CHECK(publish_planes_parse(&planes, "emissivity") && planes == 1u << PLANE_EMISSIVITY);
+    CHECK(publish_planes_parse(&planes, "normal") && planes == 1u << PLANE_NORMAL);
     static const char *const bad[] = {"", ",", "range,", ",range", "rang", "ranges", "range entity", "all,range", "none,range", "part,entity,part"};
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(!plane_choice_parse(&planes, bad[i]));
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(!publish_planes_parse(&planes, bad[i]));
 }
 
 int main(void)

@@ -2,7 +2,7 @@
  * value and no combination favoured. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/commands/sweep_file.h"
+#include "sensor/commands/sweep/sweep.h"
 
 enum { text_size = 4096 };
 

@@ -5,7 +5,7 @@
  * truth. What may remain is the arrival jitter that the clock allows before it doubts stamps, times the speed. */
 #include "tests/check.h"
 
-#include "sensor/node/player.h"
+#include "sensor/node/player/player.h"
 #include "tests/sensor/open_catalog.h"
 
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #include "tests/check.h"
 
 #include "sensor/settings/config.h"
-#include "sensor/settings/video_choice.h"
+#include "sensor/settings/publish_choice.h"
 
 #ifdef PITVIPER_VIDEO
 #include "sensor/publish/video/encoder.h"
@@ -214,15 +214,15 @@ static void addresses_are_parsed_strictly(void **state)
     StreamUrl   url = {{9}, 9};
     const char *why = NULL;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        if (stream_url_parse(&url, &why, wrong[i])) fail_msg("`%s` was taken", wrong[i]);
+        if (publish_stream_parse(&url, &why, wrong[i])) fail_msg("`%s` was taken", wrong[i]);
         CHECK(why && *why && url.port == 9);
     }
-    assert_true(stream_url_parse(&url, &why, "udp://239.1.2.3:65535"));
+    assert_true(publish_stream_parse(&url, &why, "udp://239.1.2.3:65535"));
     assert_memory_equal(url.address, ((uint8_t[4]){239, 1, 2, 3}), 4);
     assert_int_equal(url.port, 65535);
-    assert_true(stream_url_multicast(&url));
-    assert_true(stream_url_parse(&url, &why, "udp://127.0.0.1:1") && !stream_url_multicast(&url));
-    assert_true(stream_url_parse(&url, &why, "udp://255.255.255.255:1"));
+    assert_true(publish_stream_multicast(&url));
+    assert_true(publish_stream_parse(&url, &why, "udp://127.0.0.1:1") && !publish_stream_multicast(&url));
+    assert_true(publish_stream_parse(&url, &why, "udp://255.255.255.255:1"));
 }
 
 static void contradictions_are_refused(void **state)

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "dis/warfare.h"
-#include "sensor/node/woods_choice.h"
+#include "sensor/node/choices/choices.h"
 #include "tests/sensor/stood_exercise.h"
 
 static Config woods_on(void)
@@ -21,8 +21,8 @@ static void plant(WoodsChoice *out, Landscape *land, Choices *choices, const Exe
     HostPlan      plan = {0};
     GroundContact contact;
     choices->count = 0;
-    assert_int_equal(choose_ground(land, &contact, choices, &e->survey, config, &frame, catalog, &plan), STATUS_OK);
-    assert_int_equal(choose_woods(out, choices, &e->survey, config, land, catalog, &plan, NULL), STATUS_OK);
+    assert_int_equal(choice_ground(land, &contact, choices, &(ChoiceBasis){&e->survey, config, catalog, &plan}, &frame), STATUS_OK);
+    assert_int_equal(choice_woods(out, choices, &(ChoiceBasis){&e->survey, config, catalog, &plan}, land, NULL), STATUS_OK);
 }
 
 static double to_segment_m(const double p[2], const double a[2], const double b[2])
@@ -93,7 +93,7 @@ static void invented_woods_are_clear_of_every_path(void **state)
 
     /* the twin: without paths trees stand there */
     const int cleared = woods.woods.count;
-    woods_choice_free(&woods);
+    choice_woods_free(&woods);
     WoodsConfig bare = {.seed = (uint64_t)config.seed, .half_width_m = 400, .most_trees = config.terrain.woods_trees};
     Woods       wild;
     assert_int_equal(woods_create(&wild, &land, &bare, NULL), STATUS_OK);
@@ -122,8 +122,8 @@ static void entities_in_trunks_are_counted_where_trees_stay(void **state)
     strcpy(real.terrain.elevation, "given.tif");
     stand(e, tank, 0, 0, 500, 0, 3);
     plant(&woods, &land, &choices, e, &config);
-    woods_choice_free(&woods);
-    assert_int_equal(choose_woods(&woods, &choices, &e->survey, &real, &land, catalog, &plan, NULL), STATUS_OK);
+    choice_woods_free(&woods);
+    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &real, catalog, &plan}, &land, NULL), STATUS_OK);
     CHECK(woods.entities == 1 && woods.config.path_count == 0);
     double tree_m[3] = {NAN, NAN, 500};
     int    trunk;
@@ -134,22 +134,22 @@ static void entities_in_trunks_are_counted_where_trees_stay(void **state)
         if (woods_trunk_m(tree) > 0 && hypot(at_m[0], at_m[1]) > 50) memcpy(tree_m, at_m, sizeof at_m);
     }
     CHECK(!isnan(tree_m[0]) && woods_near(&trunk, 1, &woods.woods, tree_m[0], tree_m[1], 1) > 0);
-    woods_choice_free(&woods);
+    choice_woods_free(&woods);
 
     stand(e, man, tree_m[0], tree_m[1], 500, 0, 3);
     choices.count = 0;
-    assert_int_equal(choose_woods(&woods, &choices, &e->survey, &real, &land, catalog, &plan, NULL), STATUS_OK);
+    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &real, catalog, &plan}, &land, NULL), STATUS_OK);
     CHECK(woods.entities == 2 && woods.in_trunks == 1 && woods.config.path_count == 0);
     CHECK(woods_near(&trunk, 1, &woods.woods, tree_m[0], tree_m[1], 1) > 0);
     CHECK(says(&choices, "1 of 2 entities on the ground begin within a trunk; real trees stay"));
-    woods_choice_free(&woods);
+    choice_woods_free(&woods);
 
     choices.count = 0;
-    assert_int_equal(choose_woods(&woods, &choices, &e->survey, &config, &land, catalog, &plan, NULL), STATUS_OK);
+    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &land, NULL), STATUS_OK);
     CHECK(woods.entities == 2 && woods.in_trunks == 0);
     CHECK(woods_near(&trunk, 1, &woods.woods, tree_m[0], tree_m[1], 1) == 0);
     CHECK(!said(&choices, "begin within a trunk"));
-    woods_choice_free(&woods);
+    choice_woods_free(&woods);
     landscape_destroy(&land);
 }
 
@@ -166,7 +166,7 @@ static void off_is_off_and_few_are_few(void **state)
     plant(&woods, &land, &choices, e, &config);
     CHECK(!woods.on && woods.woods.count == 0 && !woods.path);
     CHECK(!said(&choices, "woods"));
-    woods_choice_free(&woods);
+    choice_woods_free(&woods);
     landscape_destroy(&land);
 
     strcpy(config.terrain.woods, "on");
@@ -178,7 +178,7 @@ static void off_is_off_and_few_are_few(void **state)
     CHECK(trees <= 50 && woods.woods.count <= 50 && woods.woods.left_out > 0);
     CHECK(says(&choices, "more are left out") && says(&choices, "(terrain.woods_trees)"));
     CHECK(says(&choices, "deciduous trees are bare (terrain.woods_leaves)"));
-    woods_choice_free(&woods);
+    choice_woods_free(&woods);
     landscape_destroy(&land);
 }
 
@@ -202,13 +202,13 @@ static void the_square_holds_the_exercise(void **state)
     plan.end_s = 104;
     GroundContact contact;
     choices.count = 0;
-    assert_int_equal(choose_ground(&land, &contact, &choices, &e->survey, &config, &frame, catalog, &plan), STATUS_OK);
-    assert_int_equal(choose_woods(&woods, &choices, &e->survey, &config, &land, catalog, &plan, NULL), STATUS_OK);
+    assert_int_equal(choice_ground(&land, &contact, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &frame), STATUS_OK);
+    assert_int_equal(choice_woods(&woods, &choices, &(ChoiceBasis){&e->survey, &config, catalog, &plan}, &land, NULL), STATUS_OK);
     enu(p, &land, e->track[0].point[0].p_ecef);
     CHECK_NEAR(woods.config.centre_m[0], p[0], 0.1);
     CHECK_NEAR(woods.config.centre_m[1], p[1], 0.1);
     CHECK_NEAR(woods.config.half_width_m, 6500, 1);
-    woods_choice_free(&woods);
+    choice_woods_free(&woods);
     landscape_destroy(&land);
 }
 

@@ -2,7 +2,7 @@
 #include "sensor/bench/sensor/precision.h"
 
 #include "sensor/settings/config.h"
-#include "sensor/node/seeker.h"
+#include "sensor/node/session/seeker.h"
 #include "terrain/landscape/quick_landscape.h"
 
 const char *const precision_shot_name[SHOT_COUNT] =

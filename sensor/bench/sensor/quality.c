@@ -5,7 +5,7 @@
 
 #include "pitviper_output.h"
 #include "sensor/bench/sensor/woods_stand.h"
-#include "sensor/quality/lab.h"
+#include "sensor/quality/quality_measure.h"
 #include "sensor/quality/quality.h"
 
 #include <errno.h>
@@ -50,13 +50,13 @@ static void errors_of(double percent[quality_bands], double kelvin[quality_bands
 }
 
 /* Trees over all of the lab's ground but for the vehicles' places. */
-static Status plant_lab(Woods *woods, QualityLab *lab)
+static Status plant_lab(Woods *woods, QualityMeasure *lab)
 {
     const Config       config = config_default();
     const ForestConfig forest = {.leaves = true, .level1_px = config.terrain.woods_level1_px, .sway = config.terrain.woods_sway};
     const HeatConfig   heat = heat_default_config();
-    WoodsStand stand = {.landscape = &lab->ground, .east_m = quality_lab_east_m, .north_m = quality_lab_north_m,
-                        .trees = (int)(trees_per_m2 * quality_lab_east_m * quality_lab_north_m)};
+    WoodsStand stand = {.landscape = &lab->ground, .east_m = quality_measure_east_m, .north_m = quality_measure_north_m,
+                        .trees = (int)(trees_per_m2 * quality_measure_east_m * quality_measure_north_m)};
     Snapshot   snapshot;
     arena_reset(lab->arena);
     Status status = entity_table_snapshot(&snapshot, lab->scene.table, lab->scene.sun_now_s + 0.5, lab->arena);
@@ -71,19 +71,19 @@ static Status plant_lab(Woods *woods, QualityLab *lab)
 }
 
 /* rows: of this scene, in the order of the grid. Among plants every second view. */
-static Status measure_errors(QualityRow *rows, QualityLab *lab, Bench *bench)
+static Status measure_errors(QualityRow *rows, QualityMeasure *lab, Bench *bench)
 {
     const bool woods = rows->scene == QUALITY_WOODS;
-    for (int v = 0; v < quality_lab_views; v += lab->quick ? 3 : woods ? 2 : 1) {
+    for (int v = 0; v < quality_measure_views; v += lab->quick ? 3 : woods ? 2 : 1) {
         char what[64];
-        snprintf(what, sizeof what, "errors, %s, view %d of %d", quality_scene_name(rows->scene), v + 1, quality_lab_views);
+        snprintf(what, sizeof what, "errors, %s, view %d of %d", quality_scene_name(rows->scene), v + 1, quality_measure_views);
         bench_progress(bench, what);
-        TrialFrame fine = quality_lab_frame(lab, v, reference);
+        TrialFrame fine = quality_measure_frame(lab, v, reference);
         fine.pool  = lab->many;
         fine.arena = lab->reference_arena;
         trial_frame(&fine);
         for (int k = 0; k < grid_count && fine.status == STATUS_OK; k++) {
-            TrialFrame  f = quality_lab_frame(lab, v, grid[k]);
+            TrialFrame  f = quality_measure_frame(lab, v, grid[k]);
             double      percent[quality_bands], kelvin[quality_bands];
             QualityRow *r = &rows[k];
             f.pool = lab->many;
@@ -100,17 +100,17 @@ static Status measure_errors(QualityRow *rows, QualityLab *lab, Bench *bench)
     return STATUS_OK;
 }
 
-static Status measure_times(QualityRow *rows, BenchTime time[grid_count], QualityLab *lab, Bench *bench)
+static Status measure_times(QualityRow *rows, BenchTime time[grid_count], QualityMeasure *lab, Bench *bench)
 {
-    QualityLab large = *lab;
+    QualityMeasure large = *lab;
     const int  rounds = lab->quick || rows->scene == QUALITY_WOODS ? 1 : rounds_most;
-    quality_lab_enlarge(&large);
+    quality_measure_enlarge(&large);
     for (int n = 0; n < rounds; n++)
         for (int k = 0; k < grid_count; k++) {
             char what[64];
             snprintf(what, sizeof what, "times, %s, round %d of %d", quality_scene_name(rows->scene), n + 1, rounds);
             bench_progress(bench, what);
-            time[k].item_s[n] = quality_lab_time(&large, grid[k], false);
+            time[k].item_s[n] = quality_measure_time(&large, grid[k], false);
             time[k].rounds    = n + 1;
             if (isnan(time[k].item_s[n])) return STATUS_NO_MEMORY;
         }
@@ -154,7 +154,7 @@ Status bench_quality_check(const Bench *bench)
     return STATUS_IO;
 }
 
-static Status measure(QualityTable *table, BenchTime *time, Woods *woods, QualityLab *lab, Bench *bench)
+static Status measure(QualityTable *table, BenchTime *time, Woods *woods, QualityMeasure *lab, Bench *bench)
 {
     for (int scene = 0; scene < quality_scenes; scene++) {
         QualityRow *rows = table->row + scene * grid_count;
@@ -190,14 +190,14 @@ static void round_rows(QualityTable *table)
 Status bench_quality(Bench *bench)
 {
     enum { rows = quality_scenes * grid_count };
-    QualityLab       lab;
+    QualityMeasure       lab;
     QualityTable     table = {.count = rows};
     static BenchTime time[rows];
     Woods            woods = {0};
     const char      *path = bench_option(bench, "table");
     memset(time, 0, sizeof time);
     bench_progress(bench, "ground and vehicles");
-    Status status = quality_lab_open(&lab, 1, bench_quick(bench));
+    Status status = quality_measure_open(&lab, 1, bench_quick(bench));
     if (status == STATUS_OK) status = measure(&table, time, &woods, &lab, bench);
     round_rows(&table);
     for (int k = 0; k < rows && status == STATUS_OK; k++) list_row(bench, &table, k, &time[k]);
@@ -209,7 +209,7 @@ Status bench_quality(Bench *bench)
         status = quality_write(path, &written,
                                "rms error at most, and time on one thread of the machine it was measured on, by "
                                "`pitviper bench quality --table FILE`");
-    quality_lab_close(&lab);
+    quality_measure_close(&lab);
     woods_destroy(&woods);
     return status;
 }

@@ -38,7 +38,7 @@ static void say(Start *s, const char *part)
     s->begun_s = wall_clock_s();
 }
 
-/* Places of plants: in a square as wide as a node's about one vehicle (sensor/node/woods_choice.c). */
+/* Places of plants: in a square as wide as a node's about one vehicle (sensor/node/choices/woods_choice.c). */
 static Status stand(Start *s, const Config *config)
 {
     const double      half_m = config->terrain.woods_half_m >= 50 ? config->terrain.woods_half_m : 4000;

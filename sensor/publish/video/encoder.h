@@ -10,7 +10,7 @@
 #ifndef SENSOR_PUBLISH_VIDEO_ENCODER_H
 #define SENSOR_PUBLISH_VIDEO_ENCODER_H
 
-#include "sensor/settings/video_choice.h"
+#include "sensor/settings/publish_choice.h"
 
 typedef struct EncoderConfig {
     VideoCodec codec;

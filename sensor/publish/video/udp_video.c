@@ -53,7 +53,7 @@ static bool choose_interface(const UdpVideo *u, const char *interface)
 
 Status udp_video_open(UdpVideo **out, const StreamUrl *to, const char *interface, int ttl)
 {
-    const bool  group  = stream_url_multicast(to);
+    const bool  group  = publish_stream_multicast(to);
     const char *failed = NULL;
     UdpVideo   *u      = calloc(1, sizeof *u);
     if (!u) return STATUS_NO_MEMORY;

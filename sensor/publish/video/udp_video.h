@@ -6,7 +6,7 @@
 #define SENSOR_PUBLISH_VIDEO_UDP_VIDEO_H
 
 #include "sensor/publish/sent_counters.h"
-#include "sensor/settings/video_choice.h"
+#include "sensor/settings/publish_choice.h"
 
 typedef struct UdpVideo UdpVideo;
 

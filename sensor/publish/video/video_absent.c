@@ -1,5 +1,5 @@
 /* sensor/publish/video/video_absent.c: in place of videos and streams in a program built without FFmpeg's libraries.
- * Its settings are refused before (sensor/settings/video_choice.c). */
+ * Its settings are refused before (sensor/settings/publish_choice.c). */
 #include "sensor/publish/video/consume_video.h"
 
 Status consume_video(Consumer **out, const VideoOf *of)

@@ -27,9 +27,9 @@ bool video_path(char out[video_path_size], const Config *config, const char *hos
 bool video_stream_url(StreamUrl *out, const Config *config, unsigned bands, Band band)
 {
     const char *why;
-    if (!*config->publish.stream || !stream_url_parse(out, &why, config->publish.stream)) return false;
+    if (!*config->publish.stream || !publish_stream_parse(out, &why, config->publish.stream)) return false;
     const int before = __builtin_popcount(bands & ((1u << band) - 1));
-    out->port        = (uint16_t)(out->port + before * stream_port_step); /* video_choice_check: it fits */
+    out->port        = (uint16_t)(out->port + before * publish_stream_port_step); /* publish_video_check: it fits */
     return true;
 }
 
@@ -84,7 +84,7 @@ void video_watch_lines(char *out, size_t out_size, const Config *config, unsigne
         const int   n     = snprintf(out + used, out_size - used,
                                      "  %-8s ffplay -analyzeduration 1500000 -fflags nobuffer -flags low_delay udp://%s"
                                      "   or   vlc udp://@%s\n", band_name((Band)b), address,
-                                     stream_url_multicast(&url) ? address : colon);
+                                     publish_stream_multicast(&url) ? address : colon);
         if (n < 0 || (size_t)n >= out_size - used) break;
         used += (size_t)n;
     }

@@ -5,7 +5,7 @@
 
 #include "render/scene/view.h"
 #include "sensor/settings/config.h"
-#include "sensor/settings/video_choice.h"
+#include "sensor/settings/publish_choice.h"
 
 enum { video_path_size = 4096 };
 

@@ -1,0 +1,436 @@
+/* sensor/commands/replay_command.c: replays a recorded exercise to images and truth. */
+#include "sensor/commands/commands.h"
+
+#include "dis/datagram.h"
+#include "sensor/publish/frame_files.h"
+#include "sensor/node/run/host_run.h"
+#include "sensor/node/player/player.h"
+#include "sensor/commands/overwrite.h"
+#include "sensor/publish/video/video_names.h"
+#include "sensor/settings/config.h"
+#include "sensor/node/run/stop.h"
+#include "sensor/commands/sweep/sweep.h"
+
+#include <libgen.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
+
+/* ---- the frames ------------------------------------------------------------------------------ */
+
+static void show_progress(double n, double first, double last, double begun_s)
+{
+    const double done = (n - first + 1) / (last - first + 1), spent_s = wall_clock_s() - begun_s;
+    char         text[96];
+    snprintf(text, sizeof text, "frame %.0f of %.0f  %3.0f %%  %.0f s left", n - first + 1, last - first + 1,
+             100 * done, spent_s * (1 - done) / done);
+    log_status(text);
+}
+
+/* The clock of a paced replay: the log's own, times speed. */
+typedef struct Pace {
+    double begun_s, first_s, speed; /* wall clock; exercise time then; INFINITY: as fast as possible */
+} Pace;
+
+static double wall_of(void *clock, double t_s)
+{
+    const Pace *p = clock;
+    return p->begun_s + (t_s - p->first_s) / p->speed;
+}
+
+/* Waits until that clock has reached t_s, or a signal. */
+static void pace(Pace *p, double t_s)
+{
+    if (!isfinite(p->speed)) return;
+    const double    until_s = wall_of(p, t_s);
+    static const double look_s = 0.1; /* a signal that comes just before a wait does not end it */
+    for (double now_s = wall_clock_s(); now_s < until_s && !stop_asked(); now_s = wall_clock_s()) {
+        const double    next_s = fmin(until_s, now_s + look_s);
+        struct timespec next   = {(time_t)next_s, (long)((next_s - floor(next_s)) * 1e9)};
+        clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, NULL);
+    }
+}
+
+/* Whether frame n is requested; at: of --only, the next one. */
+static bool wanted(const Options *o, int *at, double n)
+{
+    if (o->only_count == 0) return true;
+    while (*at < o->only_count && o->only[*at] < n) (*at)++;
+    return *at < o->only_count && o->only[*at] == n;
+}
+
+/* The part of a span that --only needs: up to the last frame it names; all of them, and those to be saved, must be in
+ * the span. */
+static Status take_only(double *last, const Options *o, double first)
+{
+    for (int i = 0, at = 0; i < o->save_count; i++)
+        if (o->save[i] < first || o->save[i] > *last || !wanted(o, &at, o->save[i])) {
+            log_error("replay: --save-frame: frame %d is not rendered: they go from %.0f to %.0f%s; see also --from, --to and --rate",
+                      o->save[i], first, *last, o->only_count ? ", those of --only" : "");
+            return STATUS_BAD_VALUE;
+        }
+    if (o->only_count == 0) return STATUS_OK;
+    const int low = o->only[0], high = o->only[o->only_count - 1];
+    if (low < first || high > *last) {
+        log_error("replay: --only: there is no frame %d, they go from %.0f to %.0f; see also --from, --to and --rate",
+                  low < first ? low : high, first, *last);
+        return STATUS_BAD_VALUE;
+    }
+    *last = high;
+    return STATUS_OK;
+}
+
+/* The host of a plan, as session_host names it at first. */
+static void host_name(char out[dis_id_text_size], const HostPlan *plan)
+{
+    if (plan->any_munition) strcpy(out, host_munition);
+    else if (dis_entity_id_is_none(plan->host)) strcpy(out, host_observer);
+    else dis_entity_id_text(out, plan->host);
+}
+
+/* Frames to be rendered; single: one, at from_s. */
+typedef struct FrameSpan {
+    double from_s, to_s, first, last; /* exercise time; numbers */
+    bool   single;
+} FrameSpan;
+
+/* The span of the plan and of --from and --to, or, causal, to the last datagram received unless --to is later. */
+static Status find_span(FrameSpan *out, const Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid)
+{
+    const Options *o      = &run->options;
+    const Config  *config = &o->config;
+    double         from_s = plan->start_s, to_s = plan->end_s;
+    const double   first_s = run->survey.first_s, last_s = config->causal ? player_last_s(player) : run->survey.last_s;
+    const double   wanted_from_s = config_span_time_s(config->exercise.from, first_s, last_s);
+    const double   wanted_to_s   = config_span_time_s(config->exercise.to, first_s, last_s);
+    if (config_span_outside(config->exercise.from, config->exercise.to, first_s, last_s)) return STATUS_BAD_VALUE;
+    if (!isfinite(to_s) && isnan(wanted_to_s)) to_s = last_s;
+    if (wanted_from_s > from_s) from_s = wanted_from_s;
+    if (wanted_to_s < to_s) to_s = wanted_to_s;
+
+    double     first = ceil(from_s * grid->rate_hz - 1e-9) - grid->origin;
+    double     last  = floor(to_s * grid->rate_hz + 1e-9) - grid->origin;
+    const bool single = to_s >= from_s && !(last >= first); /* shorter than an interval: one frame, at its start */
+    if (!(last >= first || single) || last > 999999) {
+        char host[dis_id_text_size];
+        host_name(host, plan);
+        log_error("replay: %s between %.3f and %.3f s at %g Hz: the recording goes from %.3f to %.3f s (+0 to +%.3f), "
+                  "%s can be "
+                  "shown from %.3f s on; widen --from and --to or change --rate%s",
+                  last >= first ? "more than a million frames" : "no frame", from_s, to_s, grid->rate_hz, first_s,
+                  last_s, last_s - first_s, host, plan->start_s,
+                  config->causal ? ", or listen less (exercise.listen_s)" : "");
+        return STATUS_BAD_VALUE;
+    }
+    if (single) last = first;
+    const Status status = take_only(&last, o, first);
+    *out                = (FrameSpan){from_s, to_s, first, last, single};
+    return status;
+}
+
+static Status check_span(Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid)
+{
+    FrameSpan span;
+    return find_span(&span, run, player, plan, grid);
+}
+
+static Status replay_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
+{
+    const Options *o       = &run->options;
+    FrameSpan      span    = {0};
+    Status         status  = find_span(&span, run, player, plan, grid);
+    int            next    = 0;
+    Pace          *clock   = run->clock;
+    const double   begun_s = wall_clock_s();
+    *clock = (Pace){begun_s, span.single ? span.from_s : run_frame_s(grid, span.first), o->speed};
+    for (double n = span.first; n <= span.last && status == STATUS_OK; n++) {
+        const double t_s = span.single ? span.from_s : run_frame_s(grid, n);
+        bool         shown;
+        if (!wanted(o, &next, n)) continue;
+        pace(clock, t_s);
+        run->stopped = stop_asked();
+        if (run->stopped) break;
+        status = session_frame(&shown, session, (int)n, t_s);
+        if (status == STATUS_OK) show_progress(n, span.first, span.last, begun_s);
+    }
+    log_status(NULL);
+    if (status != STATUS_OK) return status;
+    if (session_result(session)->frames == 0 && !run->stopped) {
+        if (plan->any_munition)
+            log_error("replay: exercise.host: munition: none flew at a frame's time between %.3f and %.3f s; `pitviper "
+                      "inspect %s` lists who was there, --host ID or --host observer shows what there is", span.from_s,
+                      span.to_s, o->log);
+        else
+            log_error("replay: %s was never there at a frame's time; see `pitviper inspect`, --from, --to and --rate",
+                      session_host(session));
+        return STATUS_BAD_VALUE;
+    }
+    return STATUS_OK;
+}
+
+/* ---- the log --------------------------------------------------------------------------------- */
+
+/* Checks all hosts before the first frame of any, so that an error in the last is not found after an hour. */
+static Status check_hosts(DisEntityId host[options_hosts_max], const Run *run)
+{
+    const Options *o = &run->options;
+    for (int i = 0; i < o->host_count; i++) {
+        const bool observer = strcmp(o->host[i], host_observer) == 0;
+        if (observer) {
+            host[i] = (DisEntityId){0};
+        } else if (!dis_entity_id_parse(&host[i], o->host[i]) || dis_entity_id_is_none(host[i])) {
+            log_error("replay: --host: '%s' is not site:application:entity, for example 1:3001:82, nor observer%s",
+                      o->host[i], strcmp(o->host[i], host_munition) == 0 ? "; munition goes alone" : "");
+            return STATUS_BAD_VALUE;
+        }
+        for (int k = 0; k < i; k++)
+            if (dis_entity_id_compare(host[i], host[k]) == 0) {
+                log_error("replay: --host: %s is given twice", o->host[i]);
+                return STATUS_BAD_VALUE;
+            }
+        if (!observer && !survey_track(&run->survey, host[i]) && !o->config.causal) {
+            log_error("replay: --host: %s is not in the log; `pitviper inspect LOG` lists the entities", o->host[i]);
+            return STATUS_BAD_VALUE;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Takes arrival times as a live node received them, independent of the time stamps. */
+static void take_packet_times(DisLog *log)
+{
+    if (log->retimed)
+        log_warn("replay: the packet times do not keep pace with the time stamps; --causal takes them as they are");
+    for (int i = 0; i < log->count; i++) log->datagram[i].capture_s = log->datagram[i].packet_s;
+    log->retimed = false;
+}
+
+/* Hashes the log's octets as they are read: it is read once. */
+typedef struct Hash {
+    Sha256 *digest;
+    bool    good;
+} Hash;
+
+static void hash_octets(void *user, const void *octets, size_t count)
+{
+    Hash *hash = user;
+    hash->good = hash->good && sha256_add(hash->digest, octets, count);
+}
+
+/* Tells why a log shows nothing: other exercises, what is malformed, or another port. */
+static void log_nothing(const Run *run, const DisLog *log)
+{
+    const char        *path = run->options.log;
+    const DisCounters *c = &run->survey.counters;
+    char               heard[128] = "";
+    size_t             n = 0;
+    int                why = 0;
+    if (c->dropped[DIS_DROP_OTHER_EXERCISE] > 0) {
+        bool        there[256] = {false};
+        int         first = -1;
+        DisCounters ignored = {0};
+        for (int i = 0; i < log->count; i++) {
+            const DisDatagram d = dis_log_datagram(log, i);
+            const uint8_t    *at = d.bytes, *pdu, *end = at + d.octets;
+            DisHeader         header;
+            while (dis_next_pdu(&header, &pdu, &at, end, &ignored)) there[header.exercise] = true;
+        }
+        for (int e = 0; e < 256 && n + 8 < sizeof heard; e++) {
+            if (!there[e] || e == run->exercise) continue;
+            n += (size_t)snprintf(heard + n, sizeof heard - n, "%s%d", n ? ", " : "", e);
+            if (first < 0) first = e;
+        }
+        log_error("replay: %s holds no Entity State with a usable position of exercise %d (%llu datagrams heard); it holds PDUs "
+                  "of exercise %s: --set exercise.exercise=%d takes that one, -2 all", path, run->exercise,
+                  (unsigned long long)c->datagrams, heard, first);
+        return;
+    }
+    for (int i = 1; i < DIS_DROP_COUNT; i++)
+        if (c->dropped[i] > c->dropped[why]) why = i;
+    if (c->dropped[why] > 0)
+        log_error("replay: %s holds no Entity State with a usable position (%llu datagrams heard); %llu PDUs are dropped, most for "
+                  "%s; `pitviper inspect %s` says what it holds", path, (unsigned long long)c->datagrams,
+                  (unsigned long long)c->dropped[why], dis_drop_cause((DisDrop)why), path);
+    else
+        log_error("replay: %s holds no Entity State with a usable position (%llu datagrams heard); "
+                  "`pitviper inspect %s` says what it holds, --set exercise.port=N takes another port", path,
+                  (unsigned long long)c->datagrams, path);
+}
+
+static Status open_log(Run *run, DisLog *log)
+{
+    const Options *o = &run->options;
+    DisLog         heard;
+    Hash           hash = {sha256_begin(), true};
+    Status         status = hash.digest ? dis_log_open_read(log, o->log, o->config.exercise.port, hash_octets, &hash)
+                                        : STATUS_NO_MEMORY;
+    if (hash.digest) {
+        const Status ended = sha256_end(run->log_sha256, hash.digest, hash.good);
+        if (status == STATUS_OK) status = ended;
+    }
+    run->stopped = status != STATUS_OK && stop_asked(); /* while a pipe was waited for */
+    if (status != STATUS_OK) return status;
+    run->link = &log->counters;
+    if (o->config.causal) take_packet_times(log);
+    if (log->retimed)
+        choice_add(&run->choices, "clock: the time stamps; the capture's packet times do not keep pace with them");
+    if (log->any_port && o->config.exercise.port == dis_port_default)
+        choice_add(&run->choices, "port: any that carries DIS, nothing went to 3000 (exercise.port)");
+    run->own = (uint64_t)player_drop_own(log, &o->config);
+    if (run->own > 0)
+        choice_add(&run->choices, "own: %llu datagrams of %d:%d are this node's, left out (node.site, "
+                   "node.application)",
+                   (unsigned long long)run->own, o->config.node.site, o->config.node.application);
+    run->view = heard = *log;
+    const bool starts = !o->config.causal || player_opening(&run->view, &heard, &run->until_s, log, &o->config);
+    status            = run_survey(run, &heard);
+    if (status == STATUS_OK && dis_log_failed(log)) status = STATUS_IO;
+    if (status == STATUS_OK && (!starts || run->survey.track_count == 0)) {
+        log_nothing(run, log);
+        return STATUS_BAD_VALUE;
+    }
+    return status;
+}
+
+/* ---- Data PDUs -------------------------------------------------------------------------------- */
+
+typedef struct Sending {
+    DisUdp *udp;                     /* NULL: nothing is sent */
+    char    to[run_network_to_size]; /* for messages */
+} Sending;
+
+static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
+{
+    const Sending *s = user;
+    return dis_udp_send(s->udp, pdu, octets);
+}
+
+/* A replay at the pace of the recording, or a multiple of it, sends what the live node would send; at full speed it
+ * would flood the network. */
+static Status open_sending(Sending *s, Run *run, const DisLog *log)
+{
+    const Options     *o   = &run->options;
+    const DisUdpConfig udp = run_network(&o->config);
+    if (strcmp(o->config.publish.dis, "off") == 0) return STATUS_OK;
+    if (!isfinite(o->speed)) {
+        log_warn("replay: publish.dis: Data PDUs are not sent at full speed; add --speed 1 to send them at the pace of "
+                 "the recording");
+        return STATUS_OK;
+    }
+    for (int i = 0; i < log->count; i++) {
+        const DisDatagram datagram = dis_log_datagram(log, i);
+        if (player_starts(&run->first, &datagram, &o->config)) break;
+    }
+    run_network_to(s->to, &udp);
+    const Status status = dis_udp_open_sender(&s->udp, &udp);
+    if (status != STATUS_OK) return status;
+    run->send = send_pdu;
+    run->user = s;
+    log_info("replay: Data PDUs go to %s from %d:%d (publish.dis)", s->to, o->config.node.site,
+             o->config.node.application);
+    return STATUS_OK;
+}
+
+/* A replay that was to send, and could not send one PDU, has failed. */
+static Status close_sending(Sending *s)
+{
+    if (!s->udp) return STATUS_OK;
+    const DisUdpCounters c = dis_udp_counters(s->udp);
+    dis_udp_close(s->udp);
+    s->udp = NULL;
+    if (c.sent == 0 && c.send_failed > 0) {
+        log_error("replay: none of %llu Data PDUs could be sent to %s: %s; see --address and --interface",
+                  (unsigned long long)c.send_failed, s->to, strerror(c.send_error));
+        return STATUS_IO;
+    }
+    log_info("replay: Data PDUs sent %llu, not sent %llu", (unsigned long long)c.sent,
+             (unsigned long long)c.send_failed);
+    return STATUS_OK;
+}
+
+/* ---- the command ------------------------------------------------------------------------------- */
+
+/* Checks the folders of all hosts, and their videos: the last thing that is asked before the world is set up. */
+static Status open_folders(const Run *run, const DisEntityId host[])
+{
+    const Options *o = &run->options;
+    char           name[run_folder_size];
+    const bool     there  = access(o->out, F_OK) == 0; /* else a video may be meant for it */
+    Status         status = STATUS_OK;
+    if (there && o->host_count <= 1) status = overwrite_video("replay", &o->config, run->bands, NULL, o->overwrite);
+    if (status == STATUS_OK) status = overwrite_folder("replay", o->out, o->overwrite);
+    if (status == STATUS_OK && !there && o->host_count <= 1)
+        status = overwrite_video("replay", &o->config, run->bands, NULL, o->overwrite);
+    for (int i = 0; status == STATUS_OK && o->host_count > 1 && i < o->host_count; i++) {
+        run_folder(name, o, host[i]);
+        status = overwrite_folder("replay", name, o->overwrite);
+        if (status == STATUS_OK)
+            status = overwrite_video("replay", &o->config, run->bands, basename(name), o->overwrite);
+    }
+    return status;
+}
+
+/* Finds everything that can be known to be wrong, in seconds, before a file is touched. */
+static Status prepare(Run *run, DisLog *log, DisEntityId host[options_hosts_max])
+{
+    const Options *o      = &run->options;
+    Status         status = run_prepare(run);
+    if (status == STATUS_OK) status = video_hosts_check(&o->config, o->host_count);
+    if (status == STATUS_OK) status = open_log(run, log);
+    if (status == STATUS_OK) status = check_hosts(host, run);
+    if (status == STATUS_OK && o->host_count == 0) status = run_check(run, NULL);
+    for (int i = 0; i < o->host_count && status == STATUS_OK; i++) status = run_check(run, &host[i]);
+    return status;
+}
+
+static Status look_at_variant(Run *run)
+{
+    DisLog      log = {0};
+    DisEntityId host[options_hosts_max];
+    run->check          = check_span;
+    const Status status = prepare(run, &log, host);
+    dis_log_close(&log);
+    return status;
+}
+
+int replay_command(int argc, char **argv)
+{
+    Pace        clock = {0};
+    Run         run = {.check = check_span, .frames = replay_frames, .clock = &clock};
+    Sending     sending = {0};
+    DisLog      log = {0};
+    DisEntityId host[options_hosts_max];
+    char        log_name[4096];
+    const int   stop = options_parse(&run.options, COMMAND_REPLAY, argc, argv);
+    if (stop) return stop - 1;
+    stop_by_signals();
+    if (isfinite(run.options.speed)) run.wall_s = wall_of;
+    if (run.options.sweep) return sweep_replay(&run.options, look_at_variant);
+
+    snprintf(log_name, sizeof log_name, "%s", run.options.log);
+    run.log_name = basename(log_name);
+    thread_flush_denormals();
+    Status failed = STATUS_OK, status = prepare(&run, &log, host);
+    if (status == STATUS_OK) status = open_sending(&sending, &run, &log);
+    if (status == STATUS_OK) status = open_folders(&run, host);
+    if (status == STATUS_OK) video_watch_print(&run.options.config, run.bands);
+    if (status == STATUS_OK && run.options.host_count == 0) status = run_host(&run, NULL);
+    int made = 0;
+    for (int i = 0; status == STATUS_OK && !run.stopped && i < run.options.host_count; i++) {
+        const Status one = run_host(&run, &host[i]);
+        if (one != STATUS_OK) failed = one; /* the others are still rendered */
+        else if (made++ == 0 && run.options.host_count > 1) frame_files_clear(run.options.out); /* a run of one host */
+    }
+    if (status == STATUS_OK) status = failed;
+    const Status sent = close_sending(&sending);
+    if (status == STATUS_OK) status = sent;
+    if (status == STATUS_NO_MEMORY)
+        log_error("replay: out of memory; smaller pictures (--size), fewer bands (--bands) or more memory");
+
+    const bool unheard = run.stopped && log.count == 0;
+    run_close(&run);
+    dis_log_close(&log);
+    if (status != STATUS_OK && !unheard) return 1;
+    return run.stopped ? stop_exit_code() : 0;
+}

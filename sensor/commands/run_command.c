@@ -1,0 +1,486 @@
+/* sensor/commands/run_command.c: `pitviper run`: receives, makes the choices, then renders frame after frame by the
+ * clock. */
+#include "sensor/commands/commands.h"
+#include "pitviper_output.h"
+
+#include "dis/steady_clock.h"
+#include "sensor/node/live/health.h"
+#include "sensor/publish/frame_files.h"
+#include "sensor/node/run/host_run.h"
+#include "sensor/node/live/live_recording.h"
+#include "sensor/node/player/player.h"
+#include "sensor/commands/overwrite.h"
+#include "sensor/publish/video/video_names.h"
+#include "sensor/quality/quality_measure.h"
+#include "sensor/quality/quality.h"
+#include "sensor/settings/config.h"
+#include "sensor/node/run/stop.h"
+
+#include <libgen.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <strings.h>
+#include <time.h>
+#include <unistd.h>
+
+static const double  flush_s = 0.5, show_s = 1;
+static const int64_t check_ns = 100000000; /* a signal may be delivered to another thread: polled at this interval */
+
+typedef struct Live {
+    Run          run;
+    DisUdp      *udp;
+    LiveRecording *recording;       /* NULL: none, or closed */
+    bool         record_whole;      /* it holds all received datagrams, and can be read again */
+    char         where[dis_udp_where_size];
+    LiveCounters counters;
+    Health       health;
+    double       health_s;          /* when it was last checked */
+    char         host[dis_id_text_size]; /* at the end */
+    char         to[run_network_to_size]; /* destination, for messages */
+    /* datagrams received before the choices, each with its own memory */
+    DisDatagram *heard;
+    int          received_count, received_capacity;
+    const Player *player;           /* once there is one */
+    /* wall clock, s */
+    double       begun_s, flushed_s, shown_s;
+    uint64_t     shown_frames;      /* by then */
+    int64_t      due_ns;            /* Unix time of the present frame */
+    double       latency_s;         /* from then until it was rendered, the worst since shown_s; NaN: none */
+} Live;
+
+/* Whether it is to send Data PDUs. */
+static bool publishes(const Live *l) { return strcmp(l->run.options.config.publish.dis, "off") != 0; }
+
+/* ---- when to stop ------------------------------------------------------------------------------ */
+
+static bool over(const Live *l)
+{
+    return stop_asked() || wall_clock_s() - l->begun_s >= l->run.options.for_s;
+}
+
+/* ---- what arrives ------------------------------------------------------------------------------ */
+
+static void flush_recording(Live *l)
+{
+    const double now_s = wall_clock_s();
+    if (!l->recording || now_s - l->flushed_s < flush_s) return;
+    live_recording_flush(l->recording);
+    l->flushed_s = now_s;
+}
+
+/* -1: any. Before the choices, as configured. */
+static int exercise_to_join(const Live *l)
+{
+    return l->player ? l->run.exercise : l->run.options.config.exercise.exercise;
+}
+
+/* Takes the next datagram of another sender that arrived until until_ns. False: there is none. */
+static bool take(DisDatagram *out, Live *l, int64_t until_ns)
+{
+    DisArrival a;
+    while (dis_udp_take(&a, l->udp, until_ns)) {
+        *out = (DisDatagram){.capture_s = dis_unix_s(a.capture_ns), .octets = a.octets, .bytes = a.bytes};
+        out->packet_s = out->capture_s;
+        if (player_own(out, &l->run.options.config)) {
+            l->run.own++;
+            health_own(&l->health, wall_clock_s());
+            continue;
+        }
+        health_received(&l->health, out, exercise_to_join(l), !l->player, wall_clock_s());
+        return true;
+    }
+    return false;
+}
+
+
+static void read_counters(Live *l)
+{
+    const DisUdpCounters c = dis_udp_counters(l->udp);
+    l->counters.datagrams   = c.datagrams;
+    l->counters.lost_kernel = c.lost_kernel;
+    l->counters.lost_queue  = c.lost_queue;
+    l->counters.sent        = c.sent;
+    l->counters.send_failed = c.send_failed;
+    l->health.sample.error  = c.send_error;
+    l->health.sample.away   = c.away;
+}
+
+static HealthNames names_of(const Live *l, const Session *session)
+{
+    const Config *config = &l->run.options.config;
+    return (HealthNames){.where = l->where, .to = l->to, .exercise = exercise_to_join(l), .site = config->node.site,
+                         .application = config->node.application,
+                         .host = session ? session_host(session) : config->exercise.host};
+}
+
+/* Reports changes of health, and the status line of a terminal; session: NULL before there is one. About ten times a
+ * second. */
+static void check_health(Live *l, const Session *session)
+{
+    char         line[health_line_size];
+    const double now_s = wall_clock_s();
+    if (now_s - l->health_s < 1e-9 * (double)check_ns) return;
+    l->health_s = now_s;
+    read_counters(l);
+    if (session) {
+        l->health.sample.entities  = session_entities(session);
+        l->health.sample.over_rate = session_over_rate(session);
+    }
+    const HealthNames names = names_of(l, session);
+    health_check(&l->health, &l->counters, &names, now_s);
+    if (now_s - l->shown_s < show_s) return;
+    const uint64_t frames = l->health.sample.frames;
+    health_line(line, &l->health, (double)(frames - l->shown_frames) / (now_s - l->shown_s), l->latency_s);
+    log_status(line);
+    l->shown_frames = frames;
+    l->shown_s      = now_s;
+    l->latency_s    = NAN;
+}
+
+/* ---- listening --------------------------------------------------------------------------------- */
+
+static void drop_received(Live *l, int count)
+{
+    for (int i = 0; i < count; i++) free((void *)(uintptr_t)l->heard[i].bytes);
+    l->received_count -= count;
+    memmove(l->heard, l->heard + count, (size_t)l->received_count * sizeof *l->heard);
+}
+
+static Status store_received(Live *l, const DisDatagram *datagram)
+{
+    if (l->received_count == l->received_capacity) {
+        const int    larger = l->received_capacity ? 2 * l->received_capacity : 4 * player_opening_before;
+        DisDatagram *grown  = realloc(l->heard, (size_t)larger * sizeof *grown);
+        if (!grown) return STATUS_NO_MEMORY;
+        l->heard          = grown;
+        l->received_capacity = larger;
+    }
+    uint8_t *bytes = malloc(datagram->octets + 1);
+    if (!bytes) return STATUS_NO_MEMORY;
+    memcpy(bytes, datagram->bytes, datagram->octets);
+    l->heard[l->received_count]         = *datagram;
+    l->heard[l->received_count++].bytes = bytes;
+    return STATUS_OK;
+}
+
+/* Collects the datagrams for the choices: the rule of player_opening, applied on arrival. heard: false when stopped
+ * before. */
+static Status listen_first(bool *heard, Live *l)
+{
+    const Config *config   = &l->run.options.config;
+    int64_t       until_ns = INT64_MAX; /* not begun */
+    DisDatagram   datagram;
+    *heard = false;
+    while (!over(l)) {
+        const bool last = until_ns < INT64_MAX && dis_udp_now_ns() > until_ns;
+        if (last) dis_udp_close_tick(l->udp, until_ns);
+        while (take(&datagram, l, until_ns)) {
+            const Status status = store_received(l, &datagram);
+            if (status != STATUS_OK) return status;
+            if (until_ns < INT64_MAX) continue;
+            if (player_starts(&l->run.first, &datagram, config)) {
+                l->run.until_s = player_listens_until_s(&datagram, config);
+                until_ns       = dis_unix_ns_until(l->run.until_s);
+                if (l->received_count > player_opening_before + 1)
+                    drop_received(l, l->received_count - player_opening_before - 1);
+                log_info("run: heard the first entity; listening for %g s (exercise.listen_s)",
+                         config->exercise.listen_s);
+                log_info("run: what stood or drove before is not known%s; what stands at its first report is taken to have "
+                         "stood there for an hour", *config->heat.marks ? " beyond heat.marks" : " (heat.marks)");
+            } else if (l->received_count >= 4 * player_opening_before) {
+                drop_received(l, l->received_count - player_opening_before);
+            }
+        }
+        if (last) {
+            *heard = true;
+            break;
+        }
+        flush_recording(l);
+        check_health(l, NULL);
+        const int64_t look = dis_udp_now_ns() + check_ns;
+        dis_udp_wait(l->udp, until_ns < look ? until_ns + 1 : look);
+    }
+    l->run.view = (DisLog){.count = l->received_count, .datagram = l->heard};
+    return STATUS_OK;
+}
+
+/* ---- publishing -------------------------------------------------------------------------------- */
+
+/* Counts every frame rendered, before it is sent. */
+static void count_frame(void *user, const FrameRecord *frame)
+{
+    Live *l      = user;
+    l->latency_s = fmax(l->latency_s, 1e-9 * (double)(dis_udp_now_ns() - l->due_ns));
+    health_frame(&l->health, frame, wall_clock_s());
+}
+
+/* Writes a note into the recording. That one has no room for notes (.pcap) was said when it was opened. */
+static void note(void *user, const char *text)
+{
+    const Live *l = user;
+    live_recording_note(l->recording, dis_udp_now_ns(), text);
+}
+
+static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
+{
+    const Live *l = user;
+    return dis_udp_send(l->udp, pdu, octets);
+}
+
+/* ---- frame after frame ------------------------------------------------------------------------- */
+
+/* Exercise time as the time of arrival that it stands for, on the clock of wall_clock_s. */
+static double wall_of(void *user, double t_s)
+{
+    const Live           *l  = user;
+    const struct timespec at = steady_clock_monotonic(dis_unix_ns_until(player_arrival_s(l->player, t_s)));
+    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+}
+
+static Status feed(Live *l, Player *player, int64_t until_ns)
+{
+    DisDatagram datagram;
+    while (take(&datagram, l, until_ns)) {
+        const Status status = player_add(player, &datagram, true);
+        if (status != STATUS_OK) {
+            log_error("run: out of memory for what was heard");
+            return status;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Receives until that Unix time has passed. False: the run is over. */
+static Status wait_until(bool *there, Live *l, const Session *session, Player *player, int64_t until_ns)
+{
+    for (;;) {
+        const int64_t now_ns = dis_udp_now_ns();
+        *there = now_ns > until_ns;
+        if (*there || over(l)) return STATUS_OK;
+        check_health(l, session);
+        dis_udp_sleep_until(until_ns < now_ns + check_ns ? until_ns + 1 : now_ns + check_ns);
+        const Status status = feed(l, player, until_ns);
+        if (status != STATUS_OK) return status;
+    }
+}
+
+/* Closes the recording with the remaining datagrams, and hashes it. */
+static void conclude(Live *l)
+{
+    DisDatagram   datagram;
+    const int64_t last_ns = dis_udp_now_ns();
+    dis_udp_close_tick(l->udp, last_ns);
+    while (take(&datagram, l, last_ns)) {}
+    read_counters(l);
+    if (!l->recording) return;
+    const char *path          = l->run.options.config.record.path;
+    l->counters.record_failed = live_recording_failed(l->recording);
+    l->record_whole           = live_recording_close(l->recording) == STATUS_OK && l->counters.record_failed == 0;
+    l->recording              = NULL;
+    if (!l->record_whole) {
+        log_error("run: the recording %s ends early: %llu datagrams and more are not in it", path,
+                   (unsigned long long)l->counters.record_failed);
+    } else if (sha256_file(l->run.log_sha256, path) != STATUS_OK) {
+        log_error("run: the recording %s cannot be read again, and run.json does not name it by its hash", path);
+        l->record_whole = false;
+    }
+}
+
+/* Renders the newest frame that is due, else the next: when late, frames are dropped, not queued. */
+static Status live_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
+{
+    Live          *l      = run->user;
+    const Options *o      = &run->options;
+    Status         status = STATUS_OK;
+    double         last   = -1; /* number of the last frame */
+    const double given_s = config_span_time_s(o->config.exercise.from, plan->start_s, NAN); /* NaN: none */
+    const double from_s = fmax(plan->start_s, given_s);
+    const double   to_s   = config_span_time_s(o->config.exercise.to, plan->start_s, NAN);
+    const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
+    l->player           = player;
+    l->counters.rate_hz = grid->rate_hz;
+    health_rendering(&l->health, wall_clock_s());
+    l->health.sample.host = plan->any_munition                      ? HEALTH_MUNITION
+                            : dis_entity_id_is_none(plan->host) ? HEALTH_OBSERVER
+                                                                : HEALTH_BY_ID;
+    while (status == STATUS_OK && !over(l) && !(o->frames && session_result(session)->frames >= o->frames)) {
+        const double now_s  = player_time_s(player, dis_unix_s(dis_udp_now_ns()));
+        const double newest = floor(now_s * grid->rate_hz) - grid->origin;
+        const double n      = fmax(fmax(newest, last + 1), first);
+        const double t_s    = run_frame_s(grid, n);
+        if (t_s > to_s) break;
+        const int64_t until_ns = dis_unix_ns_until(player_arrival_s(player, t_s));
+        bool          there, shown;
+        status = wait_until(&there, l, session, player, until_ns);
+        if (status != STATUS_OK || !there) break;
+        if (last >= 0 && n > last + 1) l->counters.frames_late += (uint64_t)(n - last - 1);
+        last = n;
+        dis_udp_close_tick(l->udp, until_ns);
+        status = feed(l, player, until_ns);
+        l->due_ns = until_ns;
+        if (status == STATUS_OK) status = session_frame(&shown, session, (int)n, t_s);
+        if (status == STATUS_OK && !shown) l->health.sample.missing++;
+        flush_recording(l);
+        check_health(l, session);
+    }
+    if (status == STATUS_OK && last >= 0 && over(l)) { /* those that were due while the last one was made */
+        const double ended_s = fmin(player_time_s(player, dis_unix_s(dis_udp_now_ns())), isnan(to_s) ? INFINITY : to_s);
+        const double newest  = floor(ended_s * grid->rate_hz) - grid->origin;
+        if (newest > last) l->counters.frames_late += (uint64_t)(newest - last);
+    }
+    log_status(NULL);
+    snprintf(l->host, sizeof l->host, "%s", session_host(session));
+    l->health.sample.entities = session_entities(session);
+    conclude(l);
+    run->stopped = stop_asked();
+    return status;
+}
+
+/* ---- the command ------------------------------------------------------------------------------- */
+
+static Status open_network(Live *l)
+{
+    Config      *config = &l->run.options.config;
+    DisUdpConfig udp;
+    if (config->exercise.port == dis_port_any) {
+        log_error("run: exercise.port: 0 is any port, for a recording; a node listens on one, 1 .. 65535");
+        return STATUS_BAD_VALUE;
+    }
+    udp = run_network(config);
+    dis_udp_where(l->where, &udp);
+    run_network_to(l->to, &udp);
+    return dis_udp_open(&l->udp, &udp);
+}
+
+/* Opens folder, videos and recording, when everything else is known to be right. */
+static Status open_files(Live *l)
+{
+    const Options *o      = &l->run.options;
+    const Config  *config = &o->config;
+    char           comment[dis_udp_where_size + 40];
+    Status         status = STATUS_OK;
+    if (*config->record.path) status = overwrite_file("run", config->record.path, o->overwrite);
+    if (status == STATUS_OK) status = overwrite_folder("run", o->out, o->overwrite);
+    if (status == STATUS_OK) status = overwrite_video("run", config, l->run.bands, NULL, o->overwrite);
+    if (status != STATUS_OK || !*config->record.path) return status;
+    snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
+    if (strcmp(config->radar.preset, "none") != 0 && strcasecmp(output_ending(config->record.path), ".pcap") == 0)
+        log_warn("run: %s has no room for which frames are without radar (pcap): a replay has it in all; name it .pcapng",
+                 config->record.path);
+    return live_recording_open(&l->recording, config->record.path, comment, l->udp, run_network(config).port);
+}
+
+/* The time of a frame on this machine, measured once: the only clock that a choice of quality depends on. Reported
+ * so that a replay with the same quality.machine_factor gives the same images. */
+static Status measure_machine(Live *l)
+{
+    Config *config = &l->run.options.config;
+    char    path[1024], text[32];
+    double  factor;
+    if (!quality_wants_factor(config)) return STATUS_OK;
+    if (*config->quality.table) snprintf(path, sizeof path, "%s", config->quality.table);
+    else if (!etc_path(path, sizeof path, "quality.csv")) return STATUS_BAD_VALUE;
+    Status status = quality_machine_factor(&factor, path, l->run.options.threads);
+    if (status != STATUS_OK) return status;
+    snprintf(text, sizeof text, "%g", factor);
+    choice_add(&l->run.choices,
+               "machine: %s times the time in the table of settings, measured (quality.machine_factor)", text);
+    return config_set(config, "quality.machine_factor", text, "run");
+}
+
+/* Whether there was nothing to render so far, and nothing is wrong. */
+static bool idle(HealthReason reason)
+{
+    return reason == HEALTH_NOTHING || reason == HEALTH_NO_ENTITY || reason == HEALTH_NO_MUNITION || reason == HEALTH_EARLY;
+}
+
+/* A run without any result of one requested kind is a failure: no frame, no file of any frame, no PDU of any. One that
+ * is stopped while it waits is none. */
+static Status verdict(Live *l)
+{
+    HealthSample *s = &l->health.sample;
+    char          text[health_text_size];
+    HealthNames   names = names_of(l, NULL);
+    if (*l->host) names.host = l->host;
+    s->now_s = wall_clock_s();
+    if (s->frames == 0) {
+        const HealthReason reason = health_final(s);
+        health_text(text, reason, s, &names);
+        if (stop_asked() && idle(reason)) {
+            log_info("run: stopped before the first frame, while it waited: %s", health_name(reason));
+            return STATUS_OK;
+        }
+        log_error("run: ended before the first frame: %s", text);
+        return STATUS_IO;
+    }
+    if (s->publishes && l->counters.sent == 0 && l->counters.send_failed > 0) {
+        health_text(text, HEALTH_NOT_SENT, s, &names);
+        log_error("run: %s", text);
+        return STATUS_IO;
+    }
+    if (l->run.options.config.publish.files && l->counters.files_failed + l->counters.files_left_out >= s->frames) {
+        log_error("run: none of %llu frames has its files in %s; see above", (unsigned long long)s->frames,
+                  l->run.options.out);
+        return STATUS_IO;
+    }
+    return STATUS_OK;
+}
+
+static Status run_node(Live *l)
+{
+    bool   heard;
+    const Options *o = &l->run.options;
+    Status status = measure_machine(l);
+    if (status == STATUS_OK) status = run_prepare(&l->run);
+    if (status == STATUS_OK) status = open_network(l);
+    /* now, not hours later when the first entity is received; the socket first: an older recording must not be lost for nothing */
+    if (status == STATUS_OK) status = open_files(l);
+    if (status != STATUS_OK) return status;
+    l->begun_s = l->shown_s = wall_clock_s();
+    health_begin(&l->health, l->begun_s);
+    l->health.sample.publishes = publishes(l);
+    log_info("run: listening on %s; Ctrl-C ends it", l->where);
+    video_watch_print(&o->config, l->run.bands);
+    status = listen_first(&heard, l);
+    log_status(NULL);
+    if (status == STATUS_OK && heard) {
+        status = run_survey(&l->run, &l->run.view);
+        if (status == STATUS_OK) status = run_host(&l->run, NULL);
+    } else {
+        conclude(l);
+        l->run.stopped = stop_asked();
+        if (status == STATUS_OK) status = run_unheard(&l->run);
+    }
+    health_summary(&l->counters, &l->health.sample, l->run.own);
+    return status == STATUS_OK ? verdict(l) : status;
+}
+
+int run_command(int argc, char **argv)
+{
+    Live  live = {.run = {.frames = live_frames, .log_name = "live"}};
+    Live *l    = &live;
+    char  name[sizeof l->run.options.config.record.path];
+    const int stop = options_parse(&l->run.options, COMMAND_RUN, argc, argv);
+    if (stop) return stop - 1;
+    l->run.options.config.causal = true;
+    l->run.live                  = &l->counters;
+    l->run.user                  = l;
+    l->run.publish               = count_frame;
+    if (publishes(l)) l->run.send = send_pdu;
+    if (*l->run.options.config.record.path) l->run.note = note;
+    l->run.wall_s                = wall_of;
+    l->run.clock                 = l;
+    memcpy(name, l->run.options.config.record.path, sizeof name);
+    if (*name) l->run.log_name = basename(name);
+    l->latency_s = NAN;
+
+    stop_by_signals();
+    thread_flush_denormals();
+    const Status status = run_node(l);
+    live_recording_close(l->recording);
+    dis_udp_close(l->udp);
+    run_close(&l->run);
+    drop_received(l, l->received_count);
+    free(l->heard);
+    return status == STATUS_OK && (!*name || l->record_whole) ? 0 : 1;
+}

@@ -1,0 +1,99 @@
+/* sensor/node/choices/choices.h: automatic choices of replay and run: host, aim, time of day, ground, plants. Each
+ * choice is one line with the key that changes it. Causal choices (exercise.causal) use what the survey has received
+ * so far: a host or an aim given by name may appear later. */
+#ifndef SENSOR_NODE_CHOICES_CHOICES_H
+#define SENSOR_NODE_CHOICES_CHOICES_H
+
+#include "entities/catalog/catalog.h"
+#include "entities/survey/survey.h"
+#include "sensor/settings/config.h"
+#include "terrain/landscape/landscape.h"
+#include "terrain/woods/woods.h"
+
+/* ---- host and aim ------------------------------------------------------------------------------------- */
+
+/* The host of the sensor, its span of exercise time, and its aim. */
+typedef struct HostPlan {
+    DisEntityId host;      /* 0:0:0: the stand-off observer, or the next munition */
+    bool        any_munition; /* munitions become the host one after the other as they appear: player_munition */
+    DisEntityId aim;       /* 0:0:0: none known: along the body axis, or the position below */
+    double      start_s, end_s;
+    double      p_aim_ecef[3]; /* position to aim at when there is no aim entity; valid for an observer */
+    bool        munition;
+    double      rate_hz;   /* choice_rate */
+} HostPlan;
+
+extern const char host_munition[], host_observer[]; /* values of exercise.host that are not ids */
+
+/* Of the guided munitions, else of the others, never mines: the one with a Detonation of result entity impact,
+ * longest flight first; else the longest flight; else an observer orbiting the vehicle with the longest path; else
+ * an observer orbiting the centre of all entities received. Causal: the longest flight among munitions that are
+ * still present, else the observer. */
+Status choice_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config);
+/* For a host given by name; 0:0:0: the observer. STATUS_BAD_VALUE and a message when the log does not contain it. */
+Status choice_named_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
+/* Frames per second of exercise time, into the plan. */
+void   choice_rate(HostPlan *plan, Choices *choices, const Config *config);
+/* Whether it is a platform of domain land. */
+bool   choice_is_land(const Track *track);
+
+/* ---- exercise, time, frame, shapes -------------------------------------------------------------------- */
+
+/* The exercise identifier to receive: as configured, or the one with the most usable Entity States; -1: all. Causal:
+ * also with a single exercise, since others may follow. */
+int    choice_exercise(Choices *choices, const DisLog *log, const Config *config);
+/* Unix time of exercise time 0. Also reports senders whose time stamps are not a clock. */
+Status choice_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config,
+                   const LocalFrame *frame);
+/* Reports when optical images of this place will be black: the sun more than 6 degrees below the horizon, the end of
+ * civil twilight, at the beginning or the end of the plan. */
+void   choice_report_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan,
+                           const LocalFrame *frame);
+/* The local frame, with its origin amid the entities. */
+Status choice_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
+/* Builds the models of all types in the survey, so that no frame waits for one, and reports each type once when it
+ * is not rendered (`none` in the catalog), or when no row matches (rendered as a wedge). At most four types by name. */
+void   choice_shapes(Choices *choices, const Survey *survey, const Catalog *catalog);
+
+/* ---- ground and plants -------------------------------------------------------------------------------- */
+
+/* What both follow from. */
+typedef struct ChoiceBasis {
+    const Survey   *survey;
+    const Config   *config;
+    const Catalog  *catalog;
+    const HostPlan *plan;
+} ChoiceBasis;
+
+/* Entities that are clamped to the ground: none, those inconsistent with synthetic terrain, or all on the ground. */
+typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_INCONSISTENT, GROUND_CONTACT_ALL } GroundContact;
+
+/* The ground: from terrain.store or the files of terrain.*, else synthetic terrain with its sea, fitted to the log (see
+ * ground_evidence.h). contact: which entities are clamped to it (terrain.ground), later ones too. */
+Status choice_ground(Landscape *out, GroundContact *contact, Choices *choices, const ChoiceBasis *basis,
+                     const LocalFrame *frame);
+/* With terrain.store: the store's own local frame, for everything. Looks at the store's sources: changed ones are
+ * imported again first. aim: the frame that the exercise would have by itself; STATUS_BAD_VALUE, logged, when that is
+ * not on the store's ground. */
+Status choice_store_frame(LocalFrame *out, Choices *choices, const Config *config, const LocalFrame *aim);
+
+/* Where plants stand in a run: about the aim, clear of what the exercise says.
+ *
+ * On invented ground no plant stands on the path of anything on the ground, where a burst hit it, or where a flight or
+ * the line of sight of a shot that hit passes low, as far as these are known when the world is made. Real trees stay;
+ * entities that begin within a trunk are counted. */
+typedef struct WoodsChoice {
+    bool        on;                  /* terrain.woods */
+    WoodsConfig config;
+    WoodsPath  *path;                /* config.path */
+    Woods       woods;
+    int         entities, in_trunks; /* on the ground at their first report; of these within a trunk */
+} WoodsChoice;
+
+/* The landscape must outlive it. With terrain.woods off: not on, nothing is done. choice_woods_free after success and
+ * failure. */
+Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis, const Landscape *landscape,
+                    Pool *pool);
+void   choice_woods_free(WoodsChoice *woods);
+
+#endif

@@ -1,0 +1,273 @@
+/* sensor/node/choices/woods_choice.c: the square in which plants stand, paths that are cleared of them, and what
+ * there is. */
+#include "sensor/node/choices/choices.h"
+
+#include "dis/enumerations.h"
+#include "dis/warfare.h"
+#include "sensor/node/choices/ground_evidence.h"
+
+#include <stdlib.h>
+
+/* ---- the square ---------------------------------------------------------------------------------- */
+
+static void enu_of(double p_enu[3], const Landscape *landscape, const double p_ecef[3])
+{
+    enu_from_ecef(p_enu, &landscape->frame, p_ecef);
+}
+
+/* How far an entity's reports reach from the centre, east or north; those beyond far_m are left out. */
+static double reach_of(const Track *track, const Landscape *landscape, const double centre_m[2], double far_m)
+{
+    double reach_m = 0;
+    for (int n = 0; n < track->count; n++) {
+        double p_enu[3];
+        enu_of(p_enu, landscape, track->point[n].p_ecef);
+        const double off_m = fmax(fabs(p_enu[0] - centre_m[0]), fabs(p_enu[1] - centre_m[1]));
+        if (off_m < far_m) reach_m = fmax(reach_m, off_m);
+    }
+    return reach_m;
+}
+
+/* The square is about the aim and reaches as far as the host and what is on the ground go, and sight_m more. */
+static Status choose_square(WoodsConfig *out, const Survey *survey, const Config *config, const Landscape *landscape,
+                            const HostPlan *plan)
+{
+    static const double sight_m = 4000, far_m = 12000, least_m = 50, most_m = 50000;
+    LocalFrame          aim;
+    double              p_enu[3], reach_m = 0;
+    const Status        status = choice_frame(&aim, survey, plan);
+    if (status != STATUS_OK) return status;
+    enu_of(p_enu, landscape, aim.origin_ecef);
+    memcpy(out->centre_m, p_enu, sizeof out->centre_m);
+    for (int t = 0; t < survey->track_count; t++) {
+        const Track *track = &survey->track[t];
+        if (choice_is_land(track) || dis_entity_id_compare(track->id, plan->host) == 0)
+            reach_m = fmax(reach_m, reach_of(track, landscape, out->centre_m, far_m));
+    }
+    reach_m = fmax(reach_m, dis_entity_id_is_none(plan->host) ? config->observer.range_m : 0);
+    out->half_width_m = config->terrain.woods_half_m >= least_m ? config->terrain.woods_half_m
+                                                                : clamp(reach_m + sight_m, least_m, most_m);
+    return STATUS_OK;
+}
+
+/* ---- paths ----------------------------------------------------------------------------------------- */
+
+typedef struct Paths {
+    WoodsPath       *path;
+    int              count, capacity;
+    const WoodsConfig *square;
+    const Landscape *landscape;
+    bool             no_memory;
+} Paths;
+
+static void add_path(Paths *p, const double a_m[2], const double b_m[2], double half_m, double low_half_m)
+{
+    /* plants stand in whole squares, which reach beyond */
+    const double *c = p->square->centre_m, reach_m = p->square->half_width_m + 2 * woods_square_m + half_m;
+    for (int k = 0; k < 2; k++) /* both ends beyond the same side of the square */
+        if ((a_m[k] - c[k] > reach_m && b_m[k] - c[k] > reach_m) ||
+            (a_m[k] - c[k] < -reach_m && b_m[k] - c[k] < -reach_m))
+            return;
+    if (p->count == p->capacity) {
+        const int  capacity = p->capacity ? 2 * p->capacity : 256;
+        WoodsPath *larger   = realloc(p->path, (size_t)capacity * sizeof *larger);
+        if (!larger) {
+            p->no_memory = true;
+            return;
+        }
+        p->path     = larger;
+        p->capacity = capacity;
+    }
+    p->path[p->count++] = (WoodsPath){{a_m[0], a_m[1]}, {b_m[0], b_m[1]}, half_m, low_half_m};
+}
+
+/* Half the width that a vehicle needs to pass and to turn, with room for an error of the path between reports. */
+static double half_of(const Model *model, DisEntityType type)
+{
+    const double least_m = type.kind == dis_kind_platform ? 4 : 1.5;
+    return fmax(least_m, 0.5 * hypot(model->length_m, model->width_m) + 0.5);
+}
+
+/* From report to report on the ground. The pieces between are straight: a report in less than step_m of the last that
+ * was taken is within its path. Reports that no drive joins are places. A platform begins and ends in the open. */
+static void add_track(Paths *p, const Track *track, const bool *fixed, double half_m)
+{
+    static const double step_m = 1, jump_m = 500, open_m = 15;
+    const bool          opens = track->type.kind == dis_kind_platform;
+    double              last[3], here[3];
+    bool                any = false;
+    for (int n = 0; n < track->count; n++) {
+        if (!fixed[n]) {
+            any = false;
+            continue;
+        }
+        enu_of(here, p->landscape, track->point[n].p_ecef);
+        if (opens && (n == 0 || n == track->count - 1)) add_path(p, here, here, fmax(open_m, half_m), half_m);
+        const double d_m = any ? hypot(here[0] - last[0], here[1] - last[1]) : INFINITY;
+        if (any && d_m < step_m) continue;
+        add_path(p, any && d_m < jump_m ? last : here, here, half_m, half_m);
+        memcpy(last, here, sizeof last);
+        any = true;
+    }
+}
+
+/* Clears the parts of a flight, or of the sight of a shot that hit, that are lower than the highest trees; low plants
+ * stay. */
+static void add_line(Paths *p, const ClearLine *line)
+{
+    static const double tree_m = 35, half_m = 8 /* of a wide crown, about it */, step_m = 25;
+    const double *const a = line->a_enu, *const b = line->b_enu;
+    const int           pieces = 1 + (int)(hypot(b[0] - a[0], b[1] - a[1]) / step_m);
+    double              from[3] = {0}, to[3] = {0};
+    bool                low = false;
+    for (int k = 0; k <= pieces; k++) { /* neighbouring low pieces become one */
+        double at[3];
+        for (int c = 0; c < 3; c++) at[c] = a[c] + (b[c] - a[c]) * k / pieces;
+        const bool below = at[2] - elevation_height(&p->landscape->elevation, at[0], at[1], NULL) < tree_m;
+        if (below && !low) memcpy(from, at, sizeof from);
+        if (below) memcpy(to, at, sizeof to);
+        if ((low && !below) || (below && k == pieces)) add_path(p, from, to, half_m, 0);
+        low = below;
+    }
+}
+
+/* Clears the paths of everything known to have been on the ground or low above it. */
+static void add_known(Paths *p, int *impacts, const Survey *survey, const Catalog *catalog, const GroundEvidence *e)
+{
+    static const double crater_m = 6;
+    for (int t = 0; t < survey->track_count && !p->no_memory; t++) {
+        const Track *track = &survey->track[t];
+        const Model *model = catalog_model(catalog, catalog_find(catalog, track->type, NULL, NULL));
+        const bool  *fixed = e->fixed + e->first[t];
+        if (e->stance[t] == STANCE_GROUND || e->stance[t] == STANCE_LANDED)
+            add_track(p, track, fixed, half_of(model, track->type));
+    }
+    for (int i = 0; i < e->said.line_count && !p->no_memory; i++) add_line(p, &e->said.line[i]);
+    for (int i = 0; i < survey->shot_count; i++) {
+        const Shot *shot = &survey->shot[i];
+        double      p_enu[3];
+        if (shot->result != dis_result_ground_impact || !isfinite(shot->detonation_s)) continue;
+        enu_of(p_enu, p->landscape, shot->p_burst_ecef);
+        add_path(p, p_enu, p_enu, crater_m, crater_m);
+        ++*impacts;
+    }
+}
+
+/* ---- entities within a trunk ----------------------------------------------------------------------- */
+
+static void count_in_trunks(WoodsChoice *w, const Survey *survey, const Landscape *landscape, const Catalog *catalog,
+                            const GroundEvidence *e)
+{
+    for (int t = 0; t < survey->track_count; t++) {
+        const Track *track = &survey->track[t];
+        const bool  *fixed = e->fixed + e->first[t];
+        int          first = 0, trunk;
+        double       p_enu[3];
+        if (e->stance[t] != STANCE_GROUND) continue;
+        while (first < track->count && !fixed[first]) first++;
+        if (first == track->count) continue;
+        const Model *model = catalog_model(catalog, catalog_find(catalog, track->type, NULL, NULL));
+        enu_of(p_enu, landscape, track->point[first].p_ecef);
+        w->entities++;
+        w->in_trunks += woods_near(&trunk, 1, &w->woods, p_enu[0], p_enu[1], 0.5 * model->width_m) > 0;
+    }
+}
+
+/* ---- choice lines -------------------------------------------------------------------------------- */
+
+static int trees_of(const Woods *woods)
+{
+    int trees = 0;
+    for (int k = 0; k < PLANT_TREES; k++) trees += woods->by_kind[k];
+    return trees;
+}
+
+/* Names the four kinds with the most trees, with their numbers. */
+static void kinds_text(char *text, size_t size, const Woods *woods)
+{
+    bool   said[PLANT_TREES] = {false};
+    size_t n = 0;
+    *text = 0;
+    for (int shown = 0; shown < 4; shown++) {
+        int best = -1;
+        for (int k = 0; k < PLANT_TREES; k++)
+            if (!said[k] && woods->by_kind[k] > (best < 0 ? 0 : woods->by_kind[best])) best = k;
+        if (best < 0) return;
+        said[best] = true;
+        n += (size_t)snprintf(text + n, size - n, "%s%s %d", shown ? ", " : "", plant_name((PlantKind)best),
+                              woods->by_kind[best]);
+        if (n >= size) return;
+    }
+    for (char *at = text; *at; at++)
+        if (*at == '_') *at = ' ';
+}
+
+static void report(Choices *choices, const WoodsChoice *w, const Config *config, bool real, int impacts)
+{
+    const Woods *woods = &w->woods;
+    const int    trees = trees_of(woods);
+    char         kinds[100];
+    kinds_text(kinds, sizeof kinds, woods);
+    choice_add(choices, "woods: %d trees%s%s%s, %d bushes and hedges, %.1f km about the aim (terrain.woods)", trees,
+               *kinds ? " (" : "", kinds, *kinds ? ")" : "", woods->count - trees, 1e-3 * w->config.half_width_m);
+    if (woods->left_out > 0)
+        choice_add(choices, "woods: %d more are left out, those beyond %.0f m of the aim: the ground there shows their canopy (terrain.woods_trees)",
+                   woods->left_out, woods->reach_m);
+    if (!real)
+        choice_add(choices, "woods: cleared along the paths of %d entit%s on the ground, where %d shot%s hit it, and "
+                   "under low flights and sights (terrain.woods)", w->entities, w->entities == 1 ? "y" : "ies", impacts,
+                   impacts == 1 ? "" : "s");
+    else if (w->config.store && *w->config.store)
+        choice_add(choices, "woods: %d from marked trunks, %d by the canopy's height, %d by surface classes",
+                   woods->from_crowns, woods->from_canopy, woods->from_classes);
+    if (w->in_trunks > 0)
+        choice_add(choices, "woods: %d of %d entities on the ground begin within a trunk%s (terrain.woods)",
+                   w->in_trunks, w->entities, real ? "; real trees stay" : "");
+    if (strcmp(config->terrain.woods_leaves, "off") == 0)
+        choice_add(choices, "woods: deciduous trees are bare (terrain.woods_leaves)");
+}
+
+/* ---- all of it ----------------------------------------------------------------------------------- */
+
+Status choice_woods(WoodsChoice *out, Choices *choices, const ChoiceBasis *basis, const Landscape *landscape,
+                    Pool *pool)
+{
+    const Survey  *survey = basis->survey;
+    const Config  *config = basis->config;
+    const Catalog *catalog = basis->catalog;
+    const bool     stored = *config->terrain.store, real = stored || *config->terrain.elevation;
+    GroundEvidence e = {0};
+    int            impacts = 0;
+    *out = (WoodsChoice){.on = strcmp(config->terrain.woods, "on") == 0};
+    if (!out->on) return STATUS_OK;
+    out->config = (WoodsConfig){.seed = (uint64_t)config->seed, .most_trees = config->terrain.woods_trees,
+                                .store = stored ? config->terrain.store : NULL};
+    Status status = choose_square(&out->config, survey, config, landscape, basis->plan);
+    if (status == STATUS_OK)
+        status = ground_evidence_collect(&e, survey, &landscape->frame, catalog, basis->plan->host, basis->plan->aim);
+    if (status != STATUS_OK) return status;
+    Paths paths = {.square = &out->config, .landscape = landscape};
+    if (!real) add_known(&paths, &impacts, survey, catalog, &e);
+    out->path              = paths.path;
+    out->config.path       = paths.path;
+    out->config.path_count = paths.count;
+    const double begun_s = wall_clock_s();
+    status = paths.no_memory ? STATUS_NO_MEMORY : woods_create(&out->woods, landscape, &out->config, pool);
+    log_detail("woods: placed in %.0f ms, %d pieces of paths", 1e3 * (wall_clock_s() - begun_s), paths.count);
+    if (status == STATUS_OK) {
+        count_in_trunks(out, survey, landscape, catalog, &e);
+        report(choices, out, config, real, impacts);
+    } else {
+        log_error("woods: no plants could be placed: %s; terrain.woods=off shows bare ground, terrain.woods_trees "
+                  "fewer trees", status_name(status));
+    }
+    ground_evidence_free(&e);
+    return status;
+}
+
+void choice_woods_free(WoodsChoice *woods)
+{
+    woods_destroy(&woods->woods);
+    free(woods->path);
+    *woods = (WoodsChoice){0};
+}

@@ -1,0 +1,77 @@
+/* sensor/node/live/live_recording.c: a recorder behind a lock: the receiving thread adds, the node flushes. */
+#include "sensor/node/live/live_recording.h"
+
+#include "dis/recorder.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+
+struct LiveRecording {
+    DisUdp         *udp;
+    pthread_mutex_t lock; /* protects the following */
+    DisRecorder    *recorder;
+    uint64_t        failed;
+};
+
+static void add(void *user, const DisArrival *a)
+{
+    LiveRecording *r = user;
+    pthread_mutex_lock(&r->lock);
+    r->failed += dis_recorder_add(r->recorder, a->capture_ns, a->from, a->from_port, a->bytes, a->octets) != STATUS_OK;
+    pthread_mutex_unlock(&r->lock);
+}
+
+Status live_recording_open(LiveRecording **out, const char *path, const char *comment, DisUdp *udp, int port)
+{
+    uint8_t        to[16];
+    LiveRecording *r = calloc(1, sizeof *r);
+    if (!r) return STATUS_NO_MEMORY;
+    const Status status = dis_recorder_open(&r->recorder, path, comment);
+    if (status != STATUS_OK) {
+        free(r);
+        return status;
+    }
+    dis_udp_destination(to, udp);
+    dis_recorder_to(r->recorder, to, (uint16_t)port);
+    pthread_mutex_init(&r->lock, NULL);
+    r->udp = udp;
+    dis_udp_tap(udp, add, r);
+    *out = r;
+    return STATUS_OK;
+}
+
+Status live_recording_note(LiveRecording *r, int64_t unix_ns, const char *text)
+{
+    if (!r) return STATUS_OK;
+    pthread_mutex_lock(&r->lock);
+    const Status status = dis_recorder_note(r->recorder, unix_ns, text);
+    pthread_mutex_unlock(&r->lock);
+    return status;
+}
+
+void live_recording_flush(LiveRecording *r)
+{
+    if (!r) return;
+    pthread_mutex_lock(&r->lock);
+    dis_recorder_flush(r->recorder);
+    pthread_mutex_unlock(&r->lock);
+}
+
+uint64_t live_recording_failed(LiveRecording *r)
+{
+    if (!r) return 0;
+    pthread_mutex_lock(&r->lock);
+    const uint64_t failed = r->failed;
+    pthread_mutex_unlock(&r->lock);
+    return failed;
+}
+
+Status live_recording_close(LiveRecording *r)
+{
+    if (!r) return STATUS_OK;
+    dis_udp_tap(r->udp, NULL, NULL);
+    const Status status = dis_recorder_close(r->recorder);
+    pthread_mutex_destroy(&r->lock);
+    free(r);
+    return status;
+}

@@ -1,0 +1,440 @@
+/* sensor/node/run/host_run.c: from received datagrams to choices, a world, a session and run.json. */
+#include "sensor/node/run/host_run.h"
+
+#include "dis/log.h"
+#include "sensor/node/choices/choices.h"
+#include "sensor/publish/frame_files.h"
+#include "sensor/publish/image_file.h"
+#include "sensor/publish/memory/consume_memory.h"
+#include "sensor/publish/video/consume_video.h"
+#include "sensor/quality/quality.h"
+#include "sensor/settings/publish_choice.h"
+#include "sensor/world/frame_world.h"
+
+#include <stdlib.h>
+
+enum { path_size = 4096 };
+
+double run_frame_s(const FrameGrid *grid, double n) { return (grid->origin + n) / grid->rate_hz; }
+
+/* ---- before ---------------------------------------------------------------------------------- */
+
+/* Hashes every setting that the images depend on: threads, speed and paths do not change it. */
+static Status hash_config(char out[sha256_text_size], const Options *o)
+{
+    char   text[config_text_size];
+    size_t n;
+    config_text(text, sizeof text, &o->config);
+    n = strlen(text);
+    for (int i = 0; i < o->host_count; i++)
+        n += (size_t)snprintf(text + n, sizeof text - n, "host=%.32s\n", o->host[i]);
+    return sha256_bytes(out, text, n);
+}
+
+Status run_prepare(Run *run)
+{
+    if (!run->options.config.publish.truth && !run->wall_s) {
+        log_error("%s: publish.truth: false is for `run` and `replay --speed X`; a replay at full speed always has truth",
+                  options_command(&run->options));
+        return STATUS_BAD_VALUE;
+    }
+    if (!run->options.config.publish.truth)
+        choice_add(&run->choices, "truth: no truth.jsonl and no hashes of frames (publish.truth)");
+    if (!config_bands_choose(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
+    unsigned planes = planes_none;
+    publish_planes_parse(&planes, run->options.config.publish.planes);
+    if (planes != planes_all && planes >> PLANE_EMISSIVITY & 1 && !(run->bands & (1u << BAND_MWIR | 1u << BAND_LWIR))) {
+        log_error("%s: publish.planes: emissivity is of thermal bands, and none is rendered; add mwir or lwir to sensor.bands",
+                  options_command(&run->options));
+        return STATUS_BAD_VALUE;
+    }
+    Status status = config_own_tables(&run->options.config);
+    if (status != STATUS_OK) return status;
+    status = quality_choose(&run->options.config, &run->choices, run->bands);
+    if (status != STATUS_OK) return status;
+    status = sensors_choose(&run->sensors, &run->choices, &run->options.config, run->bands);
+    return status == STATUS_OK ? hash_config(run->config_sha256, &run->options) : status;
+}
+
+/* Loads the libraries that products need, on this thread, before the pool starts. */
+static Status load_libraries(const Config *config)
+{
+    const bool images = config->publish.files || config->publish.latest;
+    Status     status = images ? image_file_prepare() : STATUS_OK;
+    return status == STATUS_OK ? video_prepare(config) : status;
+}
+
+Status run_survey(Run *run, const DisLog *heard)
+{
+    const Options *o = &run->options;
+    char           path[path_size];
+    run->exercise = choice_exercise(&run->choices, heard, &o->config);
+    log_detail("%s: %d threads, %s, config_sha256 %s", options_command(o), o->threads, o->isa, run->config_sha256);
+    Status status = survey_log(&run->survey, heard, run->exercise);
+    if (status != STATUS_OK) return status;
+    const DisCounters *counters = &run->survey.counters;
+    for (int i = 0; i < DIS_DROP_COUNT; i++)
+        if (counters->dropped[i])
+            log_warn("%s: dropped: %s=%llu: %s", options_command(o), dis_drop_name((DisDrop)i),
+                     (unsigned long long)counters->dropped[i], dis_drop_cause((DisDrop)i));
+    if (counters->lengths_made)
+        log_warn("%s: %llu PDUs have a length field of 0, which their sender should set: taken by their type and the "
+                 "datagram's length", options_command(o), (unsigned long long)counters->lengths_made);
+    if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
+    status = catalog_open(&run->catalog, path, o->config.models.sag_m);
+    if (status == STATUS_OK) status = tables_used(&run->tables, &o->config, path);
+    if (status == STATUS_OK) status = tables_given(&run->tables, &o->config);
+    if (status == STATUS_OK) status = load_libraries(&o->config);
+    if (status == STATUS_OK) status = pool_create(&run->pool, o->threads);
+    return status;
+}
+
+void run_close(Run *run)
+{
+    pool_destroy(run->pool);
+    catalog_close(run->catalog);
+    survey_destroy(&run->survey);
+}
+
+/* ---- run.json -------------------------------------------------------------------------------- */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static Status summarise_stages(double out[session_stages][3], const SessionResult *r)
+{
+    double *sorted = calloc((size_t)r->listed + 1, sizeof *sorted);
+    if (!sorted) return STATUS_NO_MEMORY;
+    for (int stage = 0; stage < session_stages; stage++) {
+        for (int i = 0; i < r->listed; i++) sorted[i] = r->stage_ms[i][stage];
+        qsort(sorted, (size_t)r->listed, sizeof *sorted, compare_doubles);
+        out[stage][0] = sorted[r->listed / 2];
+        out[stage][1] = r->listed ? sorted[(int)ceil(0.95 * r->listed) - 1] : 0; /* nearest rank: never below the median */
+        out[stage][2] = r->listed ? sorted[r->listed - 1] : 0;
+    }
+    free(sorted);
+    return STATUS_OK;
+}
+
+/* What is written of a host's run, whole or not. */
+typedef struct RunEnd {
+    const char          *folder, *host, *state; /* state: complete, stopped or failed */
+    const Choices       *choices;
+    const SessionResult *result;
+    const DisCounters   *heard;
+    const WoodsChoice   *woods;
+} RunEnd;
+
+static Status write_run(const Run *run, const RunEnd *end)
+{
+    const Choices       *choices = end->choices;
+    const SessionResult *result = end->result;
+    const WoodsChoice   *woods = end->woods;
+    char        path[path_size + 16], settings[config_text_size], ring[memory_name_size];
+    const Config *config = &run->options.config;
+    const char *choice[choices_capacity], *hosts[session_hosts_kept];
+    const char *table[tables_used_max], *table_sha256[tables_used_max];
+    double      stage_ms[session_stages][3];
+    const char **hash = calloc((size_t)result->listed + 1, sizeof *hash);
+    if (!hash || summarise_stages(stage_ms, result) != STATUS_OK) {
+        log_error("%s: out of memory for run.json", options_command(&run->options));
+        free(hash);
+        return STATUS_NO_MEMORY;
+    }
+
+    for (int i = 0; i < result->listed; i++) hash[i] = result->hash[i];
+    config_text(settings, sizeof settings, &run->options.config);
+    for (int i = 0; i < run->tables.count; i++) {
+        table[i]        = run->tables.table[i].name;
+        table_sha256[i] = run->tables.table[i].sha256;
+    }
+    for (int i = 0; i < choices->count; i++) choice[i] = choices->line[i];
+    for (int i = 0; i < result->host_count; i++) hosts[i] = result->host[i];
+    if (result->host_count == 0) hosts[0] = end->host; /* not received so far */
+    for (int i = 0; i < session_stages; i++)
+        log_detail("%s: %s: %.3g ms a frame (median; 95 %%: %.3g; most: %.3g)", options_command(&run->options),
+                   session_stage_name[i], stage_ms[i][0], stage_ms[i][1], stage_ms[i][2]);
+    snprintf(path, sizeof path, "%s/run.json", end->folder);
+    memory_name(ring, config, run->options.host_count > 1 ? end->host : NULL);
+    const DisLogCounters *link = run->link;
+    const WoodsRecord     plants = {.woods = &woods->woods, .paths = woods->config.path_count,
+                                    .entities = woods->entities, .in_trunks = woods->in_trunks};
+    const RunRecord       record = {
+              .status = end->state,
+              .planes = run->options.config.publish.files ? run->options.config.publish.planes : NULL,
+              .config_sha256 = run->config_sha256, .log_name = run->log_name, .log_sha256 = run->log_sha256,
+              .settings = settings, .table_count = run->tables.count, .table = table, .table_sha256 = table_sha256,
+              .isa = run->options.isa, .seed = run->options.config.seed, .threads = run->options.threads,
+              .host_count = result->host_count > 0 ? result->host_count : 1,
+              .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
+              .frame_number = result->number, .host = hosts, .choice = choice, .frame_sha256 = run->options.config.publish.truth ? hash : NULL,
+              .dis = end->heard,
+              .link_dropped = link ? dis_log_dropped(link) : 0,
+              .own = run->own, .live = run->live,
+              .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
+              .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
+              .entities_evicted = result->entities.evicted, .entities_refused = result->entities.refused,
+              .entities_over_rate = result->entities.over_rate, .tombstones_dropped = result->entities.tombstones_dropped,
+              .marks_forgotten = result->entities.marks_forgotten,
+              .shots_forgotten = result->shots_forgotten, .munitions_forgotten = result->munitions_forgotten,
+              .frames_crowded = result->frames_crowded, .most_left_out = result->most_left_out,
+              .at_limit = result->at_limit, .radar_left_out = result->radar_left_out,
+              .effects = result->effects, .render = result->counters, .stage_count = session_stages,
+              .stage = session_stage_name,
+              .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL,
+              .woods = woods->on ? &plants : NULL,
+              .memory = *config->publish.memory ? ring : NULL, .detections_port = config->publish.detections_port,
+              .sent = &result->sent, .streams = *config->publish.stream != 0,
+              .answers = config->publish.detections_port ? &result->answers : NULL,
+              .materials = &run->world.materials};
+    const Status status = record_write_run(path, &record);
+    free(hash);
+    return status;
+}
+
+/* ---- its folder ------------------------------------------------------------------------------ */
+
+void run_folder(char out[run_folder_size], const Options *o, DisEntityId host)
+{
+    if (o->host_count > 1 && dis_entity_id_is_none(host))
+        snprintf(out, run_folder_size, "%s/%s", o->out, host_observer);
+    else if (o->host_count > 1)
+        snprintf(out, run_folder_size, "%s/%u-%u-%u", o->out, host.site, host.application, host.entity);
+    else
+        snprintf(out, run_folder_size, "%s", o->out);
+}
+
+/* ---- one host -------------------------------------------------------------------------------- */
+
+static void report_visibility(Choices *choices, const Config *config, const Atmosphere *atmosphere)
+{
+    double low_m, high_m;
+    atmosphere_visibilities(atmosphere, &low_m, &high_m);
+    if (config->weather.visibility_m < low_m || config->weather.visibility_m > high_m)
+        choice_add(choices, "air: the tables reach visibilities of %.0f to %.0f m; the nearest of them is taken "
+                   "(weather.visibility_m)", low_m, high_m);
+    else if (config->weather.visibility_m < 1000)
+        choice_add(choices, "air: %.0f m of visibility is haze as thick as that; a fog of droplets is denser in "
+                   "infrared (weather.visibility_m)", config->weather.visibility_m);
+}
+
+/* The model of the atmosphere begins at the ground, whatever its height: high ground has the temperature of low
+ * ground. */
+static void report_air_temp(Choices *choices, const Config *config, const Atmosphere *atmosphere, double ground_m)
+{
+    const double here_k = atmosphere_temp_k(atmosphere, 0), high_k = atmosphere_temp_k(atmosphere, ground_m);
+    if (isnan(config->weather.air_temp_k) && ground_m > 500)
+        choice_add(choices, "air: %.0f C at the ground, as the model has it at its own; it has %.0f C at the %.0f m "
+                   "where this ground lies (weather.air_temp_k)", here_k - 273.15, high_k - 273.15, ground_m);
+}
+
+static Status choose_who(HostPlan *plan, Choices *choices, Run *run, const DisEntityId *host)
+{
+    const Config *config = &run->options.config;
+    return host ? choice_named_host(plan, choices, &run->survey, config, *host)
+                : choice_host(plan, choices, &run->survey, config);
+}
+
+/* Causal: nothing is rendered of the time before the choices; the end is open. */
+static void open_span(HostPlan *plan, const Run *run, const Player *player)
+{
+    if (!run->options.config.causal) return;
+    plan->start_s = player_time_s(player, run->until_s);
+    plan->end_s   = INFINITY;
+}
+
+static FrameGrid grid_of(const HostPlan *plan)
+{
+    return (FrameGrid){ceil(plan->start_s * plan->rate_hz - 1e-9), plan->rate_hz};
+}
+
+Status run_check(Run *run, const DisEntityId *host)
+{
+    HostPlan plan    = {0};
+    Player  *player  = NULL;
+    Choices *choices = malloc(sizeof *choices); /* made again by run_host, in its order */
+    if (!choices) return STATUS_NO_MEMORY;
+    *choices      = run->choices;
+    Status status = choose_who(&plan, choices, run, host);
+    if (status == STATUS_OK) status = player_create(&player, run->exercise, run->options.config.causal);
+    if (status == STATUS_OK && run->options.config.causal) status = player_add_log(player, &run->view);
+    if (status == STATUS_OK) {
+        open_span(&plan, run, player);
+        choice_rate(&plan, choices, &run->options.config);
+        const FrameGrid grid = grid_of(&plan);
+        status               = run->check ? run->check(run, player, &plan, &grid) : STATUS_OK;
+    }
+    player_destroy(player);
+    free(choices);
+    return status;
+}
+
+/* What is chosen for one host. */
+typedef struct HostChoice {
+    HostPlan      plan;
+    double        unix_s;    /* of exercise time 0 */
+    Landscape     landscape;
+    GroundContact contact;
+    WoodsChoice   woods;
+    Choices       choices;   /* the lines of all hosts, and of this one */
+} HostChoice;
+
+/* The choices and the world, with their messages. */
+static Status choose(HostChoice *out, Run *run, const DisEntityId *host)
+{
+    const Options *o     = &run->options;
+    World         *world = &run->world;
+    HostPlan      *plan  = &out->plan;
+    Landscape     *landscape = &out->landscape;
+    WoodsChoice   *woods   = &out->woods;
+    Choices       *choices = &out->choices;
+    const ChoiceBasis basis = {&run->survey, &o->config, run->catalog, plan};
+    LocalFrame     frame;
+    Status         status = choose_who(plan, choices, run, host);
+    if (status == STATUS_OK) status = choice_frame(&frame, &run->survey, plan);
+    if (status == STATUS_OK && *o->config.terrain.store) {
+        const LocalFrame aim = frame;
+        status = choice_store_frame(&frame, choices, &o->config, &aim);
+    }
+    if (status == STATUS_OK) status = choice_time(&out->unix_s, choices, &run->survey, &o->config, &frame);
+    if (status == STATUS_OK) status = choice_ground(landscape, &out->contact, choices, &basis, &frame);
+    if (status == STATUS_OK) status = choice_woods(woods, choices, &basis, landscape, run->pool);
+    if (status == STATUS_OK) choice_shapes(choices, &run->survey, run->catalog);
+    if (status == STATUS_OK) status = frame_world(world, &o->config, run->catalog, landscape, &frame, o->isa);
+    if (status == STATUS_OK)
+        status = frame_world_plant(world, woods->on ? &woods->woods : NULL, &o->config, o->isa, run->pool);
+    if (status == STATUS_OK) status = frame_world_warm(world, &o->config, out->unix_s, run->pool);
+    if (status != STATUS_OK) return status;
+    report_visibility(choices, &o->config, world->atmosphere);
+    report_air_temp(choices, &o->config, world->atmosphere, elevation_height(&landscape->elevation, 0, 0, NULL));
+    choice_rate(plan, choices, &o->config);
+    choice_report_night(choices, run->bands, out->unix_s, plan, &frame);
+    for (int i = 0; i < choices->count; i++) log_print("%s\n", choices->line[i]);
+    fflush(stdout);
+    return STATUS_OK;
+}
+
+/* Writes run.json of the frames rendered, also when the run stopped early, and tells what there is. */
+static Status conclude(const Run *run, const RunEnd *end)
+{
+    const Config        *config = &run->options.config;
+    const SessionResult *result = end->result;
+    const char          *name   = options_command(&run->options);
+    const Status         status = write_run(run, end);
+    if (run->stopped && !run->live) log_warn("%s: stopped before its last frame; run.json says so", name);
+    if (config->publish.files) log_print("%d frames in %s/frames\n", result->frames, end->folder);
+    else if (!config->publish.truth) log_print("%d frames; figures in %s/run.json\n", result->frames, end->folder);
+    else log_print("%d frames; their truth is in %s/truth.jsonl\n", result->frames, end->folder);
+    fflush(stdout);
+    if (result->radar_left_out > 0)
+        log_warn("%s: %d of %d frames are without radar: signatures of targets were still to be made%s", name,
+                 result->radar_left_out, result->frames,
+                 run->live ? "; radar.library keeps them for the next run (`pitviper rcs MODEL --library` makes them)" : " when it was recorded");
+    if (result->at_limit > 0) /* its warning came when it was */
+        log_print("the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)\n", result->at_limit, result->frames);
+    if (result->buried > 0)
+        log_warn("%s: the eye was below the ground in %d of %d frames and saw nothing of use%s", name, result->buried,
+                 result->frames, *config->terrain.elevation && strcmp(config->terrain.ground, "fit") != 0
+                     ? "; over other ground than the exercise's, terrain.ground=fit leads it through" : "");
+    return status;
+}
+
+Status run_host(Run *run, const DisEntityId *host)
+{
+    const Options *o       = &run->options;
+    HostChoice     chosen  = {.choices = run->choices};
+    SessionResult  result  = {0};
+    Player        *player  = NULL;
+    Session       *session = NULL;
+    char           out[run_folder_size], host_text[dis_id_text_size];
+
+    if (host) {
+        if (dis_entity_id_is_none(*host)) strcpy(host_text, host_observer);
+        else dis_entity_id_text(host_text, *host);
+        log_print("host: %s (--host)\n", host_text);
+    }
+    Status status = choose(&chosen, run, host);
+    if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.causal);
+    if (status == STATUS_OK) status = player_add_log(player, &run->view);
+    if (status != STATUS_OK) goto done;
+    open_span(&chosen.plan, run, player);
+    run_folder(out, o, chosen.plan.host);
+    const DisOf dis = {.config = &o->config, .bands = run->bands, .version = run->first.version,
+                       .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
+                       .send = run->send, .user = run->user};
+    const SessionShared shared = {.config = &o->config, .survey = &run->survey, .catalog = run->catalog,
+                                  .world = &run->world, .pool = run->pool, .unix_s = chosen.unix_s, .bands = run->bands,
+                                  .no_skip = o->no_skip, .live = o->command == COMMAND_RUN,
+                                  .paced = o->command == COMMAND_REPLAY && isfinite(o->speed), .sensors = &run->sensors,
+                                  .contact = chosen.contact, .config_sha256 = run->config_sha256,
+                                  .publish = run->publish, .user = run->user, .dis = run->send ? &dis : NULL, .wall_s = run->wall_s,
+                                  .note = run->note, .notes = run->view.notes,
+                                  .clock = run->clock, .save_count = o->save_count, .save = o->save,
+                                  .several = o->host_count > 1, .isa = o->isa,
+                                  .woods = chosen.woods.on ? &chosen.woods.config : NULL};
+    const FrameGrid     grid = grid_of(&chosen.plan);
+    status = session_open(&session, &shared, &chosen.plan, player, out);
+    if (status != STATUS_OK) goto done;
+    status = run->frames(run, session, player, &chosen.plan, &grid);
+    if (status == STATUS_OK && dis_log_failed(&run->view)) status = STATUS_IO;
+    snprintf(host_text, sizeof host_text, "%s", session_host(session));
+    const Status closed = session_close(session, &result);
+    if (status == STATUS_OK) status = closed;
+    if (run->live) {
+        run->live->files_failed   = (uint64_t)result.files_failed;
+        run->live->files_left_out = (uint64_t)result.files_left_out;
+    }
+    if (result.frames > 0 || (result.begun && (run->live || run->stopped))) {
+        const RunEnd end = {.folder = out, .host = host_text,
+                            .state = status != STATUS_OK ? "failed" : run->stopped ? "stopped" : "complete",
+                            .choices = &chosen.choices, .result = &result, .woods = &chosen.woods,
+                            .heard = o->config.causal ? player_counters(player) : &run->survey.counters};
+        const Status written = conclude(run, &end);
+        if (status == STATUS_OK) status = written;
+    }
+
+done:
+    session_result_free(&result);
+    player_destroy(player);
+    world_close(&run->world);
+    choice_woods_free(&chosen.woods);
+    landscape_destroy(&chosen.landscape);
+    return status;
+}
+
+Status run_unheard(Run *run)
+{
+    static const WoodsChoice   woods  = {0};
+    static const DisCounters   heard  = {0};
+    static const SessionResult result = {0};
+    const Options             *o      = &run->options;
+    char                       earlier[frame_path_size];
+    if (frame_files_earlier(earlier, o->out)) return STATUS_OK;
+    const Status status = frame_files_folder(o->out);
+    const RunEnd end = {.folder = o->out, .host = o->config.exercise.host, .state = run->stopped ? "stopped" : "failed",
+                        .choices = &run->choices, .result = &result, .heard = &heard, .woods = &woods};
+    return status == STATUS_OK ? write_run(run, &end) : status;
+}
+
+/* ---- the addresses of the configuration ------------------------------------------------------------- */
+
+DisUdpConfig run_network(const Config *config)
+{
+    DisUdpConfig udp = dis_udp_default_config();
+    if (config->exercise.port != dis_port_default && config->exercise.port != dis_port_any)
+        udp.port = config->exercise.port;
+    _Static_assert(sizeof udp.address == sizeof config->network.address, "one address");
+    memcpy(udp.address, config->network.address, sizeof udp.address);
+    memcpy(udp.interface, config->network.interface, sizeof udp.interface);
+    udp.ttl          = config->network.ttl;
+    udp.queue_octets = config->network.queue_mb << 20;
+    return udp;
+}
+
+void run_network_to(char out[run_network_to_size], const DisUdpConfig *udp)
+{
+    snprintf(out, run_network_to_size, "%s port %d", *udp->address ? udp->address : "255.255.255.255", udp->port);
+}

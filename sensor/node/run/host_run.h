@@ -1,0 +1,75 @@
+/* sensor/node/run/host_run.h: shared by replay and run: from received datagrams to choices, a world, a session,
+ * run.json. */
+#ifndef SENSOR_NODE_RUN_HOST_RUN_H
+#define SENSOR_NODE_RUN_HOST_RUN_H
+
+#include "dis/udp.h"
+#include "sensor/node/session/session.h"
+#include "sensor/settings/options.h"
+#include "sensor/settings/tables_used.h"
+
+/* Frame n is at (origin + n) / rate_hz of exercise time: on multiples of the interval, wherever the span begins, so
+ * that a part of a run equals that part of the full run. */
+typedef struct FrameGrid {
+    double origin, rate_hz;
+} FrameGrid;
+double run_frame_s(const FrameGrid *grid, double n);
+
+typedef struct Run Run;
+struct Run {
+    Options   options;
+    DisLog    view;              /* the log to play; borrowed */
+    double    until_s;           /* causal: arrival time of the last datagram used by the choices */
+    bool      stopped;           /* by a signal, before the last frame */
+    uint64_t  own;               /* datagrams of this node, ignored */
+    const DisLogCounters *link;  /* NULL: live */
+    LiveCounters         *live;  /* NULL: a replay */
+    const char *log_name;        /* in run.json */
+    char      config_sha256[sha256_text_size], log_sha256[sha256_text_size];
+    unsigned  bands;
+    int       exercise;          /* -1: all */
+    DisHeader first;             /* of the first usable Entity State: version and exercise of what is sent */
+    Survey    survey;
+    Catalog  *catalog;
+    World     world;
+    Pool     *pool;
+    Choices   choices;           /* shared by all hosts */
+    Sensors   sensors;
+    TablesUsed tables;           /* in run.json */
+    /* Whether there are frames to be rendered, before the world is set up; may be NULL. */
+    Status  (*check)(Run *run, const Player *player, const HostPlan *plan, const FrameGrid *grid);
+    /* Renders the frames. */
+    Status  (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
+    void    (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
+    void    (*note)(void *user, const char *text);           /* into the recording; may be NULL */
+    DisSend  *send;              /* sends the Data PDUs of publish.dis; NULL: they are not sent */
+    void     *user;              /* of these four */
+    double  (*wall_s)(void *clock, double t_s); /* SessionShared.wall_s: frames are rendered by the clock; NULL: not */
+    void     *clock;
+};
+
+/* Bands, sensors, hash of the configuration: before anything is received. */
+Status run_prepare(Run *run);
+/* Exercise and survey from the received datagrams; catalog and pool. */
+Status run_survey(Run *run, const DisLog *heard);
+/* Host, aim and span of a host as run_host has them: what is wrong with them is logged, in a second. */
+Status run_check(Run *run, const DisEntityId *host);
+/* One host: its own ground and frame, its own folder when there are several. host: NULL: as configured, or chosen. */
+Status run_host(Run *run, const DisEntityId *host);
+/* run.json of a live run that ended before it heard an entity, without a frame; nothing where an earlier run's products
+ * are, which stay until a first frame. */
+Status run_unheard(Run *run);
+void   run_close(Run *run);
+/* The folder for the products of one host. */
+enum { run_folder_size = 4096 };
+void   run_folder(char out[run_folder_size], const Options *options, DisEntityId host);
+
+/* The addresses of the configuration: where a node listens, where it and a replay send. The port is exercise.port, or
+ * 3000 where that is chosen or any. */
+DisUdpConfig run_network(const Config *config);
+
+/* The destination, for messages. */
+enum { run_network_to_size = dis_udp_address_size + 16 };
+void run_network_to(char out[run_network_to_size], const DisUdpConfig *udp);
+
+#endif

@@ -1,0 +1,324 @@
+/* sensor/node/session/session_consumers.c: the consumers of a session's frames, from the configuration. */
+#include "sensor/node/session/session_private.h"
+
+#include "sensor/publish/memory/consume_memory.h"
+#include "sensor/publish/pairs.h"
+#include "sensor/publish/video/consume_video.h"
+
+#include <stdlib.h>
+
+/* Adds the detectors of one consumer. */
+static Status chains_of(Chains *out, const Sensors *sensors, const Config *config)
+{
+    *out = (Chains){{NULL}};
+    const Status status = sensors_chains(out->band, sensors, config);
+    if (status != STATUS_OK) chains_destroy(out);
+    return status;
+}
+
+/* Adds displays, if a consumer of the other list wants them. */
+static Status add_displays(Consumers *list, Session *s, Pool *pool, unsigned wants)
+{
+    const SessionShared *shared   = s->shared;
+    Consumer            *consumer = NULL;
+    Chains               chains;
+    if (!(wants & (WANT_DISPLAY | WANT_COUNTS))) return STATUS_OK;
+    Status status = chains_of(&chains, shared->sensors, shared->config);
+    if (status == STATUS_OK)
+        status = consume_displays(&consumer, shared->config, pool, &chains, (wants & WANT_COUNTS) != 0);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_pictures(Consumers *list, Session *s, Pool *pool)
+{
+    Consumer    *consumer = NULL;
+    const Status status   = consume_pictures(&consumer, &(PictureFiles){.out = s->out, .config = s->shared->config,
+                                                                        .pool = pool, .patient = s->shared->live});
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_radar(Consumers *list, Session *s, Pool *pool)
+{
+    Consumer    *consumer = NULL;
+    if (!s->radar) return STATUS_OK;
+    const Status status = consume_radar(&consumer, &(PictureFiles){.out = s->out, .config = s->shared->config, .pool = pool,
+                                                                   .patient = s->shared->live});
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_latest(Consumers *list, Session *s)
+{
+    Consumer    *consumer = NULL;
+    const Status status   = consume_latest(&consumer, s->out, s->shared->live);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+/* The geoid, for heights above mean sea level in metadata; NULL: there is none. */
+static const Geoid *geoid_of(Session *s)
+{
+    if (!s->geoid.n_m) klv_geoid_open(&s->geoid, s->shared->config);
+    return s->geoid.n_m ? &s->geoid : NULL;
+}
+
+/* to: VideoTo, of those configured. patient: a failure ends nothing. */
+static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
+{
+    const SessionShared *shared = s->shared;
+    const char          *slash  = strrchr(s->out, '/');
+    if (!(to & video_wanted(shared->config))) return STATUS_OK;
+    const VideoOf of = {.config = shared->config, .to = to, .bands = shared->bands, .rate_hz = s->plan.rate_hz,
+                        .patient = patient, .geoid = geoid_of(s), .detections = s->detections,
+                        .sent = &s->result.sent.stream, .host_folder = !shared->several ? NULL : slash ? slash + 1 : s->out};
+    Consumer     *consumer = NULL;
+    const Status  status   = consume_video(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_pairs(Consumers *list, Session *s, Pool *pool, unsigned raw)
+{
+    const SessionShared *shared = s->shared;
+    PairsOf              of = {.out = s->out, .config = shared->config, .config_sha256 = shared->config_sha256,
+                               .pool = pool, .bands = shared->bands, .raw = raw};
+    Consumer            *consumer = NULL;
+    Sensors             *quiet    = malloc(sizeof *quiet);
+    if (!quiet) return STATUS_NO_MEMORY;
+    *quiet = *shared->sensors;
+    for (int b = 0; b < BAND_COUNT; b++) quiet->preset[b].noise_scale = 0;
+    Status status = chains_of(&of.clean, quiet, shared->config);
+    if (status == STATUS_OK) status = chains_of(&of.background, shared->sensors, shared->config);
+    if (status == STATUS_OK) status = chains_of(&of.background_clean, quiet, shared->config);
+    free(quiet);
+    if (status == STATUS_OK) {
+        status = consume_pairs(&consumer, &of);
+    } else {
+        chains_destroy(&of.clean);
+        chains_destroy(&of.background);
+        chains_destroy(&of.background_clean);
+    }
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_truth_lines(Consumers *list, Session *s)
+{
+    Consumer *consumer = NULL;
+    if (!s->shared->config->publish.truth) return STATUS_OK;
+    const Status status = consume_truth_lines(&consumer, s->out, s->shared->live, &s->lines_failed);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_hashes(Consumers *list, Session *s, FrameDone *done)
+{
+    Consumer    *consumer = NULL;
+    const Status status   = consume_hashes(&consumer, done, s, s->shared->config->publish.truth);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_coco(Consumers *list, Session *s)
+{
+    Consumer    *consumer = NULL;
+    const Status status   = consume_coco(&consumer, s->out, s->shared->config, s->shared->config_sha256);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_klv(Consumers *list, Session *s)
+{
+    const KlvFiles of = {.out = s->out, .config = s->shared->config, .bands = s->shared->bands,
+                         .patient = s->shared->live, .geoid = geoid_of(s), .detections = s->detections};
+    Consumer      *consumer = NULL;
+    const Status   status   = consume_klv(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_call(Consumers *list, const SessionShared *shared)
+{
+    Consumer    *consumer = NULL;
+    const Status status   = consume_by_call(&consumer, shared->publish, shared->user, shared->config->publish.truth);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+/* A recogniser's detections: answers.jsonl, and metadata. */
+static Status add_detections(Consumers *list, Session *s)
+{
+    const Config *config   = s->shared->config;
+    Consumer     *consumer = NULL;
+    if (!config->publish.detections_port) return STATUS_OK;
+    Status status = detections_open(&s->detections, &(DetectionsOf){.port = config->publish.detections_port,
+                                                                    .bands = s->shared->bands,
+                                                                    .width = config->sensor.width_px,
+                                                                    .height = config->sensor.height_px});
+    if (status == STATUS_OK) status = consume_detections(&consumer, s->detections, s->out);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+/* Shared memory never waits: before all other consumers, but for raw counts behind the displays that they belong to. */
+static Status add_memory(Consumers *list, Session *s, bool behind_displays)
+{
+    const SessionShared *shared   = s->shared;
+    const Config        *config   = shared->config;
+    Consumer            *consumer = NULL;
+    const bool           counts   = strcmp(config->publish.memory_planes, "counts") == 0;
+    if (!*config->publish.memory || counts != behind_displays) return STATUS_OK;
+    MemoryOf of = {.config = config, .config_sha256 = shared->config_sha256, .bands = shared->bands,
+                   .unnamed = &s->result.sent.frames_unnamed,
+                   .host = shared->several ? s->host_text : NULL};
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (s->chain[b]) of.count_bits[b] = (int)lround(log2(chain_full(s->chain[b]) + 1));
+    const Status status = consume_memory(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static double arrival_s(const void *player, double t_s) { return player_arrival_s(player, t_s); }
+
+static Status add_dis(Consumers *list, const Session *s)
+{
+    Consumer    *consumer = NULL;
+    DisOf        of       = *s->shared->dis;
+    of.arrival_s          = arrival_s;
+    of.clock              = s->player;
+    const Status status   = consume_dis(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_queue(Session *s, Consumers *behind, QueueRule rule, QueueCounters *counters)
+{
+    Consumer *consumer = NULL;
+    if (behind->count == 0) return STATUS_OK;
+    consumers_expect(behind, s->latency);
+    const Status status = frame_queue_open(&consumer, behind, rule, counters);
+    if (status == STATUS_OK) s->queues++;
+    return status == STATUS_OK ? consumers_add(&s->consumers, consumer) : status;
+}
+
+/* Takes over all consumers of the other list, which is empty then. */
+static Status add_all(Consumers *list, Consumers *others)
+{
+    Status status = STATUS_OK;
+    for (int i = 0; i < others->count; i++) {
+        const Status one = consumers_add(list, others->consumer[i]);
+        if (status == STATUS_OK) status = one;
+    }
+    others->count = 0;
+    return status;
+}
+
+/* What consumers need beyond what they state: a frame file is of all planes; so are image files of truth; and the image
+ * motion that a detector blurs by is known from the truth plane of ranges. */
+static unsigned further_wants(const Session *s, unsigned wants)
+{
+    const Config *config = s->shared->config;
+    bool          sensor = false;
+    for (int b = 0; b < BAND_COUNT; b++) sensor |= s->chain[b] != NULL;
+    const bool planes = s->shared->save_count > 0 || (config->publish.files && frame_files_truth(config)) ||
+                        (sensor && wants & (WANT_DISPLAY | WANT_COUNTS));
+    return wants | (planes ? WANT_PLANES : 0);
+}
+
+/* ---- what a session's frames go to -------------------------------------------------------------- */
+
+/* Files of a replay: nothing is dropped, a slow disk delays it. A stream by the clock is not among them. */
+static Status replay_files(Consumers *list, Session *s, FrameDone *done, Pool *pool, unsigned raw)
+{
+    const Config *config = s->shared->config;
+    Status        status = config->publish.files ? add_pictures(list, s, pool) : STATUS_OK;
+    if (status == STATUS_OK && config->publish.files) status = add_radar(list, s, pool);
+    if (status == STATUS_OK && config->publish.latest) status = add_latest(list, s);
+    if (status == STATUS_OK)
+        status = add_video(list, s, s->shared->paced ? VIDEO_TO_FILE : VIDEO_TO_FILE | VIDEO_TO_STREAM, false);
+    if (status == STATUS_OK) status = add_truth_lines(list, s);
+    if (status == STATUS_OK && config->publish.coco) status = add_coco(list, s);
+    if (status == STATUS_OK && config->publish.klv_files) status = add_klv(list, s);
+    if (status == STATUS_OK && strcmp(config->publish.pairs, "off") != 0) status = add_pairs(list, s, pool, raw);
+    return status == STATUS_OK ? add_hashes(list, s, done) : status;
+}
+
+/* With more than one thread a frame is published while the next is rendered. */
+static Status for_replay(Session *s, FrameDone *done, unsigned raw)
+{
+    const int  threads = pool_threads(s->shared->pool);
+    const bool behind  = threads > 1;
+    Consumers  first = {0}, files = {0}, all = {0};
+    Status     status = behind ? pool_create(&s->publish_pool, threads) : STATUS_OK;
+    Pool      *pool   = behind ? s->publish_pool : s->shared->pool;
+    if (status == STATUS_OK) status = add_memory(&first, s, true);
+    if (status == STATUS_OK) status = replay_files(&files, s, done, pool, raw);
+    if (status == STATUS_OK) status = add_displays(&all, s, pool, consumers_wants(&first) | consumers_wants(&files));
+    if (status == STATUS_OK) status = add_all(&all, &first);
+    if (status == STATUS_OK) status = add_all(&all, &files);
+    if (status == STATUS_OK) status = behind ? add_queue(s, &all, QUEUE_WAIT, NULL) : add_all(&s->consumers, &all);
+    if (status != STATUS_OK) consumers_close(&first);
+    if (status != STATUS_OK) consumers_close(&files);
+    if (status != STATUS_OK) consumers_close(&all);
+    return status;
+}
+
+/* By the clock: what is sent is sent at once or left out, and never delays rendering. A live node's files are left out
+ * too when the disk is late; those of a replay delay it. */
+static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
+{
+    const Config *config = s->shared->config;
+    const bool    live   = s->shared->live;
+    Consumers     first = {0}, files = {0}, sent = {0};
+    Status        status = pool_create(&s->publish_pool, live ? 1 : pool_threads(s->shared->pool));
+    if (status == STATUS_OK) status = add_memory(&first, s, true);
+    if (status == STATUS_OK && live) status = add_truth_lines(&first, s);
+    if (status == STATUS_OK && live) status = add_hashes(&first, s, done);
+    if (status == STATUS_OK && live && config->publish.files) status = add_pictures(&files, s, s->publish_pool);
+    if (status == STATUS_OK && live && config->publish.files) status = add_radar(&files, s, s->publish_pool);
+    if (status == STATUS_OK && live && config->publish.latest) status = add_latest(&files, s);
+    if (status == STATUS_OK && live && config->publish.klv_files) status = add_klv(&files, s);
+    if (status == STATUS_OK && !live) status = replay_files(&files, s, done, s->publish_pool, raw);
+    if (status == STATUS_OK)
+        status = add_video(&sent, s, live ? VIDEO_TO_FILE | VIDEO_TO_STREAM : VIDEO_TO_STREAM, true);
+    const unsigned wants = consumers_wants(&first) | consumers_wants(&sent) | consumers_wants(&files);
+    if (status == STATUS_OK) status = add_displays(&s->consumers, s, s->shared->pool, wants);
+    if (status == STATUS_OK) status = add_queue(s, &sent, QUEUE_LEAVE_OUT, &s->streamed); /* before the hashes */
+    if (status == STATUS_OK) status = add_all(&s->consumers, &first);
+    if (status == STATUS_OK) status = add_queue(s, &files, live ? QUEUE_LEAVE_OUT : QUEUE_WAIT, &s->written);
+    if (status != STATUS_OK) consumers_close(&files);
+    if (status != STATUS_OK) consumers_close(&sent);
+    if (status != STATUS_OK) consumers_close(&first);
+    return status;
+}
+
+/* Those of an earlier run, where they lie in its folder: of bands that are not in this one too. */
+static void clear_videos(const Session *s)
+{
+    const char  *folder = s->shared->config->publish.video;
+    const size_t length = strlen(s->out);
+    char         earlier[frame_path_size];
+    if (video_kind(folder) == VIDEO_FOLDER && strncmp(folder, s->out, length) == 0 && folder[length] == '/' &&
+        frame_files_earlier(earlier, s->out))
+        frame_files_clear_videos(folder);
+}
+
+Status session_begin_files(Session *s)
+{
+    const Config  *config = s->shared->config;
+    const unsigned kept   = s->shared->bands | (frame_files_truth(config) ? frame_truth : 0);
+    if (s->result.begun) return STATUS_OK;
+    s->result.begun = true;
+    clear_videos(s);
+    Status status = frame_files_prepare(s->out, config->publish.files ? kept : 0, s->raw);
+    return status == STATUS_OK ? consumers_begin(&s->consumers) : status;
+}
+
+Status session_consumers(Session *s, FrameDone *done)
+{
+    const SessionShared *shared = s->shared;
+    const Config        *config = shared->config;
+    unsigned             raw    = 0;
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
+    s->raw        = raw;
+    Status status = shared->wall_s ? latency_create(&s->latency) : STATUS_OK;
+    if (status == STATUS_OK) status = add_detections(&s->consumers, s); /* before a frame can be answered */
+    if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
+    if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
+    if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
+    if (status == STATUS_OK)
+        status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
+    consumers_expect(&s->consumers, s->latency);
+    s->wants = further_wants(s, consumers_wants(&s->consumers));
+    /* the one being rendered, and of each queue the one that waits and the one being published */
+    return status == STATUS_OK ? frame_pool_create(&s->frames, 1 + 2 * s->queues) : status;
+}

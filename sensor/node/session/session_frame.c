@@ -1,0 +1,220 @@
+/* sensor/node/session/session_frame.c: one frame of a session: the snapshot, the request, what is rendered and
+ * measured, its record. */
+#include "sensor/node/session/session_private.h"
+
+#include "sensor/framefile/frame_save.h"
+#include "sensor/publish/pairs.h"
+#include "sensor/world/frame_radar.h"
+#include "sensor/world/frame_world.h"
+
+/* The image motion of a stationary point at the image centre. */
+static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *picture)
+{
+    const size_t middle = (size_t)(picture->height / 2) * (size_t)picture->width + (size_t)(picture->width / 2);
+    double       v_cam_mps[3];
+    m3_tmul_v3(v_cam_mps, eye->state.r_ecef_from_cam, eye->state.v_ecef_mps);
+    seeker_scene_rate(rate_px_s, eye->w_cam_rps, v_cam_mps, eye->view.focal_px, picture->range_m[middle]);
+}
+
+static void make_request(RenderRequest *request, const Session *s, const Eye *eye, double t_s)
+{
+    const Config *config = s->shared->config;
+    *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands,
+                               .optical = config_optical(config),
+                               .lateral = {s->shared->sensors->lateral[0], s->shared->sensors->lateral[1]},
+                               .sky_samples = config->sensor.sky_samples,
+                               .sky_visibility = strcmp(config->sensor.sky_visibility, "on") == 0,
+                               .samples = config->sensor.samples, .hidden_entity = eye->hidden,
+                               .t_s = t_s, .low_plants_m = s->shared->world->forest ? config->terrain.woods_low_m : 0,
+                               .budget = strcmp(config->quality.budget, "on") == 0,
+                               .skips_off = s->shared->no_skip ? skips_all_off : 0};
+    for (int b = 0; b < BAND_COUNT; b++) request->hand_over_cells |= s->shared->sensors->has[b];
+    if (config_adaptive(config)) {
+        request->edge_samples   = config->sensor.edge_samples;
+        request->target_samples = config->sensor.target_samples;
+    }
+    consumers_request(request, s->wants);
+    if (s->shared->bands >> BAND_RADAR & 1) {
+        double to_aim[3], range_m = 1000;
+        if (eye->aim_known) {
+            v3_sub(to_aim, eye->p_aim_ecef, eye->state.p_ecef);
+            range_m = v3_length(to_aim);
+        }
+        request->profile_bins   = config->radar.bins;
+        request->profile_bin_m  = config->radar.bin_m;
+        request->profile_near_m = fmax(0, range_m - 0.5 * config->radar.bins * config->radar.bin_m);
+    }
+}
+
+/* Renders the view's picture once and lists its planes. */
+static Status look(FrameView *view, const Session *s, const RenderRequest *request, const Air *air,
+                   const double r_host_from_enu[9], Arena *arena)
+{
+    const Status status =
+        render(&view->picture, s->shared->world, &view->snapshot, request, air, s->shared->pool, arena);
+    if (status != STATUS_OK) return status;
+    if (view->picture.normal[0]) turn_normals(&view->picture, r_host_from_enu);
+    view->plane_count = frame_planes(view->plane, &view->picture, request);
+    return STATUS_OK;
+}
+
+/* Renders the frame once more without its target, or without any entity (publish.pairs). */
+static Status look_without(Frame *f, const Session *s, const Air *air, const double r_host_from_enu[9], int host)
+{
+    const bool all = strcmp(s->shared->config->publish.pairs, "all") == 0;
+    f->without     = arena_alloc(f->arena, 1, sizeof *f->without);
+    if (!f->without) return STATUS_NO_MEMORY;
+    *f->without->sha256 = 0;
+    Status status = pairs_take_away(&f->without->snapshot, &f->taken, &f->taken_count, &f->seen.snapshot, all,
+                                          s->plan.aim, host, f->arena);
+    HeatScene *heat = NULL;
+    if (status == STATUS_OK) /* the ground as it is where it did not stand */
+        status = world_heat_at(&heat, s->shared->world, &f->without->snapshot.marks, f->unix_s, f->arena);
+    if (status != STATUS_OK) return status;
+    Air without = *air;
+    without.heat = heat;
+    return look(f->without, s, &f->request, &without, r_host_from_enu, f->arena);
+}
+
+/* Adds what the radar on the same axis measures, unless this frame is one of those without radar. */
+static Status measure(Frame *f, Session *s, const Eye *eye)
+{
+    if (session_radar_absent_in(s->radar_absent, f->number, f->time_s)) {
+        s->result.radar_left_out++;
+        return STATUS_OK;
+    }
+    const LocalFrame *frame = &s->shared->world->frame;
+    const Weather     weather = frame_weather_at(s->shared->config, s->shared->world, f->unix_s);
+    RadarScene scene = {.world = s->shared->world,
+                        .snapshot = &f->seen.snapshot,
+                        .view = &eye->view,
+                        .hidden = eye->hidden,
+                        .reference_m = NAN,
+                        .t_s = f->time_s,
+                        .weather = &weather,
+                        .number = (uint32_t)f->number,
+                        .range_m = f->seen.picture.range_m,
+                        .entity = f->seen.picture.entity};
+    m3_tmul_v3(scene.v_enu_mps, frame->r_ecef_from_enu, eye->state.v_ecef_mps);
+    const int aim = dis_entity_id_is_none(s->plan.aim) ? -1 : snapshot_find(&f->seen.snapshot, s->plan.aim);
+    if (eye->aim_known) {
+        double to_aim[3];
+        v3_sub(to_aim, eye->p_aim_ecef, eye->state.p_ecef);
+        scene.reference_m = v3_length(to_aim);
+    }
+    if (aim >= 0)
+        m3_tmul_v3(scene.reference_v_enu_mps, frame->r_ecef_from_enu, f->seen.snapshot.entity[aim].v_ecef_mps);
+    const Status status = seeker_radar_measure(&f->radar, s->radar, &scene, s->shared->pool, f->arena);
+    if (status != STATUS_OK || f->radar) return status;
+    s->result.radar_left_out++;
+    if (s->shared->note) {
+        char text[session_radar_absent_size];
+        session_radar_absent_text(text, f->number, f->time_s);
+        s->shared->note(s->shared->user, text);
+    }
+    return status;
+}
+
+/* Adds the targets and the error budget to the frame's record. */
+static Status know_targets(Frame *f, const Session *s, const Eye *eye)
+{
+    const SessionShared *shared  = s->shared;
+    const FrameView     *seen    = &f->seen;
+    FrameRecord         *r       = &f->record;
+    Target              *target  = arena_alloc(f->arena, (size_t)seen->snapshot.count, sizeof *target);
+    TruthNoise           noise;
+    if (!target) return STATUS_NO_MEMORY;
+    frame_expose(&noise, s->chain, &seen->picture, shared->config);
+    r->target_count = truth_targets(target, &seen->picture, shared->world, &seen->snapshot, &f->request, &eye->state,
+                                    &noise);
+    if (s->wants & WANT_ERROR &&
+        frame_error(&f->error, &seen->picture, shared->world, &seen->snapshot, &f->request, target, r->target_count,
+                    shared->config->models.sag_m, shared->contact == GROUND_CONTACT_ALL,
+                    world_air_k(shared->world, f->unix_s)))
+        r->error = &f->error;
+    r->target       = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
+    if (!r->target) return STATUS_NO_MEMORY;
+    if (s->wants & WANT_ERROR && f->request.budget && f->radar) {
+        radar_error(&f->radar_error, f->radar, &seen->snapshot);
+        r->radar_error = &f->radar_error;
+    }
+    return STATUS_OK;
+}
+
+static void fill_record(Frame *f, const Session *s, const Eye *eye)
+{
+    FrameRecord *r = &f->record;
+    *r = (FrameRecord){.frame = f->number, .time_s = f->time_s, .snapshot = &f->seen.snapshot,
+                       .catalog = s->shared->catalog,
+                       .host = eye->hidden >= 0 ? &f->seen.snapshot.entity[eye->hidden] : NULL, .request = &f->request,
+                       .hfov_rad = s->shared->config->sensor.hfov_deg * rad_per_deg, .gimbal_at_limit = eye->at_limit,
+                       .scene_rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]}, .sun = &f->sun};
+    memcpy(r->p_eye_ecef, eye->state.p_ecef, sizeof r->p_eye_ecef);
+    memcpy(r->v_eye_mps, eye->state.v_ecef_mps, sizeof r->v_eye_mps);
+    memcpy(r->r_ecef_from_body, eye->r_ecef_from_body, sizeof r->r_ecef_from_body);
+    memcpy(r->r_ecef_from_cam, eye->state.r_ecef_from_cam, sizeof r->r_ecef_from_cam);
+}
+
+/* Writes the frame as a frame file, if requested. */
+static Status save_frame(const Session *s, const Frame *f, const Eye *eye)
+{
+    const SessionShared *shared = s->shared;
+    for (int i = 0; i < shared->save_count; i++)
+        if (shared->save[i] == f->number)
+            return frame_save(&(FrameSave){f, shared->config, s->out, &eye->state, shared->unix_s,
+                                           shared->contact == GROUND_CONTACT_ALL, shared->pool, shared->woods});
+    return STATUS_OK;
+}
+
+Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int number, double t_s)
+{
+    const SessionShared *shared = s->shared;
+    Eye                  eye;
+    *shown                = false;
+    f->provenance.begun_s = wall_clock_s();
+    Status status = entity_table_snapshot(&f->seen.snapshot, s->table, t_s, f->arena);
+    if (status == STATUS_OK && s->vehicles) status = world_vehicles_show(s->vehicles, &f->seen.snapshot, f->arena);
+    if (status != STATUS_OK || !session_eye(&eye, s, &f->seen.snapshot, t_s)) return status;
+    f->times.posed_s = wall_clock_s();
+    *left_out  = f->seen.snapshot.left_out;
+    f->number  = number;
+    f->time_s  = t_s;
+    f->unix_s  = shared->unix_s + t_s;
+    f->world   = shared->world;
+    memcpy(f->host, s->host_text, sizeof f->host);
+
+    Air            air;
+    double         r_host_from_enu[9] = {0};
+    const double  *p_ecef = eye.state.p_ecef;
+    const FrameEye at = {
+        f->unix_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &eye.view, shared->bands, &f->seen.snapshot.marks};
+    status = frame_light(&air, &f->sun, r_host_from_enu, shared->world, shared->config, &at, shared->pool, f->arena);
+    make_request(&f->request, s, &eye, t_s);
+    const double posed_s = wall_clock_s();
+    if (status == STATUS_OK) status = look(&f->seen, s, &f->request, &air, r_host_from_enu, f->arena);
+    if (status == STATUS_OK && s->wants & WANT_WITHOUT) status = look_without(f, s, &air, r_host_from_enu, eye.hidden);
+    if (status != STATUS_OK) return status;
+    if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
+    fill_record(f, s, &eye);
+    if (s->wants & WANT_FOOTPRINT) {
+        footprint_of_view(f->footprint, shared->world, &eye.view);
+        f->record.footprint = f->footprint;
+    }
+    f->radar = NULL;
+    if (s->radar) status = measure(f, s, &eye);
+    f->record.radar = f->radar;
+    if (status == STATUS_OK && s->wants & WANT_TARGETS) status = know_targets(f, s, &eye);
+    if (status != STATUS_OK) return status;
+    if (shared->world->landscape) {
+        const double *p_enu = eye.view.p_enu;
+        f->buried = p_enu[2] < elevation_height(&shared->world->landscape->elevation, p_enu[0], p_enu[1], NULL);
+    }
+    f->provenance = (Provenance){.version = PITVIPER_VERSION, .config_sha256 = shared->config_sha256,
+                                 .seed = shared->config->seed, .datagrams = player_counters(s->player)->datagrams,
+                                 .begun_s = f->provenance.begun_s, .posed_s = posed_s, .rendered_s = wall_clock_s()};
+    f->times.render_s   = posed_s;
+    f->times.rendered_s = f->provenance.rendered_s;
+    *shown = true;
+    status = session_begin_files(s);
+    return status == STATUS_OK ? save_frame(s, f, &eye) : status;
+}

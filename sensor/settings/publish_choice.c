@@ -1,0 +1,222 @@
+/* sensor/settings/publish_choice.c: parses and checks what publish.* asks for: truth planes, shared memory, videos,
+ * streams. */
+#include "sensor/settings/publish_choice.h"
+
+#include "pitviper_output.h"
+
+#include <ctype.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+/* ---- truth planes ------------------------------------------------------------------------------------- */
+
+static const char *const plane_name[PLANE_CHOICES] = {"range", "entity", "part", "material", "temperature", "normal",
+                                                    "instance", "cover", "emissivity"};
+
+bool publish_planes_parse(unsigned *planes, const char *text)
+{
+    unsigned set = 0;
+    *planes      = planes_none;
+    if (strcmp(text, "none") == 0) return true;
+    if (strcmp(text, "all") == 0) {
+        *planes = planes_all;
+        return true;
+    }
+    for (const char *at = text; at;) {
+        const size_t length = strcspn(at, ",");
+        int          k      = 0;
+        while (k < PLANE_CHOICES &&
+               (strlen(plane_name[k]) != length || strncmp(plane_name[k], at, length) != 0)) k++;
+        if (k == PLANE_CHOICES || set >> k & 1) return false; /* unknown, or named twice */
+        set |= 1u << k;
+        at = at[length] ? at + length + 1 : NULL;
+    }
+    *planes = set;
+    return true;
+}
+
+void publish_planes_why(char *out, size_t out_size, const char *text)
+{
+    unsigned set = 0;
+    char     word[64];
+    *out = 0;
+    for (const char *at = text; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
+        snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ","), at);
+        int       k = 0;
+        WordMeant meant = word_meant(word);
+        while (k < PLANE_CHOICES && strcmp(plane_name[k], word) != 0) word_consider(&meant, plane_name[k++]);
+        if (k == PLANE_CHOICES) {
+            word_consider_list(&meant, "all|none", '|');
+            snprintf(out, out_size, "%s", word_hint(&meant));
+            return;
+        }
+        if (set >> k & 1) snprintf(out, out_size, "; %s is named twice", word);
+        set |= 1u << k;
+    }
+}
+
+/* ---- shared memory ------------------------------------------------------------------------------------ */
+
+/* Whether a name may be that of a ring: it becomes a file's name under /dev/shm. */
+static bool memory_name_good(const char *name)
+{
+    if (!isalnum((unsigned char)*name)) return false; /* no hidden file, no folder */
+    for (const char *c = name; *c; c++)
+        if (!isalnum((unsigned char)*c) && !strchr("-_.", *c)) return false;
+    return true;
+}
+
+Status publish_memory_check(const char *name, const char *planes, bool sensor)
+{
+    if (!*name) return STATUS_OK;
+    if (!memory_name_good(name)) {
+        log_error("config: publish.memory: '%s' is not a name of letters, digits, `-`, `_` and `.` that begins with a "
+                  "letter or a digit, for example seeker", name);
+        return STATUS_BAD_VALUE;
+    }
+    if (strcmp(planes, "counts") == 0 && !sensor) {
+        log_error("config: publish.memory_planes: counts are those of a sensor; choose one with sensor.preset or "
+                  "sensor.table, or set publish.memory_planes: float");
+        return STATUS_BAD_VALUE;
+    }
+    return STATUS_OK;
+}
+
+/* ---- address of a stream ------------------------------------------------------------------------------ */
+
+/* Reads a number of digits without a leading zero, at most `most`. False: it is not such a number. */
+static bool read_number(int *out, const char **at, int most)
+{
+    int         value = 0;
+    const char *from  = *at;
+    while (**at >= '0' && **at <= '9') {
+        value = 10 * value + (**at - '0');
+        if (value > most) return false;
+        (*at)++;
+    }
+    if (*at == from || (*from == '0' && *at - from > 1)) return false;
+    *out = value;
+    return true;
+}
+
+bool publish_stream_parse(StreamUrl *out, const char **why, const char *text)
+{
+    static const char scheme[] = "udp://";
+    StreamUrl         url;
+    int               value = 0;
+    if (strncmp(text, scheme, sizeof scheme - 1) != 0) {
+        *why = "does not begin with udp://";
+        return false;
+    }
+    const char *at = text + sizeof scheme - 1;
+    if (*at == '@') {
+        *why = "is an address as a player receives it; without the @";
+        return false;
+    }
+    for (int i = 0; i < 4; i++) {
+        if (!read_number(&value, &at, 255) || (i < 3 && *at++ != '.')) {
+            *why = "has no IPv4 address in numbers, such as 127.0.0.1 or 239.1.2.3";
+            return false;
+        }
+        url.address[i] = (uint8_t)value;
+    }
+    if (*at != ':') {
+        *why = "has no port, such as :5004";
+        return false;
+    }
+    at++;
+    if (!read_number(&value, &at, 65535) || value == 0 || *at) {
+        *why = "has no port of 1 .. 65535 at its end";
+        return false;
+    }
+    url.port = (uint16_t)value;
+    if (url.address[0] == 0 || (url.address[0] >= 240 && memcmp(url.address, "\xFF\xFF\xFF\xFF", 4) != 0)) {
+        *why = "has an address that no machine can have";
+        return false;
+    }
+    *out = url;
+    return true;
+}
+
+/* ---- videos and streams ------------------------------------------------------------------------------- */
+
+VideoKind video_kind(const char *path)
+{
+    static const struct { const char *end; VideoKind kind; } ends[] = {
+        {".mp4", VIDEO_MP4}, {".mkv", VIDEO_MKV}, {".ts", VIDEO_TS}};
+    const size_t length = strlen(path);
+    if (!length) return VIDEO_NONE;
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        const size_t end = strlen(ends[i].end);
+        if (length > end && path[length - end - 1] != '/' && strcasecmp(path + length - end, ends[i].end) == 0)
+            return ends[i].kind;
+    }
+    return VIDEO_FOLDER;
+}
+
+/* Whether a name has an ending that no video here has: then it is no folder, unless it is one already or says so. */
+static bool other_video(const char *path)
+{
+    struct stat about;
+    const char *ending = output_ending(path);
+    bool        known  = strcmp(ending, ".264") == 0 || strcmp(ending, ".265") == 0; /* the only ones without a letter */
+    for (const char *at = ending; *at && !known; at++) known = (*at | 32) >= 'a' && (*at | 32) <= 'z';
+    return known && !(stat(path, &about) == 0 && S_ISDIR(about.st_mode));
+}
+
+VideoCodec video_codec(const char *name)
+{
+    static const char *const names[] = {"h264", "h264-10", "hevc-12", "ffv1"};
+    int                      i       = 0;
+    while (i < VIDEO_FFV1 && strcmp(name, names[i]) != 0) i++;
+    return (VideoCodec)i;
+}
+
+/* The number of bands in a list; their names are checked elsewhere. */
+static int bands_listed(const char *text)
+{
+    int count = 1;
+    for (; *text; text++) count += *text == ',';
+    return count;
+}
+
+Status publish_video_check(const char *video, const char *stream, const char *codec, const char *bands)
+{
+    const VideoKind kind = video_kind(video);
+    const char     *why  = NULL;
+    StreamUrl       url;
+    if (kind == VIDEO_NONE && !*stream) return STATUS_OK;
+#ifndef PITVIPER_VIDEO
+    log_error("config: publish.%s: this program was built without FFmpeg's libraries; install libavcodec-dev, "
+              "libavformat-dev and libavutil-dev and build it again, or leave it out",
+              *stream ? "stream" : "video");
+    return STATUS_BAD_VALUE;
+#endif
+    if (kind == VIDEO_FOLDER && other_video(video)) {
+        log_error("config: publish.video: '%s': choose a name that ends with .mp4, .mkv or .ts, or a folder (a name without an "
+                  "ending, or with / at its end)", video);
+        return STATUS_BAD_VALUE;
+    }
+    if (*stream && !publish_stream_parse(&url, &why, stream)) {
+        log_error("config: publish.stream: '%s' %s; for example udp://239.1.2.3:5004", stream, why);
+        return STATUS_BAD_VALUE;
+    }
+    const int steps = (bands_listed(bands) - 1) * publish_stream_port_step;
+    if (*stream && url.port + steps > 65535) {
+        log_error("config: publish.stream: port %d: the last of %d bands would be sent to port %d; choose one of at "
+                  "most %d", url.port, steps / publish_stream_port_step + 1, url.port + steps, 65535 - steps);
+        return STATUS_BAD_VALUE;
+    }
+    const bool lossless = video_codec(codec) == VIDEO_FFV1;
+    if (lossless && *stream) {
+        log_error("config: publish.video_codec: ffv1 is for files; MPEG-TS (publish.stream) does not carry it; choose "
+                  "h264, h264-10 or hevc-12");
+        return STATUS_BAD_VALUE;
+    }
+    if (lossless && (kind == VIDEO_MP4 || kind == VIDEO_TS)) {
+        log_error("config: publish.video_codec: ffv1 is for .mkv files; publish.video: %s: choose a name that ends "
+                  "with .mkv, a folder, or another codec", video);
+        return STATUS_BAD_VALUE;
+    }
+    return STATUS_OK;
+}
