@@ -6,7 +6,7 @@
 #include "sensor/node/run/stop.h"
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
-#include "sensor/regress/regress.h"
+#include "sensor/verify/regress/regress.h"
 #include "sensor/settings/config.h"
 #include "sensor/settings/command_line.h"
 #include "terrain/probe.h"

@@ -3,7 +3,7 @@
 #define SENSOR_BENCH_BENCH_PRIVATE_H
 
 #include "sensor/bench/bench.h"
-#include "sensor/publish/html.h"
+#include "sensor/publish/files/html_page.h"
 
 enum { bench_options_max = 16, bench_parts_max = 64 };
 

@@ -2,7 +2,7 @@
 #include "sensor/bench/bench_private.h"
 
 #include "entities/import/assimp_library.h"
-#include "sensor/publish/image_file.h"
+#include "sensor/publish/images/image_file.h"
 
 #include <gnu/libc-version.h>
 #include <libgen.h>

@@ -5,15 +5,14 @@
 
 #include "sensor/settings/command_line.h"
 #include "sensor/commands/overwrite.h"
-#include "sensor/framefile/frame_again.h"
-#include "sensor/framefile/frame_radar_file.h"
-#include "sensor/framefile/frame_scene.h"
-#include "sensor/publish/consumers.h"
-#include "sensor/publish/frame_files.h"
-#include "sensor/publish/image_file.h"
-#include "sensor/publish/records.h"
-#include "sensor/truth/radar_error.h"
-#include "sensor/world/frame_radar.h"
+#include "sensor/verify/saved_frame/saved_again.h"
+#include "sensor/verify/saved_frame/saved_scene.h"
+#include "sensor/publish/consumers/consumers.h"
+#include "sensor/publish/files/frame_files.h"
+#include "sensor/publish/images/image_file.h"
+#include "sensor/frame/records.h"
+#include "sensor/truth/frame_error.h"
+#include "sensor/frame/frame_world.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -99,7 +98,7 @@ static void describe_ground(const LandscapeParts *g)
     log_print("ground: of files, %s%s%s\n", size, g->cover[0].nx ? ", cover" : "", g->photo.mips ? ", photograph" : "");
 }
 
-static void describe(const FrameFile *file)
+static void describe(const SavedFrame *file)
 {
     const RenderRequest *r = &file->request;
     const time_t         whole = (time_t)floor(file->unix_s + file->time_s);
@@ -124,7 +123,7 @@ static void describe(const FrameFile *file)
 /* ---- its products ------------------------------------------------------------------------------- */
 
 /* Makes the line of truth.jsonl from the image, as the frame loop does. */
-static Status write_truth(const char *out, const FrameFile *file, const FrameScene *s, const FrameAgain *again,
+static Status write_truth(const char *out, const SavedFrame *file, const SavedScene *s, const SavedAgain *again,
                           const TruthNoise *noise, const RadarFrame *radar, Arena *arena)
 {
     char        path[path_size];
@@ -162,7 +161,7 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
     return status;
 }
 
-static Status write_radar(const char *out, const FrameFile *file, const FrameScene *s, const RadarFrame *radar)
+static Status write_radar(const char *out, const SavedFrame *file, const SavedScene *s, const RadarFrame *radar)
 {
     Consumer *consumer;
     Frame frame = {
@@ -178,7 +177,7 @@ static Status write_radar(const char *out, const FrameFile *file, const FrameSce
 
 /* The detectors start with this frame: their state from earlier frames (detector.agc_s, lines of AC coupling) is not
  * in the file. */
-static Status write_products(const FrameOptions *o, const FrameFile *file, FrameScene *s, const FrameAgain *again,
+static Status write_products(const FrameOptions *o, const SavedFrame *file, SavedScene *s, const SavedAgain *again,
                              const RadarFrame *radar, Pool *pool, Arena *arena)
 {
     Chain      *chain[BAND_COUNT] = {NULL};
@@ -196,7 +195,7 @@ static Status write_products(const FrameOptions *o, const FrameFile *file, Frame
         const DisplaysOf of = {.config = &s->config, .picture = &again->picture, .chain = chain, .level = level,
                                .frame = file->frame, .time_s = file->time_s,
                                .rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]}, .counts = raw != 0};
-        status = displays_make(display, &of, file->request.bands, pool, arena);
+        status = frame_displays_make(display, &of, file->request.bands, pool, arena);
     }
     if (status == STATUS_OK) {
         const FrameFiles files = {.out = o->out, .config = &s->config, .world = &s->world, .picture = &again->picture,
@@ -218,15 +217,15 @@ static Status write_products(const FrameOptions *o, const FrameFile *file, Frame
 /* ---- rendered again ----------------------------------------------------------------------------- */
 
 /* Measures with the radar again; differ grows by one where the map is another. */
-static Status measure(const RadarFrame **out, int *differ, const FrameFile *file, FrameScene *s, const Picture *picture,
+static Status measure(const RadarFrame **out, int *differ, const SavedFrame *file, SavedScene *s, const Picture *picture,
                       Pool *pool, Arena *arena)
 {
     bool         same;
     SeekerRadar *radar;
     Status       status = frame_radar_open(&radar, &s->config, "avx2", false);
     if (status != STATUS_OK) return status;
-    status = frame_radar_again(out, radar, file, &s->snapshot, &s->world, picture, &s->config, pool, arena);
-    if (status == STATUS_OK) status = frame_radar_same(&same, file, *out);
+    status = saved_radar_again(out, radar, file, &s->snapshot, &s->world, picture, &s->config, pool, arena);
+    if (status == STATUS_OK) status = saved_radar_same(&same, file, *out);
     /* the preset is the radar's own */
     RadarPreset *preset = status == STATUS_OK ? arena_alloc(arena, 1, sizeof *preset) : NULL;
     RadarFrame  *kept = preset ? arena_alloc(arena, 1, sizeof *kept) : NULL;
@@ -248,15 +247,15 @@ static Status measure(const RadarFrame **out, int *differ, const FrameFile *file
     return status;
 }
 
-static Status show(int *differ, const FrameOptions *o, const FrameFile *file, FrameScene *s, Pool *pool, Arena *arena)
+static Status show(int *differ, const FrameOptions *o, const SavedFrame *file, SavedScene *s, Pool *pool, Arena *arena)
 {
-    FrameAgain *again = arena_alloc(arena, 1, sizeof *again);
+    SavedAgain *again = arena_alloc(arena, 1, sizeof *again);
     if (!again) return STATUS_NO_MEMORY;
     const double begun_s = wall_clock_s();
-    Status status = frame_again(again, file, &s->snapshot, &s->world, &s->config, o->no_skip, pool, arena);
+    Status status = saved_again(again, file, &s->snapshot, &s->world, &s->config, o->no_skip, pool, arena);
     if (status != STATUS_OK) return status;
     log_detail("frame: rendered in %.0f ms", 1e3 * (wall_clock_s() - begun_s));
-    *differ = frame_differences(file, &again->made, true);
+    *differ = saved_differences(file, &again->made, true);
     if (*differ == 0)
         log_print("the same: all %d planes, to the bit; frame %.64s\n", file->plane_count, again->made.sha256);
     else
@@ -274,8 +273,8 @@ int frame_command(int argc, char **argv)
     char        *bytes = NULL;
     size_t       count;
     int          differ = 0;
-    FrameScene  *scene = NULL;
-    FrameFile   *file = NULL;
+    SavedScene  *scene = NULL;
+    SavedFrame   *file = NULL;
     Pool        *pool = NULL;
     const int    stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
@@ -285,15 +284,15 @@ int frame_command(int argc, char **argv)
     file  = arena ? arena_alloc(arena, 1, sizeof *file) : NULL;
     Status status = scene && file ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = text_read_file(&bytes, &count, "frame", o.path, most_octets);
-    if (status == STATUS_OK) status = frame_file_parse(file, (const uint8_t *)bytes, count, o.path, arena);
+    if (status == STATUS_OK) status = saved_frame_parse(file, (const uint8_t *)bytes, count, o.path, arena);
     if (status == STATUS_OK) describe(file);
     if (status == STATUS_OK && o.out) status = overwrite_folder("frame", o.out, o.overwrite);
     if (status == STATUS_OK && o.out) status = image_file_prepare();
     if (status == STATUS_OK) status = pool_create(&pool, o.threads);
-    if (status == STATUS_OK) status = frame_scene_open(scene, file, o.forced, "avx2", pool);
+    if (status == STATUS_OK) status = saved_scene_open(scene, file, o.forced, "avx2", pool);
     if (status == STATUS_OK) status = show(&differ, &o, file, scene, pool, arena);
     if (status == STATUS_NO_MEMORY) log_error("frame: out of memory");
-    if (scene) frame_scene_close(scene);
+    if (scene) saved_scene_close(scene);
     pool_destroy(pool);
     free(bytes);
     arena_destroy(arena);

@@ -3,7 +3,7 @@
 #include "sensor/commands/overwrite.h"
 
 #include "pitviper_output.h"
-#include "sensor/publish/frame_files.h"
+#include "sensor/publish/files/frame_files.h"
 #include "sensor/publish/video/video_names.h"
 
 #include <errno.h>

@@ -2,7 +2,7 @@
 #include "sensor/commands/commands.h"
 
 #include "dis/datagram.h"
-#include "sensor/publish/frame_files.h"
+#include "sensor/publish/files/frame_files.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/player/player.h"
 #include "sensor/commands/overwrite.h"

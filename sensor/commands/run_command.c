@@ -5,7 +5,7 @@
 
 #include "dis/steady_clock.h"
 #include "sensor/node/live/health.h"
-#include "sensor/publish/frame_files.h"
+#include "sensor/publish/files/frame_files.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/live/live_recording.h"
 #include "sensor/node/player/player.h"

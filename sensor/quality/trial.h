@@ -6,7 +6,7 @@
 #include "render/frame/render.h"
 #include "render/frame/world_vehicles.h"
 #include "sensor/truth/truth.h"
-#include "sensor/publish/plane_hash.h"
+#include "sensor/frame/plane.h"
 
 typedef struct TrialScene {
     const Landscape *landscape;   /* not its own */

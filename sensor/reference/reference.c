@@ -1,5 +1,6 @@
 /* sensor/reference/reference.c: the reference of the products as text for a terminal and as Markdown. */
 #include "sensor/reference/reference.h"
+#include "render/scene/view.h"
 
 static const Reference *const topics[] = {
     &reference_products, &reference_truth, &reference_run, &reference_exr, &reference_png, &reference_raw,
@@ -8,6 +9,8 @@ static const Reference *const topics[] = {
     &reference_stream_pdu, &reference_radar_pdu, &reference_pdus, &reference_regress,
 };
 enum { topic_count = sizeof topics / sizeof *topics, columns = 112 };
+
+const char *reference_band(int i) { return i < BAND_COUNT ? band_name((Band)i) : NULL; }
 
 /* ---- terminal -------------------------------------------------------------------------------- */
 

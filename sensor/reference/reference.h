@@ -53,4 +53,13 @@ bool reference_write(FILE *to, const char *topic);
 /* All topics, as Markdown: products.md. */
 void reference_write_markdown(FILE *to);
 
+/* ---- placeholders used in several topics --------------------------------------------------------- */
+
+const char *reference_band(int i); /* optical ...; NULL at the end */
+
+#define REFERENCE_WORD_BAND {"BAND", "one of", reference_band, NULL}
+
+#define REFERENCE_WORD_CONSUMER                                                                                        \
+    {"CONSUMER", "what the frame went to: image_files, truth_lines, dis, memory, video and so on", NULL, NULL}
+
 #endif

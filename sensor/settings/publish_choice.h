@@ -11,7 +11,7 @@
 typedef enum PlaneChoice {
     PLANE_RANGE, PLANE_ENTITY, PLANE_PART, PLANE_MATERIAL, PLANE_TEMPERATURE, PLANE_NORMAL,
     PLANE_INSTANCE, PLANE_COVER, /* of a world with plants */
-    PLANE_EMISSIVITY,            /* of thermal bands, made for the file (sensor/publish/emissivity.h) */
+    PLANE_EMISSIVITY,            /* of thermal bands, made for the file (sensor/publish/files/frame_files.c) */
     PLANE_CHOICES
 } PlaneChoice;
 

@@ -1,14 +1,95 @@
-/* sensor/truth/frame_error.c: the error budget of a frame, from the renderer's estimates and the node's own
- * contributions. */
+/* sensor/truth/frame_error.c: errors of a frame: their spread over pixels, the budget by source, and the budget of a
+ * radar's map. */
 #include "sensor/truth/frame_error.h"
-
+#include "render/heat/vehicle_heat.h"
 #include "dis/enumerations.h"
 #include "render/frame/error_budget.h"
-#include "render/heat/vehicle_heat.h"
-#include "sensor/truth/pixel_error.h"
+#include "render/radar/signature.h"
+
+/* ---- the spread of errors over pixels, and what a displaced target does to those near it --------- */
+
+static const double least_k = 1e-4;
+enum { most_px = 1024, way_most_px = 256 };
+
+void error_spread_add(ErrorSpread *s, double square_k2, double px)
+{
+    const double decades = square_k2 > least_k * least_k ? 0.5 * log10(square_k2) - log10(least_k) : 0;
+    s->px[(int)clamp(decades * error_bins_a_decade, 0, error_bins - 1)] += px;
+    s->all_px += px;
+    s->beyond_px += square_k2 > 0 ? px * erfc(1 / sqrt(2 * square_k2)) : 0;
+    s->squares_px_k2 += px * square_k2;
+}
+
+void error_spread_join(ErrorSpread *s, const ErrorSpread *more)
+{
+    for (int i = 0; i < error_bins; i++) s->px[i] += more->px[i];
+    s->all_px += more->all_px;
+    s->beyond_px += more->beyond_px;
+    s->squares_px_k2 += more->squares_px_k2;
+}
+
+double error_spread_median_k(const ErrorSpread *s)
+{
+    double below = 0;
+    int    bin = 0;
+    if (!(s->all_px > 0)) return NAN;
+    while (bin < error_bins - 1 && below + s->px[bin] < 0.5 * s->all_px) below += s->px[bin++];
+    const double within = s->px[bin] > 0 ? clamp((0.5 * s->all_px - below) / s->px[bin], 0, 1) : 0.5;
+    return bin == 0 ? 0 : least_k * pow(10, (bin + within) / error_bins_a_decade);
+}
+
+double error_spread_rms_k(const ErrorSpread *s) { return s->all_px > 0 ? sqrt(s->squares_px_k2 / s->all_px) : NAN; }
+double error_spread_beyond(const ErrorSpread *s) { return s->all_px > 0 ? s->beyond_px / s->all_px : NAN; }
+
+static double heat_k2(const DisplacedTarget *of, size_t at)
+{
+    const double temp_k = of->picture->temp_k ? (double)of->picture->temp_k[at] : NAN;
+    if (!isfinite(temp_k) || !isfinite(of->air_k)) return 0;
+    const double k = vehicle_heat_error_k(temp_k, of->air_k);
+    return k * k;
+}
+
+void error_spread_of_displaced(ErrorSpread *touched, ErrorSpread *own, const DisplacedTarget *of)
+{
+    static const int way[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    const Picture   *p = of->picture;
+    const uint32_t   id = (uint32_t)of->index + 1;
+    const int        d = (int)clamp(rint(of->way_px), 1, way_most_px);
+    const double     shorter = fmin(of->way_px, 1) * fmin(of->way_px, 1); /* below a pixel as its square */
+    const int       *b = of->px->box;
+    const int        x0 = b[0] > d ? b[0] - d : 0, x1 = b[2] + d < p->width ? b[2] + d : p->width;
+    const int        y0 = b[1] > d ? b[1] - d : 0, y1 = b[3] + d < p->height ? b[3] + d : p->height;
+    const double     area = (double)(x1 - x0) * (y1 - y0);
+    const int        step = area > most_px ? (int)ceil(sqrt(area / most_px)) : 1;
+    for (int y = y0 + step / 2; y < y1; y += step)
+        for (int x = x0 + step / 2; x < x1; x += step) {
+            const size_t at = (size_t)y * (size_t)p->width + (size_t)x;
+            const double here = pixel_share_of(p, of->px, id, at);
+            double       here_k = NAN, sum = 0;
+            int          count = 0;
+            bool         any = here > 0;
+            for (int k = 0; k < 4; k++) {
+                const int to_x = x + d * way[k][0], to_y = y + d * way[k][1];
+                if (to_x < 0 || to_x >= p->width || to_y < 0 || to_y >= p->height) continue;
+                const size_t to = (size_t)to_y * (size_t)p->width + (size_t)to_x;
+                count++;
+                if (!(here > 0) && !(pixel_share_of(p, of->px, id, to) > 0)) continue; /* ground, which stays */
+                if (isnan(here_k)) here_k = planck_table_temp(of->planck, (double)of->value[at]);
+                const double apart_k = planck_table_temp(of->planck, (double)of->value[to]) - here_k;
+                any = true;
+                sum += apart_k * apart_k;
+            }
+            if (!any) continue;
+            const double square = of->further_k2 + (count > 0 ? shorter * sum / count : 0) + (here > 0 ? here * here * heat_k2(of, at) : 0);
+            error_spread_add(touched, square, (double)step * step);
+            if (here > 0) error_spread_add(own, square, here * step * step);
+        }
+}
+
+/* ---- the budget of a frame: the estimates of the renderer, and what only the node knows ---------- */
 
 /* Rows of a target are subsampled to about this many pixels at most. */
-enum { most_px = 4096 };
+enum { target_most_px = 4096 };
 
 /* Sums over the pixels of one target in one plane: squared differences between neighbours, at least one of them the
  * target's, less the squared differences of the ground alone, estimated from the surrounding ground; and squared
@@ -40,7 +121,7 @@ static Outline outline_of(const Picture *p, const TargetPixels *px, int index, c
     const int box[4] = {px->box[0] > 0 ? px->box[0] - 1 : 0, px->box[1] > 0 ? px->box[1] - 1 : 0,
                         px->box[2] < p->width ? px->box[2] + 1 : p->width,
                         px->box[3] < p->height ? px->box[3] + 1 : p->height};
-    const int      area = (box[2] - box[0]) * (box[3] - box[1]), stride = 1 + area / most_px;
+    const int      area = (box[2] - box[0]) * (box[3] - box[1]), stride = 1 + area / target_most_px;
     const uint32_t id = (uint32_t)index + 1;
     Outline        o = {0, 0};
     Steps          s = {0, 0, 0, 0};
@@ -101,7 +182,7 @@ static double ground_way_m(const World *world, const SnapshotEntity *e, const Mo
 
 /* Squared error of temperature that ground, plants and parts have by the steps, elements and facets of their heat: mean over
  * all pixels, K2. Targets smaller than a pixel count with the share that they cover. */
-static double heat_k2(const Picture *p, const Snapshot *snapshot, double air_k)
+static double mean_heat_k2(const Picture *p, const Snapshot *snapshot, double air_k)
 {
     const size_t pixels = (size_t)p->width * (size_t)p->height;
     double       sum = 0;
@@ -122,7 +203,7 @@ static double heat_k2(const Picture *p, const Snapshot *snapshot, double air_k)
 static void error_of_target(ErrorSpread *all, Target *t, const DisplacedTarget *of, Band band)
 {
     ErrorSpread own = {0};
-    error_of_displaced(all, &own, of);
+    error_spread_of_displaced(all, &own, of);
     t->band[band].error_rms_k    = error_spread_rms_k(&own);
     t->band[band].error_median_k = error_spread_median_k(&own);
 }
@@ -190,9 +271,10 @@ static void add_target(PlaneSums *sums, Target *t, const PlaneOf *of)
     error_of_target(&sums->spread, t, &displaced, of->band);
 }
 
-bool frame_error(FrameError *out, const Picture *picture, const World *world, const Snapshot *snapshot,
-                 const RenderRequest *request, Target *target, int targets, double sag_m, bool clamped, double air_k)
+bool frame_error(FrameError *out, const FrameErrorOf *of, Target *target, int targets)
 {
+    const Picture     *picture = of->picture;
+    const World       *world = of->world;
     const ErrorBudget *budget = picture->budget;
     const double       pixels = (double)picture->width * picture->height;
     double             sums[BAND_COUNT][error_sources] = {{0}};
@@ -202,16 +284,16 @@ bool frame_error(FrameError *out, const Picture *picture, const World *world, co
     for (int k = 0; k < picture_plane_count; k++) {
         const Band         b = band_of(k);
         const PlanckTable *planck = b == BAND_MWIR ? world->planck_mwir : b == BAND_LWIR ? world->planck_lwir : NULL;
-        PlaneOf            of = {.picture = picture, .world = world, .snapshot = snapshot, .focal_px = request->view.focal_px,
-                                 .sag_m = sag_m, .air_k = air_k, .clamped = clamped, .band = b,
-                                 .value = picture_plane(picture, k), .planck = planck};
+        PlaneOf            in = {.picture = picture, .world = world, .snapshot = of->snapshot,
+                                 .focal_px = of->request->view.focal_px, .sag_m = of->sag_m, .air_k = of->air_k,
+                                 .clamped = of->clamped, .band = b, .value = picture_plane(picture, k), .planck = planck};
         PlaneSums          all = {0};
-        if (!of.value || !(budget->mean[k] > 0)) continue;
+        if (!in.value || !(budget->mean[k] > 0)) continue;
         const double kelvin = planck ? error_budget_kelvin(planck, budget->mean[k], 1) : NAN; /* for 1 W/(m2 sr) */
-        of.tables_k2 = square(kelvin * budget->tables[k]);
-        for (int i = 0; i < targets; i++) add_target(&all, &target[i], &of);
+        in.tables_k2 = square(kelvin * budget->tables[k]);
+        for (int i = 0; i < targets; i++) add_target(&all, &target[i], &in);
         const double square_of_mean = square(budget->mean[k]);
-        const double all_heat_k2 = kelvin > 0 ? heat_k2(picture, snapshot, air_k) : 0;
+        const double all_heat_k2 = kelvin > 0 ? mean_heat_k2(picture, of->snapshot, of->air_k) : 0;
         const double heat = kelvin > 0 ? all_heat_k2 / square(kelvin) : 0;
         const double squares[ERROR_TOTAL] = {square(budget->sampling[k]),
                                              square(budget->level_of_detail[k]) + all.facets / pixels,
@@ -222,7 +304,7 @@ bool frame_error(FrameError *out, const Picture *picture, const World *world, co
         }
         planes[b]++;
         if (!planck) continue;
-        error_of_the_rest(&all.spread, budget, k, pixels, kelvin, of.tables_k2 + all_heat_k2);
+        error_of_the_rest(&all.spread, budget, k, pixels, kelvin, in.tables_k2 + all_heat_k2);
         out->median_k[b]  = error_spread_median_k(&all.spread);
         out->beyond_1k[b] = error_spread_beyond(&all.spread);
     }
@@ -238,4 +320,71 @@ bool frame_error(FrameError *out, const Picture *picture, const World *world, co
         }
     }
     return true;
+}
+
+/* ---- the budget of a radar's map ----------------------------------------------------------------- */
+
+enum { weights = 256 }; /* of a window of any length: its shape */
+
+double radar_error_of_gridding(void) { return 1.5e-4; }
+
+/* 2 (1 - rho): rho is the response's correlation with itself, the transform of the squared weights. */
+static double radar_error_of_moving(const RadarPreset *preset, double cells)
+{
+    double w[weights], sum = 0, all = 0;
+    if (!(cells > 0) || window_weights(w, weights, &preset->range_window) != STATUS_OK) return 0;
+    for (int i = 0; i < weights; i++) {
+        sum += w[i] * w[i] * cos(2 * pi_rad * cells * (i - 0.5 * (weights - 1)) / weights);
+        all += w[i] * w[i];
+    }
+    return 2 * (1 - fabs(sum) / all);
+}
+
+/* Squared error over the square of the field, from a standard deviation of the cross section (signature_error_db). */
+static double square_of_db(double db)
+{
+    const double root = pow(10, 0.1 * db) - 1;
+    return 0.5 * root * root;
+}
+
+static double map_energy(const RangeDoppler *map)
+{
+    double sum = 0; /* of the sum channel, which is the first */
+    for (size_t i = 0; i < (size_t)map->rows * (size_t)map->columns; i++)
+        sum += scatter_power(map->cell[i]);
+    return sum;
+}
+
+void radar_error(RadarError *out, const RadarFrame *r, const Snapshot *snapshot)
+{
+    const double cells_error = signature_cells_error();
+    const double noise_w = r->receiver.noise_w * r->map.noise_share, all = map_energy(&r->map);
+    /* a point's response has the energy of its peak times the windows' equivalent noise bandwidths, in cells */
+    const double cells = r->map.noise_share * r->map.rows * r->map.columns;
+    double       squares[error_sources] = {0}, own = 0, total = 0;
+    for (int i = 0; i < r->targets; i++) {
+        const RadarTruth *t = &r->target[i];
+        const double      energy = t->snr * noise_w * cells;
+        if (!(energy > 0)) continue;
+        squares[ERROR_DEAD_RECKONING] +=
+            energy * radar_error_of_moving(r->preset, snapshot->entity[t->entity].drift_m / sqrt(3) / r->map.metre_per_column);
+        const double error_db = t->rcs_error_db[r->preset->transmits_h ? 0 : 1];
+        if (isnan(error_db)) continue; /* a given signature */
+        own += energy;
+        squares[ERROR_SAMPLING] += energy * square_of_db(error_db);
+        squares[ERROR_LEVEL_OF_DETAIL] += energy * cells_error;
+    }
+    squares[ERROR_TABLES] = all * radar_error_of_gridding() * radar_error_of_gridding();
+    for (int s = 0; s < ERROR_TOTAL; s++) {
+        squares[ERROR_TOTAL] += squares[s];
+        total += s == ERROR_DEAD_RECKONING || s == ERROR_TABLES ? 0 : squares[s];
+    }
+    for (int s = 0; s < error_sources; s++) {
+        const double of_field = s == ERROR_TABLES ? radar_error_of_gridding()
+                              : s == ERROR_TOTAL  ? hypot(sqrt(total / own), radar_error_of_gridding())
+                                                  : sqrt(squares[s] / own);
+        out->share[s] = all > 0 ? sqrt(squares[s] / all) : NAN;
+        out->db[s] = own > 0 ? 10 * log10(1 + sqrt(2) * of_field) : NAN;
+    }
+    out->share[ERROR_HEAT] = out->db[ERROR_HEAT] = out->db[ERROR_DEAD_RECKONING] = NAN;
 }

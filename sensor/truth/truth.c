@@ -1,7 +1,7 @@
-/* sensor/truth/truth.c: ground truth of each target of a frame: position, size, visibility, contrast. */
+/* sensor/truth/truth.c: truth of the targets in a frame, and where the image meets the ground. */
 #include "sensor/truth/truth.h"
-
 #include "terrain/earth/geodesy.h"
+#include "render/ground/ground.h"
 
 /* Earth's rate, rad/s. Source: IERS Conventions 2010, table 1.2 (nominal mean angular velocity). */
 static const double earth_rate_rps = 7.292115e-5;
@@ -219,15 +219,21 @@ static void thermal_band(TargetBand *out, const Target *t, const TargetPixels *p
     out->snr        = to_noise(&look, px, netd_k);
 }
 
-/* planes: a pixel's value is the mean of these, from `plane` on. */
+/* The value of a pixel is the mean of so many planes, from `plane` on. */
+typedef struct PlainPlanes {
+    PixelValues *values;
+    const void  *user; /* of values */
+    int          plane, count;
+} PlainPlanes;
+
 static void plain_band(TargetBand *out, const Target *t, const TargetPixels *px, const Picture *picture,
-                       PixelValues *values, const void *user, int plane, int planes, double noise_sigma)
+                       const PlainPlanes *of, double noise_sigma)
 {
     Look look = {0};
-    if (!look_at(&look, t, px, picture, values, user)) return;
+    if (!look_at(&look, t, px, picture, of->values, of->user)) return;
     if (px->small) {
         look.mean = 0;
-        for (int k = 0; k < planes; k++) look.mean += px->mean[plane + k] / planes;
+        for (int k = 0; k < of->count; k++) look.mean += px->mean[of->plane + k] / of->count;
     }
     if (look.ring_mean > 0) out->contrast = (look.mean - look.ring_mean) / look.ring_mean;
     if (!look.alone || noise_sigma > 0) out->snr = to_noise(&look, px, noise_sigma);
@@ -241,7 +247,7 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
     if (picture->optical[0]) {
         const int channels = picture->optical[1] ? 3 : 1;
         /* the noise of the mean of three channels is lower by a factor of sqrt(3) */
-        plain_band(&t->band[BAND_OPTICAL], t, px, picture, luminance, picture, picture_optical, channels,
+        plain_band(&t->band[BAND_OPTICAL], t, px, picture, &(PlainPlanes){luminance, picture, picture_optical, channels},
                    noise->optical_w_m2_sr / sqrt(channels));
         t->band[BAND_OPTICAL].intensity_w_sr = 0; /* the channels together: 0.4-0.7 um */
         for (int k = 0; k < channels; k++)
@@ -257,7 +263,7 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
     }
     intensity_error(t, px, picture, view);
     if (picture->radar)
-        plain_band(&t->band[BAND_RADAR], t, px, picture, plain_value, picture->radar, picture_radar, 1, 0);
+        plain_band(&t->band[BAND_RADAR], t, px, picture, &(PlainPlanes){plain_value, picture->radar, picture_radar, 1}, 0);
 }
 
 /* The wheels of an entity on the ground are partly below it: a hidden share below truth_occluded_least is no
@@ -298,4 +304,30 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
         out[count++] = t;
     }
     return count;
+}
+
+/* ---- the footprint ------------------------------------------------------------------------------- */
+
+static GroundPoint ground_point(const Ground *ground, const LocalFrame *frame, const View *view, double column_px,
+                                double row_px)
+{
+    double      d_enu[3], p_enu[3], p_ecef[3];
+    Geodetic    place;
+    GroundPoint out = {.known = false};
+    view_ray(d_enu, view, column_px, row_px);
+    const double range_m = ground_first_hit(NULL, ground, view->p_enu, d_enu, INFINITY);
+    if (!(range_m > 0 && range_m < INFINITY)) return out;
+    v3_add_scaled(p_enu, view->p_enu, range_m, d_enu);
+    ecef_from_enu(p_ecef, frame, p_enu);
+    if (geodetic_from_ecef(&place, p_ecef) != STATUS_OK) return out;
+    return (GroundPoint){true, place.lat_rad, place.lon_rad, place.h_m, range_m};
+}
+
+void truth_footprint(GroundPoint out[FOOTPRINT_COUNT], const World *world, const View *view)
+{
+    const double corner[FOOTPRINT_COUNT][2] = {{0.5, 0.5}, {0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    Ground       ground;
+    ground_prepare(&ground, world->landscape ? &world->landscape->elevation : NULL);
+    for (int k = 0; k < FOOTPRINT_COUNT; k++)
+        out[k] = ground_point(&ground, &world->frame, view, corner[k][0] * view->width, corner[k][1] * view->height);
 }

@@ -5,6 +5,7 @@
 #define SENSOR_TRUTH_TRUTH_H
 
 #include "render/frame/render.h"
+#include "render/frame/world.h"
 
 /* The target's pixels are those with its id in the truth planes. A small one (TargetPixels.small) has its own
  * samples instead, and a ring of pixels without any small target. */
@@ -58,5 +59,24 @@ typedef struct EyeState {
  * The picture must hold truth planes. */
 int truth_targets(Target *out, const Picture *picture, const World *world, const Snapshot *snapshot,
                   const RenderRequest *request, const EyeState *eye, const TruthNoise *noise);
+
+/* ---- the footprint of the image on the ground: the terrain alone, without entities --------------- */
+
+/* Where a line of sight meets the ground. */
+typedef struct GroundPoint {
+    bool   known;                /* false: it does not, within the terrain */
+    double lat_rad, lon_rad, height_m; /* WGS 84, above the ellipsoid */
+    double range_m;              /* from the sensor */
+} GroundPoint;
+/* The boresight, then the image's corners. */
+typedef enum FootprintPoint {
+    FOOTPRINT_CENTRE, FOOTPRINT_UPPER_LEFT, FOOTPRINT_UPPER_RIGHT, FOOTPRINT_LOWER_RIGHT, FOOTPRINT_LOWER_LEFT,
+    FOOTPRINT_COUNT
+} FootprintPoint;
+
+/* Five rays in double over the terrain's posts, in some microseconds. Corners are the outer corners of the corner
+ * pixels, where the lens shows them. Refraction is not considered, as in the images. A sensor below the ground: none
+ * known. */
+void truth_footprint(GroundPoint out[FOOTPRINT_COUNT], const World *world, const View *view);
 
 #endif

@@ -3,8 +3,8 @@
  * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "sensor/framefile/frame_file.h"
-#include "sensor/framefile/ground_cutout.h"
+#include "sensor/verify/saved_frame/saved_frame.h"
+#include "sensor/verify/saved_frame/ground_cutout.h"
 
 #include <stdlib.h>
 
@@ -24,12 +24,12 @@ static void small_file(ByteSink *out, bool invented, bool planted)
     static NodePose node[2];
     static SnapshotEntity entity[2];
     static EffectPuff puff;
-    static FrameModel model = {.model = 3, .node_count = 1, .name = "box"};
-    static FramePlane plane = {.name = "lwir/Y", .mean = 1};
+    static SavedModel model = {.model = 3, .node_count = 1, .name = "box"};
+    static SavedPlane plane = {.name = "lwir/Y", .mean = 1};
     static GroundFix  fix = {{1, 2, 3}, 1};
     static ClearLine  line = {{0, 0, 9}, {100, 0, 9}};
     static CoastPlace place = {50, 60, true};
-    FrameFile file = {.version = "1", .host = "1:2:3", .config_sha256 = "", .settings = "seed: 1\n", .frame = 7};
+    SavedFrame file = {.version = "1", .host = "1:2:3", .config_sha256 = "", .settings = "seed: 1\n", .frame = 7};
     file.tables.count = 1;
     strcpy(file.tables.table[0].name, "heat.csv");
     file.model = &model, file.model_count = 1;
@@ -75,9 +75,9 @@ static void small_file(ByteSink *out, bool invented, bool planted)
     if (planted) file.woods = (WoodsConfig){.half_width_m = 500, .most_trees = 70, .path_count = 2, .path = path};
     static double joint[64];
     file.measured = planted;
-    if (planted) file.radar = (FrameRadar){.has_aim = true, .aim_m = 900, .number = 7, .joint_count = file.snapshot.node_count, .joint = joint};
+    if (planted) file.radar = (SavedRadar){.has_aim = true, .aim_m = 900, .number = 7, .joint_count = file.snapshot.node_count, .joint = joint};
     if (file.snapshot.node_count > 64) abort();
-    if (frame_file_pack(out, &file, NULL) != STATUS_OK) abort();
+    if (saved_frame_pack(out, &file, NULL) != STATUS_OK) abort();
 }
 
 size_t fuzz_seed(uint8_t *out, uint32_t index)
@@ -97,10 +97,10 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 static bool parse(const uint8_t *data, size_t size)
 {
     bool       made = false;
-    FrameFile *file = malloc(sizeof *file);
+    SavedFrame *file = malloc(sizeof *file);
     Arena     *arena = arena_create();
     if (!file || !arena) abort();
-    if (frame_file_parse(file, data, size, "input", arena) == STATUS_OK) {
+    if (saved_frame_parse(file, data, size, "input", arena) == STATUS_OK) {
         const Snapshot *s = &file->snapshot;
         for (int e = 0; e < s->count; e++)
             if (!v3_is_finite(s->entity[e].p_ecef) || s->entity[e].first_node > s->node_count) abort();

@@ -2,7 +2,7 @@
  * fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "sensor/regress/verdict.h"
+#include "sensor/verify/regress/verdict.h"
 
 #include <stdlib.h>
 

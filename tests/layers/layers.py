@@ -37,14 +37,14 @@ BASE_HEADERS = ('pitviper.h', 'pitviper_channels.h', 'pitviper_confine.h', 'pitv
 LIBRARIES = (
     ('GeographicLib/*', 'terrain/*.cpp'), ('gdal*', 'terrain/elevation/reader/*'),
     ('cpl_*', 'terrain/elevation/reader/*'), ('ogr_*', 'terrain/elevation/reader/*'), ('erfa.h', 'terrain/*'),
-    ('OpenImageIO/*', 'sensor/publish/image_module.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
+    ('OpenImageIO/*', 'sensor/publish/images/image_module.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
     ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),
-    ('jansson.h', 'sensor/publish/*'), ('jansson.h', 'entities/import/gltf*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep/sweep_file.c'),
+    ('jansson.h', 'sensor/frame/*'), ('jansson.h', 'sensor/publish/*'), ('jansson.h', 'entities/import/gltf*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep/sweep_file.c'),
 )
 
 # Files are opened for writing, and renamed, by pitviper_output.c alone, which follows no link; shared memory has names of its own; pitviper_confine.c forbids it.
 WRITES = re.compile(r'\bf(?:re)?open\s*\([^;]*"[wa]|\bO_CREAT\b|(?<![\w.>])(?:creat|rename|truncate)\s*\(|\bjson_dump_file\b')
-WRITERS = ('pitviper_output.c', 'pitviper_confine.c', 'sensor/publish/memory/memory_segment.c')
+WRITERS = ('pitviper_output.c', 'pitviper_confine.c', 'sensor/publish/memory/memory_ring.c')
 
 # Includes from one wing into another that are left out when circles between wings are looked for, with the reason.
 WING_EXCEPTIONS = {}
@@ -214,11 +214,11 @@ def twins():
     for path, header in re.findall(r'(\S+) (\S+)', """
         pitviper_log.c dis/pdu.h                        pitviper_log.c sensor/bench/bench_private.h
         dis/pdu.c sensor/bench/bench_private.h          sensor/commands/run_command.c sensor/bench/sensor/quality.h
-        sensor/publish/html.c sensor/bench/bench.h      dis/pdu.c terrain/earth/geodesy.h
+        sensor/publish/files/html_page.c sensor/bench/bench.h      dis/pdu.c terrain/earth/geodesy.h
         dis/pdu.c entities/models/model.h               terrain/earth/sun.c dis/pdu.h
         entities/models/model.c render/frame/render.h   render/frame/render.c entities/table/entity_table.h
         render/frame/render.c dis/entity_state.h        render/frame/render.c sensor/detector/detector.h
-        tests/dis/test_pdu.c entities/models/model.h    tests/render/test_render.c sensor/publish/plane.h
+        tests/dis/test_pdu.c entities/models/model.h    tests/render/test_render.c sensor/frame/plane.h
         sensor/node/loop.c render/parts/parts_private.h sensor/node/loop.c loop.h
         dis/pdu.c tests/check.h                         entities/models/model.c <GeographicLib/Geocentric.hpp>
         sensor/truth/truth.c <jansson.h>                terrain/earth/geoid.c <gdal.h>

@@ -155,8 +155,8 @@ static inline FrameError error_of_targets(Target **out, int *targets_out, TrialF
     ecef_from_enu(eye.p_ecef, &lab.frame, f->request.view.p_enu);
     m3_mul(eye.r_ecef_from_cam, lab.frame.r_ecef_from_enu, f->request.view.r_enu_from_cam);
     const int targets = truth_targets(target, &f->picture, &f->scene->world, &f->snapshot, &f->request, &eye, &noise);
-    CHECK(frame_error(&error, &f->picture, &f->scene->world, &f->snapshot, &f->request, target, targets, 0.002, true,
-                      world_air_k(&f->scene->world, f->scene->unix_s)));
+    CHECK(frame_error(&error, &(FrameErrorOf){&f->picture, &f->scene->world, &f->snapshot, &f->request, 0.002, true,
+                                              world_air_k(&f->scene->world, f->scene->unix_s)}, target, targets));
     *out         = target;
     *targets_out = targets;
     return error;

@@ -1,20 +1,20 @@
 /* Masks as text: the words of pycocotools 2.0.11 for the same pixels, and every mask of random planes read back. */
 #include "tests/check.h"
 
-#include "sensor/publish/coco_mask.h"
+#include "sensor/publish/coco/coco.h"
 
 enum { value = 3 };
 
 static void check_text(const uint32_t *plane, int width, int height, const char *want, const int bbox[4], long long area)
 {
-    MaskExtent extent[value];
-    mask_extents(extent, value, plane, width, height);
-    const MaskExtent *e    = &extent[value - 1];
-    char             *text = malloc(mask_text_size(e));
+    CocoMaskExtent extent[value];
+    coco_mask_extents(extent, value, plane, width, height);
+    const CocoMaskExtent *e    = &extent[value - 1];
+    char             *text = malloc(coco_mask_text_size(e));
     CHECK(text);
-    mask_text(text, plane, value, width, height, e);
+    coco_mask_text(text, plane, value, width, height, e);
     assert_string_equal(text, want);
-    CHECK(strlen(text) < mask_text_size(e));
+    CHECK(strlen(text) < coco_mask_text_size(e));
     CHECK(e->pixels == area && e->box[0] == bbox[0] && e->box[1] == bbox[1] && e->box[2] - e->box[0] == bbox[2] &&
           e->box[3] - e->box[1] == bbox[3]);
     free(text);
@@ -102,15 +102,15 @@ static void every_mask_reads_back(void **state)
                 const double u = random_uniform(2, n, (uint32_t)(y / block), (uint64_t)(x / block));
                 plane[y * width + x] = u < fill ? 1 + (uint32_t)(u / fill * count) : 0;
             }
-        MaskExtent extent[4];
-        mask_extents(extent, count, plane, width, height);
+        CocoMaskExtent extent[4];
+        coco_mask_extents(extent, count, plane, width, height);
         for (int k = 0; k < count; k++) {
             long long pixels = 0;
             if (extent[k].pixels == 0) continue;
-            const size_t size = mask_text_size(&extent[k]);
+            const size_t size = coco_mask_text_size(&extent[k]);
             char        *text = malloc(size);
             CHECK(text);
-            mask_text(text, plane, (uint32_t)k + 1, width, height, &extent[k]);
+            coco_mask_text(text, plane, (uint32_t)k + 1, width, height, &extent[k]);
             CHECK(strlen(text) < size);
             read_back(mask, text, (size_t)width * (size_t)height);
             free(text);
@@ -134,17 +134,17 @@ static void a_box_is_the_mask_of_its_pixels(void **state)
     enum { width = 7, height = 5, area = width * height };
     for (int code = 0; code < width * height * width * height; code++) {
         const int a = code % area, b = code / area;
-        const MaskExtent box = {.box = {a % width, a / width, b % width + 1, b / width + 1}};
+        const CocoMaskExtent box = {.box = {a % width, a / width, b % width + 1, b / width + 1}};
         if (box.box[2] <= box.box[0] || box.box[3] <= box.box[1]) continue;
         uint32_t   plane[area] = {0};
-        MaskExtent extent[1];
+        CocoMaskExtent extent[1];
         char       text[7 * (width * (height + 1) + 2) + 1], want[sizeof text];
         for (int y = box.box[1]; y < box.box[3]; y++)
             for (int x = box.box[0]; x < box.box[2]; x++) plane[y * width + x] = 1;
-        mask_extents(extent, 1, plane, width, height);
-        CHECK(memcmp(extent->box, box.box, sizeof box.box) == 0 && mask_text_size(&box) <= sizeof text);
-        mask_text(want, plane, 1, width, height, extent);
-        mask_box_text(text, width, height, &box);
+        coco_mask_extents(extent, 1, plane, width, height);
+        CHECK(memcmp(extent->box, box.box, sizeof box.box) == 0 && coco_mask_text_size(&box) <= sizeof text);
+        coco_mask_text(want, plane, 1, width, height, extent);
+        coco_mask_box_text(text, width, height, &box);
         assert_string_equal(text, want);
     }
 }

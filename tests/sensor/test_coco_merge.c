@@ -1,8 +1,7 @@
 /* coco.json of several folders in one: new ids, and files that this program did not write end in a line. */
 #include "tests/check.h"
 
-#include "sensor/publish/coco_file.h"
-#include "sensor/publish/coco_merge.h"
+#include "sensor/publish/coco/coco_file.h"
 
 #include <sys/stat.h>
 

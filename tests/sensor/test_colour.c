@@ -8,8 +8,8 @@
 #include "sensor/detector/chain.h"
 #include "sensor/detector/colour.h"
 #include "sensor/detector/quantise.h"
-#include "sensor/publish/frame_files.h"
-#include "sensor/publish/image_file.h"
+#include "sensor/publish/files/frame_files.h"
+#include "sensor/publish/images/image_file.h"
 
 /* ---- colorimetry, which the program has none of --------------------------------------------------- */
 
@@ -367,7 +367,7 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
             config.detector.optical_high_w_m2_sr = (white[0] + white[1] + white[2]) / 3;
         }
         level[BAND_OPTICAL].known = false;
-        assert_int_equal(displays_make(display, &shown, request.bands, hand.pool, hand.arena), STATUS_OK);
+        assert_int_equal(frame_displays_make(display, &shown, request.bands, hand.pool, hand.arena), STATUS_OK);
         assert_int_equal(frame_files_write_displays(&files, hand.pool), STATUS_OK);
         assert_int_equal(image_read_png(rgb, path), STATUS_OK);
         for (int i = 0; i < 256; i++) /* a count of the camera is up to a code at the dark end */

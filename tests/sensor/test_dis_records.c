@@ -1,9 +1,9 @@
-/* The Data PDUs of a frame, read octet by octet as dis_records.h describes them. tests/system/test_live.sh has tshark
+/* The Data PDUs of a frame, read octet by octet as consume_dis.h describes them. tests/system/test_live.sh has tshark
  * read them. */
 #include "tests/check.h"
 
 #include "dis/decode.h"
-#include "sensor/publish/consume_dis.h"
+#include "sensor/publish/dis/consume_dis.h"
 
 #include <stdlib.h>
 

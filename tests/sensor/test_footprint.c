@@ -2,7 +2,7 @@
  * elevation file by another program, and compares them with the range plane. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/truth/footprint.h"
+#include "sensor/truth/truth.h"
 
 enum { posts = 65 };
 static const double spacing_m = 500, ground_m = 100;
@@ -61,7 +61,7 @@ static void on_a_plain(void **state)
     const View   view = view_at(2100, true, 30);
     const double across = tan(10 * rad_per_deg), below = 0.75 * across, c = cos(30 * rad_per_deg);
     static const int side[FOOTPRINT_COUNT][2] = {{0, 0}, {-1, -1}, {1, -1}, {1, 1}, {-1, 1}}; /* right, down */
-    footprint_of_view(out, &lab.world, &view);
+    truth_footprint(out, &lab.world, &view);
     for (int k = 0; k < FOOTPRINT_COUNT; k++) {
         /* per unit along the boresight: falls by sin 30 + y cos 30, goes on by cos 30 - y sin 30 */
         const double x = side[k][0] * across, y = side[k][1] * below;
@@ -84,7 +84,7 @@ static void the_nearer_ground_counts(void **state)
     GroundPoint out[FOOTPRINT_COUNT];
     double      p_enu[3];
     const View  view = view_at(600, false, 1); /* towards the wall: its foot is 3.5 km away, its top at 1000 m */
-    footprint_of_view(out, &lab.world, &view);
+    truth_footprint(out, &lab.world, &view);
     enu_of(p_enu, &out[FOOTPRINT_CENTRE]);
     CHECK(p_enu[0] > 3500 && p_enu[0] < 4000 && p_enu[2] > 500);
 }
@@ -94,15 +94,15 @@ static void none_above_the_horizon(void **state)
     (void)state;
     GroundPoint out[FOOTPRINT_COUNT];
     View        view = view_at(600, true, 0);
-    footprint_of_view(out, &lab.world, &view);
+    truth_footprint(out, &lab.world, &view);
     CHECK(!out[FOOTPRINT_UPPER_LEFT].known && !out[FOOTPRINT_UPPER_RIGHT].known && !out[FOOTPRINT_CENTRE].known);
     CHECK(out[FOOTPRINT_LOWER_LEFT].known && out[FOOTPRINT_LOWER_RIGHT].known);
     view = view_at(50, true, 30); /* below the ground */
-    footprint_of_view(out, &lab.world, &view);
+    truth_footprint(out, &lab.world, &view);
     for (int k = 0; k < FOOTPRINT_COUNT; k++) CHECK(!out[k].known);
     const World none = {.frame = lab.world.frame};
     view = view_at(2100, true, 30);
-    footprint_of_view(out, &none, &view);
+    truth_footprint(out, &none, &view);
     for (int k = 0; k < FOOTPRINT_COUNT; k++) CHECK(!out[k].known);
 }
 
@@ -114,9 +114,9 @@ static void through_a_lens(void **state)
     GroundPoint         plain[FOOTPRINT_COUNT], out[FOOTPRINT_COUNT];
     View                view = view_at(2100, true, 30);
     const double        k[3] = {-0.8, 0.1, 0}, p[2] = {0.002, -0.001};
-    footprint_of_view(plain, &lab.world, &view);
+    truth_footprint(plain, &lab.world, &view);
     assert_int_equal(lens_make(&view.lens, k, p, (double[2]){320 / view.focal_px, 240 / view.focal_px}), STATUS_OK);
-    footprint_of_view(out, &lab.world, &view);
+    truth_footprint(out, &lab.world, &view);
     for (int n = 0; n < FOOTPRINT_COUNT; n++) {
         double p_enu[3], d_enu[3], p_cam[3], image_px[2];
         enu_of(p_enu, &out[n]);

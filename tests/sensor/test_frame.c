@@ -4,8 +4,8 @@
 #include "tests/check.h"
 #include "tests/render/hand_world.h"
 
-#include "sensor/publish/consumers.h"
-#include "sensor/publish/frame_queue.h"
+#include "sensor/publish/consumers/consumers.h"
+#include "sensor/publish/consumers/consumer.h"
 
 #include <pthread.h>
 #include <sys/stat.h>
@@ -135,7 +135,7 @@ static void a_queue_hands_on_in_order(void **state)
     consumers_add(&list, &first.consumer);
     consumers_add(&list, &last.consumer);
     assert_int_equal(frame_pool_create(&pool, queue_frames), STATUS_OK);
-    assert_int_equal(frame_queue_open(&queue, &list, QUEUE_WAIT, NULL), STATUS_OK);
+    assert_int_equal(consumer_queue_open(&queue, &list, QUEUE_WAIT, NULL), STATUS_OK);
     CHECK(queue->wants == (WANT_PLANES | WANT_SHA256));
     for (int i = 0; i < notes_max; i++) assert_int_equal(put_number(queue, pool, i), STATUS_OK);
     assert_int_equal(queue->close(queue), STATUS_OK);
@@ -161,7 +161,7 @@ static void a_queue_stops_at_the_first_failure(void **state)
     consumers_add(&list, &failing.consumer);
     consumers_add(&list, &behind.consumer);
     assert_int_equal(frame_pool_create(&pool, queue_frames), STATUS_OK);
-    assert_int_equal(frame_queue_open(&queue, &list, QUEUE_WAIT, &counts), STATUS_OK);
+    assert_int_equal(consumer_queue_open(&queue, &list, QUEUE_WAIT, &counts), STATUS_OK);
     while (status == STATUS_OK && puts < notes_max) status = put_number(queue, pool, puts++);
     assert_int_equal(status, STATUS_IO);
     assert_int_equal(queue->close(queue), STATUS_IO);
@@ -182,7 +182,7 @@ static void a_late_queue_leaves_out(void **state)
     noting(&slow, 0, 0, false);
     consumers_add(&list, &slow.consumer);
     assert_int_equal(frame_pool_create(&pool, queue_frames), STATUS_OK);
-    assert_int_equal(frame_queue_open(&queue, &list, QUEUE_LEAVE_OUT, &counts), STATUS_OK);
+    assert_int_equal(consumer_queue_open(&queue, &list, QUEUE_LEAVE_OUT, &counts), STATUS_OK);
     assert_int_equal(put_number(queue, pool, 0), STATUS_OK);
     wait_entered(&slow);
     for (int i = 1; i < 20; i++) assert_int_equal(put_number(queue, pool, i), STATUS_OK); /* never waits */
@@ -277,7 +277,7 @@ static void a_display_of_any_depth(void **state)
     const DisplaysOf of = {.config = &config, .picture = &picture, .chain = chain, .level = level};
     Arena *arena = arena_create();
     assert_non_null(arena);
-    assert_int_equal(displays_make(display, &of, 1u << BAND_LWIR | 1u << BAND_MWIR, hand.pool, arena), STATUS_OK);
+    assert_int_equal(frame_displays_make(display, &of, 1u << BAND_LWIR | 1u << BAND_MWIR, hand.pool, arena), STATUS_OK);
     CHECK(display[BAND_LWIR].planes == 1 && display[BAND_MWIR].planes == 0 && !display[BAND_LWIR].counts[0]);
     frame_display_quantise(eight, &display[BAND_LWIR], count, 8);
     for (int k = 0; k < 3; k++) frame_display_quantise(deep[k], &display[BAND_LWIR], count, k == 2 ? 16 : 10 + 2 * k);

@@ -1,15 +1,15 @@
 /* tests/sensor/test_frame_marks.c: ground marks in a frame file: the same bits again, and nothing out of its range. */
 #include "tests/check.h"
 
-#include "sensor/framefile/frame_file.h"
+#include "sensor/verify/saved_frame/saved_frame.h"
 
 static GroundStand stand[2];
 static GroundTrack track[3];
 static GroundBurn  burn[1];
 
-static FrameFile small_file(void)
+static SavedFrame small_file(void)
 {
-    FrameFile file = {.version = "1", .host = "1:2:3", .config_sha256 = "", .settings = "seed: 1\n", .frame = 7};
+    SavedFrame file = {.version = "1", .host = "1:2:3", .config_sha256 = "", .settings = "seed: 1\n", .frame = 7};
     for (int i = 0; i < 2; i++) {
         stand[i] = (GroundStand){.p_ecef = {6378137 + 1.0 / 3, i, -5}, .low_m = {-4, -2, -3.3f}, .high_m = {4, 2, 0},
                                  .from_s = -3600 + 0.1 * i, .to_s = i ? INFINITY : 12.3, .owner = (uint64_t)1 << 40};
@@ -30,11 +30,11 @@ static FrameFile small_file(void)
     return file;
 }
 
-static Status through(FrameFile *out, const FrameFile *file, Arena *arena)
+static Status through(SavedFrame *out, const SavedFrame *file, Arena *arena)
 {
     ByteSink bytes = {0};
-    CHECK(frame_file_pack(&bytes, file, NULL) == STATUS_OK);
-    const Status status = frame_file_parse(out, bytes.bytes, bytes.count, "test", arena);
+    CHECK(saved_frame_pack(&bytes, file, NULL) == STATUS_OK);
+    const Status status = saved_frame_parse(out, bytes.bytes, bytes.count, "test", arena);
     sink_free(&bytes);
     return status;
 }
@@ -43,7 +43,7 @@ static void marks_come_back_to_the_bit(void **state)
 {
     (void)state;
     Arena    *arena = arena_create();
-    FrameFile file = small_file(), again;
+    SavedFrame file = small_file(), again;
     CHECK(through(&again, &file, arena) == STATUS_OK);
     const GroundMarks *m = &again.snapshot.marks;
     CHECK(m->stands == 2 && m->tracks == 3 && m->burns == 1 && m->forgotten == 5);
@@ -64,7 +64,7 @@ static void every_field_has_its_range(void **state)
     Arena *arena = arena_create();
     log_set_sink(check_listen, NULL);
     for (int wrong = 0; wrong < 13; wrong++) {
-        FrameFile file = small_file(), again;
+        SavedFrame file = small_file(), again;
         switch (wrong) {
         case 0: stand[1].p_ecef[2] = NAN; break;
         case 1: stand[0].r_ecef_from_body[0] = 0.9; break;

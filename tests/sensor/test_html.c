@@ -1,5 +1,5 @@
 /* tests/sensor/test_html.c: a page is whole or absent, text stays text, pictures arrive as they were. */
-#include "sensor/publish/html.h"
+#include "sensor/publish/files/html_page.h"
 #include "tests/check.h"
 
 #include <stdlib.h>

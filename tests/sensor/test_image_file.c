@@ -2,7 +2,7 @@
  * nothing behind. */
 #include "tests/check.h"
 
-#include "sensor/publish/image_file.h"
+#include "sensor/publish/images/image_file.h"
 
 #include <dirent.h>
 #include <signal.h>

@@ -2,7 +2,7 @@
  * tests/system/test_klv.sh has readers that are not ours decode them. */
 #include "tests/check.h"
 
-#include "sensor/publish/klv/klv_detections.h"
+#include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/klv/klv_writer.h"
 
 static KlvWriter writer_on(uint8_t *octets, size_t room)
@@ -438,15 +438,6 @@ static void targets_of_a_recogniser(void **state)
     CHECK(number(find(vmti, 5), false) == 2 && number(find(vmti, 6), false) == 2);
 }
 
-static void access_unit(void **state)
-{
-    (void)state;
-    uint8_t header[klv_au_octets];
-    CHECK(klv_au_header(header, 258, 0x1234));
-    assert_memory_equal(header, ((const uint8_t[]){0, 2, 0xDF, 0x12, 0x34}), klv_au_octets);
-    CHECK(!klv_au_header(header, 0, 65536));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -459,7 +450,6 @@ int main(void)
         cmocka_unit_test(many_targets_and_truth),
         cmocka_unit_test(targets_of_truth),
         cmocka_unit_test(targets_of_a_recogniser),
-        cmocka_unit_test(access_unit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,8 +2,8 @@
  * percentiles against sorted values; histograms against their edges. labels: threads */
 #include "tests/check.h"
 
-#include "sensor/publish/consumers.h"
-#include "sensor/publish/frame_queue.h"
+#include "sensor/publish/consumers/consumers.h"
+#include "sensor/publish/consumers/consumer.h"
 
 #include <pthread.h>
 #include <unistd.h>
@@ -180,7 +180,7 @@ static void lines_open(Lines *l)
     consumers_add(&l->list, &l->fast.consumer);
     consumers_add(&behind, &l->slow.consumer);
     consumers_expect(&behind, l->latency);
-    assert_int_equal(frame_queue_open(&queue, &behind, QUEUE_LEAVE_OUT, NULL), STATUS_OK);
+    assert_int_equal(consumer_queue_open(&queue, &behind, QUEUE_LEAVE_OUT, NULL), STATUS_OK);
     consumers_add(&l->list, queue);
     consumers_expect(&l->list, l->latency);
 }

@@ -4,7 +4,7 @@
 #include "tests/check.h"
 
 #include "sensor/publish/memory/detections.h"
-#include "sensor/publish/target_class.h"
+#include "sensor/frame/target_record.h"
 #include "sensor/publish/memory/memory_ring.h"
 #include "sensor/settings/config.h"
 

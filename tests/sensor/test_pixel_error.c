@@ -1,7 +1,7 @@
 /* Errors pixel by pixel: the spread's median and share, and a displaced bar on level ground, counted by hand. */
 #include "tests/check.h"
 
-#include "sensor/truth/pixel_error.h"
+#include "sensor/truth/frame_error.h"
 
 static void a_spread_has_its_median_and_its_share(void **state)
 {
@@ -69,7 +69,7 @@ static void a_displaced_bar_is_wrong_at_its_edges(void **state)
     /* by 2 px: of four directions 20 pixels lose the bar in each: 80 of 400 pairs are 10 K apart, and 80 pixels beside
      * it meet it in one direction of four */
     DisplacedTarget t = displaced(b, 2, 0);
-    error_of_displaced(&touched, &own, &t);
+    error_spread_of_displaced(&touched, &own, &t);
     CHECK_NEAR(own.all_px, 100, 1e-9);
     CHECK_NEAR(error_spread_rms_k(&own), sqrt(100 * 80 / 400.0), 1e-3);
     /* all but the inner 6 x 6: 48 of 5 K, 16 in the corners of sqrt(50) K; tables of the normal distribution */
@@ -80,12 +80,12 @@ static void a_displaced_bar_is_wrong_at_its_edges(void **state)
     /* by a quarter of a pixel: a sixteenth of the squares at one pixel; nothing but other sources where it stays */
     touched = own = (ErrorSpread){0};
     t = displaced(b, 0.25, 0.01);
-    error_of_displaced(&touched, &own, &t);
+    error_spread_of_displaced(&touched, &own, &t);
     CHECK_NEAR(error_spread_rms_k(&own), sqrt(100 * 40 / 400.0 / 16 + 0.01), 1e-3);
     CHECK_NEAR(error_spread_median_k(&own) / 0.1, 1, 0.04);
     touched = own = (ErrorSpread){0};
     t = displaced(b, 0, 0.01);
-    error_of_displaced(&touched, &own, &t);
+    error_spread_of_displaced(&touched, &own, &t);
     CHECK_NEAR(error_spread_rms_k(&own), 0.1, 1e-9);
 }
 
@@ -98,7 +98,7 @@ static void the_image_ends_somewhere(void **state)
         ErrorSpread     touched = {0}, own = {0};
         DisplacedTarget t = displaced(b, way, 0);
         b->px.box[0] = 0, b->px.box[1] = 0, b->px.box[2] = width, b->px.box[3] = height;
-        error_of_displaced(&touched, &own, &t);
+        error_spread_of_displaced(&touched, &own, &t);
         CHECK(isfinite(error_spread_rms_k(&own)) && own.all_px == 100);
     }
 }

@@ -1,7 +1,7 @@
 /* Plane hashes: published SHA-256 vectors, and the format that the header promises, built by hand. */
 #include "tests/check.h"
 
-#include "sensor/publish/plane_hash.h"
+#include "sensor/frame/plane.h"
 
 #include <unistd.h>
 

@@ -3,7 +3,7 @@
 #include "tests/sensor/scan_stage.h"
 
 #include "sensor/radar/echo.h"
-#include "sensor/truth/radar_error.h"
+#include "sensor/truth/frame_error.h"
 
 enum { samples = 128, pulses = 64, echoes = 20, all = interval_channels * pulses * samples };
 
@@ -35,8 +35,8 @@ static void gridding_leaves_as_much(void **state)
             }
     }
     const double rms = sqrt(error / power);
-    printf("gridding leaves %.1e of the amplitude, estimated %.1e\n", rms, radar_gridding_error());
-    CHECK(rms < 2 * radar_gridding_error() && rms > radar_gridding_error() / 2);
+    printf("gridding leaves %.1e of the amplitude, estimated %.1e\n", rms, radar_error_of_gridding());
+    CHECK(rms < 2 * radar_error_of_gridding() && rms > radar_error_of_gridding() / 2);
     echo_grid_destroy(grid);
 }
 
@@ -109,7 +109,7 @@ static void a_sphere_has_its_own_share_and_moves(void **state)
     RadarFrame alone = *frame;
     alone.targets = 0;
     radar_error(&error, &alone, &stage.snapshot);
-    CHECK_NEAR(error.share[ERROR_TOTAL], radar_gridding_error(), 1e-12);
+    CHECK_NEAR(error.share[ERROR_TOTAL], radar_error_of_gridding(), 1e-12);
     CHECK(isnan(error.db[ERROR_TOTAL]));
     seeker_radar_destroy(radar);
 }

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "render/materials/planck.h"
-#include "sensor/regress/verdict.h"
+#include "sensor/verify/regress/verdict.h"
 
 /* 2 x 3; differences 0, 0.02, 0.3, -0.4, 0, 0: two of six beyond 0.05. */
 static void shares_and_places_are_counted(void **state)
@@ -11,7 +11,7 @@ static void shares_and_places_are_counted(void **state)
     const float  expected[6] = {1, 2, 3, 4, 5, 6}, got[6] = {1, 2.02f, 3.3f, 3.6f, 5, 6};
     float        difference[6];
     PlaneVerdict v;
-    compare_numbers(&v, difference, expected, got, 3, 2, 0.05, 0, NULL);
+    verdict_compare_numbers(&v, difference, expected, got, 3, 2, &(PlaneLimits){0.05, 0, NULL});
     CHECK(v.compared == 6 && v.beyond == 2);
     CHECK_NEAR(v.share, 2.0 / 6, 1e-15);
     CHECK_NEAR(v.max, 0.4, 1e-6); /* floats of that size step by 2.4e-7 */
@@ -22,11 +22,11 @@ static void shares_and_places_are_counted(void **state)
     CHECK_NEAR(difference[3], -0.4, 1e-6);
 
     const uint8_t ignored[6] = {0, 0, 0, 1, 0, 0};
-    compare_numbers(&v, difference, expected, got, 3, 2, 0.05, 0, ignored);
+    verdict_compare_numbers(&v, difference, expected, got, 3, 2, &(PlaneLimits){0.05, 0, ignored});
     CHECK(v.compared == 5 && v.beyond == 1 && v.column == 2 && v.row == 0);
-    compare_numbers(&v, NULL, expected, got, 3, 2, 0, 0.09, NULL); /* 0.27, 0.36 allowed: both beyond still */
+    verdict_compare_numbers(&v, NULL, expected, got, 3, 2, &(PlaneLimits){0, 0.09, NULL}); /* 0.27, 0.36 allowed: both beyond still */
     CHECK(v.beyond == 2);
-    compare_numbers(&v, NULL, expected, got, 3, 2, 0, 0.11, NULL); /* 0.33, 0.44: none */
+    verdict_compare_numbers(&v, NULL, expected, got, 3, 2, &(PlaneLimits){0, 0.11, NULL}); /* 0.33, 0.44: none */
     CHECK(v.beyond == 0 && v.max > 0.3);
 }
 
@@ -36,9 +36,9 @@ static void what_is_not_finite_is_equal_only_to_itself(void **state)
     const float  expected[4] = {INFINITY, NAN, INFINITY, 1}, same[4] = {INFINITY, NAN, INFINITY, 1};
     const float  other[4] = {INFINITY, 2, -INFINITY, NAN};
     PlaneVerdict v;
-    compare_numbers(&v, NULL, expected, same, 4, 1, 0, 0, NULL);
+    verdict_compare_numbers(&v, NULL, expected, same, 4, 1, &(PlaneLimits){0, 0, NULL});
     CHECK(v.beyond == 0 && v.max == 0 && v.column == -1);
-    compare_numbers(&v, NULL, expected, other, 4, 1, 1e30, 10, NULL);
+    verdict_compare_numbers(&v, NULL, expected, other, 4, 1, &(PlaneLimits){1e30, 10, NULL});
     CHECK(v.beyond == 3 && isinf(v.max) && v.column == 1);
     CHECK(v.unmatched == 3 && v.rms == 0); /* the one pixel that is alike */
 }
@@ -52,17 +52,17 @@ static void edges_may_differ_only_when_told(void **state)
     uint8_t        edge[12] = {0};
     size_t         at_edge;
     PlaneVerdict   v;
-    compare_ids(&v, &at_edge, expected, got, 4, 3, NULL);
+    verdict_compare_ids(&v, &at_edge, expected, got, 4, 3, NULL);
     CHECK(v.beyond == 1 && at_edge == 0 && v.column == 2 && v.row == 0 && v.expected == 0 && v.got == 7);
     /* expected alone: 7s but the corner (0, 0), and 0s beside them: (1,0) (0,1) (1,1) (2,0) (2,1) (0,2) (1,2) */
-    CHECK(mark_edges(edge, expected, expected, 4, 3) == 7 && edge[0] == 0 && edge[3] == 0 && edge[2] == 1);
+    CHECK(verdict_mark_edges(edge, expected, expected, 4, 3) == 7 && edge[0] == 0 && edge[3] == 0 && edge[2] == 1);
     /* and of got: (3, 0) too; (2, 0), (2, 1), (1, 1) are there already, (1, 0) has only 7s but (1, 1) around */
-    CHECK(mark_edges(edge, expected, got, 4, 3) == 8 && edge[3] == 1);
-    compare_ids(&v, &at_edge, expected, got, 4, 3, edge);
+    CHECK(verdict_mark_edges(edge, expected, got, 4, 3) == 8 && edge[3] == 1);
+    verdict_compare_ids(&v, &at_edge, expected, got, 4, 3, edge);
     CHECK(v.beyond == 0 && at_edge == 1);
     memset(edge, 0, sizeof edge);
-    mark_edges(edge, expected, expected, 4, 3);
-    compare_ids(&v, &at_edge, expected, far, 4, 3, edge);
+    verdict_mark_edges(edge, expected, expected, 4, 3);
+    verdict_compare_ids(&v, &at_edge, expected, far, 4, 3, edge);
     CHECK(v.beyond == 1 && v.column == 3 && v.got == 9);
 }
 
@@ -74,13 +74,13 @@ static void units_are_those_of_physics(void **state)
                                 (float)planck_band(low_m, high_m, 250, NULL),
                                 (float)planck_band(low_m, high_m, 60, NULL), -1, INFINITY};
     float kelvin[7], db[4];
-    plane_to_kelvin(kelvin, radiance, 7, low_m, high_m);
+    verdict_plane_to_kelvin(kelvin, radiance, 7, low_m, high_m);
     CHECK_NEAR(kelvin[0], 300, 1e-4); /* radiance to 24 bits: 4e-6 K */
     CHECK(kelvin[1] == (float)apparent_floor_k && kelvin[4] == kelvin[1]); /* no radiance, and next to none, are alike */
     CHECK(isnan(kelvin[2]) && isnan(kelvin[5]) && isnan(kelvin[6]));
     CHECK_NEAR(kelvin[3], 250, 1e-4);
     const float power[4] = {2, 0.2f, 0, 2e-9f};
-    plane_to_db(db, power, 4, 2, 60);
+    verdict_plane_to_db(db, power, 4, 2, 60);
     CHECK_NEAR(db[0], 0, 0);
     CHECK_NEAR(db[1], -10, 1e-5);
     CHECK_NEAR(db[2], -60, 0);
@@ -92,27 +92,27 @@ static void numbers_are_rounded_to_steps(void **state)
 {
     (void)state;
     const Rounding one = {1, 0}, half = {0, 0.5}, fine = {16, 0};
-    CHECK_NEAR(value_of(&one, steps_of(&one, 1.2f)), 1, 0);
-    CHECK_NEAR(value_of(&one, steps_of(&one, 1.25f)), 1.5, 0);
-    CHECK_NEAR(value_of(&one, steps_of(&one, 1.8f)), 2, 0);
-    CHECK_NEAR(value_of(&one, steps_of(&one, -2.6f)), -3, 0);
-    CHECK_NEAR(value_of(&half, steps_of(&half, 3.7f)), 3.5, 0);
-    CHECK_NEAR(value_of(&half, steps_of(&half, -0.3f)), -0.5, 0);
+    CHECK_NEAR(record_value(&one, record_steps(&one, 1.2f)), 1, 0);
+    CHECK_NEAR(record_value(&one, record_steps(&one, 1.25f)), 1.5, 0);
+    CHECK_NEAR(record_value(&one, record_steps(&one, 1.8f)), 2, 0);
+    CHECK_NEAR(record_value(&one, record_steps(&one, -2.6f)), -3, 0);
+    CHECK_NEAR(record_value(&half, record_steps(&half, 3.7f)), 3.5, 0);
+    CHECK_NEAR(record_value(&half, record_steps(&half, -0.3f)), -0.5, 0);
     const float odd[6] = {0, -0.0f, INFINITY, -INFINITY, 1e-42f, 3e38f};
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < 2; k++) {
-            const float back = value_of(k ? &fine : &half, steps_of(k ? &fine : &half, odd[i]));
+            const float back = record_value(k ? &fine : &half, record_steps(k ? &fine : &half, odd[i]));
             if (isinf(odd[i])) CHECK(back == odd[i]);
             else if (i < 2) CHECK(back == 0);
             else CHECK(!isnan(back));
         }
-    CHECK(isnan(value_of(&half, steps_of(&half, NAN))) && isnan(value_of(&fine, steps_of(&fine, NAN))));
+    CHECK(isnan(record_value(&half, record_steps(&half, NAN))) && isnan(record_value(&fine, record_steps(&fine, NAN))));
     uint64_t worst = 0;
     for (uint32_t i = 0; i < 10000; i++) { /* error of 16 bits: half a step, 2^-17 of itself */
         const float value = (float)(1e-3 * exp(20 * random_uniform(1, 2, 3, i)));
-        const float back  = value_of(&fine, steps_of(&fine, value));
+        const float back  = record_value(&fine, record_steps(&fine, value));
         if (!(fabs((double)back - (double)value) <= ldexp((double)value, -17))) worst++;
-        CHECK(steps_of(&fine, back) == steps_of(&fine, value)); /* what is rounded stays */
+        CHECK(record_steps(&fine, back) == record_steps(&fine, value)); /* what is rounded stays */
     }
     CHECK(worst == 0);
 }
@@ -127,19 +127,19 @@ static void a_coded_plane_comes_back(void **state)
     for (uint32_t i = 0; i < width * height; i++)
         value[i] = i % 11 == 3 ? NAN : i % 13 == 5 ? INFINITY : (float)(600 * (random_uniform(4, 5, 6, i) - 0.5));
     for (int k = 0; k < 2; k++) {
-        code_plane(coded, value, width, height, &rounding[k]);
-        decode_plane(back, coded, width, height, &rounding[k]);
+        record_code_plane(coded, value, width, height, &rounding[k]);
+        record_decode_plane(back, coded, width, height, &rounding[k]);
         for (int i = 0; i < width * height; i++) {
-            const float want = value_of(&rounding[k], steps_of(&rounding[k], value[i]));
+            const float want = record_value(&rounding[k], record_steps(&rounding[k], value[i]));
             CHECK(isnan(want) ? isnan(back[i]) : back[i] == want);
         }
     }
     /* one step up and one down are small in both halves */
     const float stairs[3] = {1, 1.03125f, 1};
-    code_plane(coded, stairs, 3, 1, &rounding[1]);
+    record_code_plane(coded, stairs, 3, 1, &rounding[1]);
     CHECK(coded[0] == 0x400040 && coded[1] == 0x20002 && coded[2] == 0x10001);
     for (uint32_t i = 0; i < width * height; i++) coded[i] = (uint32_t)(4294967296.0 * random_uniform(7, 8, 9, i));
-    for (int k = 0; k < 2; k++) decode_plane(back, coded, width, height, &rounding[k]); /* any octets: no trap */
+    for (int k = 0; k < 2; k++) record_decode_plane(back, coded, width, height, &rounding[k]); /* any octets: no trap */
 }
 
 /* ---- frames ---------------------------------------------------------------------------------- */
@@ -151,7 +151,7 @@ static void make_frame(RecordFrame *f)
     *f = (RecordFrame){.number = 7, .width = 40, .height = 25};
     for (int p = 0; p < FRAME_PLANES; p++) {
         if (p == FRAME_OPTICAL_Y) continue;
-        if (frame_plane_is_id((FramePlane)p)) f->id_plane[p] = calloc(pixels, sizeof(uint32_t));
+        if (record_plane_is_id((RecordPlane)p)) f->id_plane[p] = calloc(pixels, sizeof(uint32_t));
         else f->number_plane[p] = calloc(pixels, sizeof(float));
         for (int i = 0; i < pixels; i++) {
             if (f->id_plane[p]) f->id_plane[p][i] = i < 500 ? 1 : 2;
@@ -161,7 +161,7 @@ static void make_frame(RecordFrame *f)
 }
 
 /* Spoils so many pixels of a plane, and asks what is said first. */
-static int first_failure(FramePlane plane, int count, float by, bool edges_allowed)
+static int first_failure(RecordPlane plane, int count, float by, bool edges_allowed)
 {
     RecordFrame     expected, got;
     const Tolerance tolerance = case_default().tolerance;
@@ -177,8 +177,8 @@ static int first_failure(FramePlane plane, int count, float by, bool edges_allow
     verdict_frame(result, &expected, &got, &tolerance, edges_allowed);
     for (int k = CHANNEL_COUNT - 1; k >= 0; k--)
         if (result[k].failed) first = k;
-    frame_free(&expected);
-    frame_free(&got);
+    record_frame_free(&expected);
+    record_frame_free(&got);
     return first;
 }
 
@@ -207,7 +207,7 @@ static void each_channel_has_its_own_limit(void **state)
 }
 
 /* Two pixels of a plane get a value; the line that is said of it. */
-static const char *line_of(char out[512], FramePlane plane, Channel channel, float was, float is)
+static const char *line_of(char out[512], RecordPlane plane, Channel channel, float was, float is)
 {
     RecordFrame     expected, got;
     const Tolerance tolerance = case_default().tolerance;
@@ -220,8 +220,8 @@ static const char *line_of(char out[512], FramePlane plane, Channel channel, flo
     }
     verdict_frame(result, &expected, &got, &tolerance, false);
     snprintf(out, 512, "%s", result[channel].failed ? result[channel].line : "");
-    frame_free(&expected);
-    frame_free(&got);
+    record_frame_free(&expected);
+    record_frame_free(&got);
     return out;
 }
 
@@ -239,7 +239,7 @@ static void what_has_no_number_is_said_in_words(void **state)
     for (int c = 0; c < CHANNEL_COUNT; c++) {
         const double odd[] = {INFINITY, -INFINITY, NAN, 0, 1};
         for (int i = 0; i < 5; i++) {
-            channel_value(value, (Channel)c, odd[i], 4);
+            verdict_channel_value(value, (Channel)c, odd[i], 4);
             CHECK(!strstr(value, "inf") && !strstr(value, "nan"));
         }
     }
@@ -343,14 +343,14 @@ static void materials_are_compared_by_name(void **state)
     RecordFrame run = {.width = 4, .height = 1, .material_names = after};
     record.id_plane[FRAME_MATERIAL] = was;
     run.id_plane[FRAME_MATERIAL] = is;
-    CHECK(frame_rename_materials(&run, &record) == STATUS_OK && memcmp(is, was, sizeof is) == 0);
+    CHECK(record_frame_rename_materials(&run, &record) == STATUS_OK && memcmp(is, was, sizeof is) == 0);
     run.material_names = more;
     run.id_plane[FRAME_MATERIAL] = other;
-    CHECK(frame_rename_materials(&run, &record) == STATUS_OK);
+    CHECK(record_frame_rename_materials(&run, &record) == STATUS_OK);
     CHECK(other[0] == 0 && other[1] == 1 && other[2] > 3 && other[3] > 3 && other[2] != other[3]);
     run.material_names = NULL; /* by number */
     run.id_plane[FRAME_MATERIAL] = was;
-    CHECK(frame_rename_materials(&run, &record) == STATUS_OK && was[3] == 3);
+    CHECK(record_frame_rename_materials(&run, &record) == STATUS_OK && was[3] == 3);
 }
 
 int main(void)

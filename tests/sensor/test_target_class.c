@@ -2,7 +2,7 @@
  * SISO-REF-010 says. */
 #include "tests/check.h"
 
-#include "sensor/publish/target_class.h"
+#include "sensor/frame/target_record.h"
 
 /* Never change a line of this list: recognisers have been trained with these numbers. Add behind it. */
 static void numbers_keep_their_names(void **state)

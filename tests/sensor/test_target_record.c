@@ -3,8 +3,7 @@
 #include "tests/check.h"
 #include "tests/sensor/open_catalog.h"
 
-#include "sensor/publish/target_class.h"
-#include "sensor/publish/target_record.h"
+#include "sensor/frame/target_record.h"
 
 /* Number of the pixel: counted row by row from the upper left, which is 1. */
 static uint64_t counted(int column, int row, int width)
@@ -30,23 +29,23 @@ static void a_box_in_every_form(void **state)
                     int       coco[4];
                     uint16_t  edge[4];
                     uint64_t  number[2];
-                    box_coco(coco, box);
-                    box_u16(edge, box);
-                    box_pixel_numbers(number, box, width);
+                    target_box_coco(coco, box);
+                    target_box_u16(edge, box);
+                    target_box_pixel_numbers(number, box, width);
                     CHECK(coco[0] == x0 && coco[1] == y0 && coco[0] + coco[2] == x1 && coco[1] + coco[3] == y1);
                     CHECK(edge[0] == x0 && edge[1] == y0 && edge[2] == x1 && edge[3] == y1);
                     CHECK(number[0] == counted(x0, y0, width) && number[1] == counted(x1 - 1, y1 - 1, width));
-                    const uint64_t centre = box_centre_number(box, width);
+                    const uint64_t centre = target_box_centre_number(box, width);
                     CHECK(centre == counted((x0 + x1) / 2, (y0 + y1) / 2, width));
-                    CHECK(!box_is_empty(box));
+                    CHECK(!target_box_is_empty(box));
                 }
     /* MISB ST 0903: the first pixel is 1, the last one of 640 x 480 is 307200 */
     const int whole[4] = {0, 0, 640, 480}, one[4] = {639, 479, 640, 480};
     uint64_t  number[2];
-    box_pixel_numbers(number, whole, 640);
-    CHECK(number[0] == 1 && number[1] == 307200 && box_centre_number(whole, 640) == 240 * 640 + 321);
-    box_pixel_numbers(number, one, 640);
-    CHECK(number[0] == 307200 && number[1] == 307200 && box_centre_number(one, 640) == 307200);
+    target_box_pixel_numbers(number, whole, 640);
+    CHECK(number[0] == 1 && number[1] == 307200 && target_box_centre_number(whole, 640) == 240 * 640 + 321);
+    target_box_pixel_numbers(number, one, 640);
+    CHECK(number[0] == 307200 && number[1] == 307200 && target_box_centre_number(one, 640) == 307200);
 }
 
 static void no_pixels_and_too_many(void **state)
@@ -55,11 +54,11 @@ static void no_pixels_and_too_many(void **state)
     const int none[4] = {0, 0, 0, 0}, huge[4] = {65534, 3, 70000, 65535};
     uint16_t  edge[4];
     uint64_t  number[2] = {9, 9};
-    box_pixel_numbers(number, none, 640);
-    CHECK(box_is_empty(none) && number[0] == 0 && number[1] == 0 && box_centre_number(none, 640) == 0);
-    box_u16(edge, none);
+    target_box_pixel_numbers(number, none, 640);
+    CHECK(target_box_is_empty(none) && number[0] == 0 && number[1] == 0 && target_box_centre_number(none, 640) == 0);
+    target_box_u16(edge, none);
     CHECK(edge[0] == 0 && edge[1] == 0 && edge[2] == 0 && edge[3] == 0);
-    box_u16(edge, huge);
+    target_box_u16(edge, huge);
     CHECK(edge[0] == 65534 && edge[1] == 3 && edge[2] == 65535 && edge[3] == 65535);
 }
 

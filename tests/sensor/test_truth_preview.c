@@ -1,7 +1,7 @@
 /* The truth picture: sky, ground and entities tell apart, and an entity keeps its colour. */
 #include "tests/check.h"
 
-#include "sensor/publish/truth_preview.h"
+#include "sensor/publish/files/frame_files.h"
 
 static void pixels_say_what_they_are(void **state)
 {
@@ -11,7 +11,7 @@ static void pixels_say_what_they_are(void **state)
     const float    range_m[] = {INFINITY, 100, 1000, 10000, 100, 10000, 100, NAN, 0};
     const uint32_t index[] = {0, 0, 0, 0, 1, 1, 2, 0, 99};
     uint8_t        rgb[9][3];
-    truth_preview(&rgb[0][0], range_m, index, NULL, 9, &snapshot);
+    frame_files_preview(&rgb[0][0], range_m, index, NULL, 9, &snapshot);
 
     CHECK(rgb[0][2] > rgb[0][0] + 20);                             /* sky is blue */
     assert_memory_equal(rgb[7], rgb[0], 3);                        /* and so is no range at all */
@@ -28,7 +28,7 @@ static void pixels_say_what_they_are(void **state)
     const uint32_t one = 1;
     const float    near_m = 100;
     uint8_t        again[3];
-    truth_preview(again, &near_m, &one, NULL, 1, &later);
+    frame_files_preview(again, &near_m, &one, NULL, 1, &later);
     assert_memory_equal(again, rgb[6], 3);
 }
 

@@ -10,7 +10,7 @@ int main(void)
     return 77;
 }
 #else
-#include "sensor/publish/display.h"
+#include "sensor/frame/frame_display.h"
 #include "sensor/publish/video/consume_video.h"
 
 #include <dlfcn.h>

@@ -7,8 +7,8 @@
 #include "sensor/settings/publish_choice.h"
 
 #ifdef PITVIPER_VIDEO
-#include "sensor/publish/video/encoder.h"
-#include "sensor/publish/video/video_pixels.h"
+#include "sensor/publish/video/video_encoder.h"
+#include "sensor/publish/video/video_encoder.h"
 
 #include <libavcodec/avcodec.h>
 
@@ -40,14 +40,14 @@ static size_t encode_all(uint8_t *out, const EncoderConfig *config, bool check_k
 {
     static uint16_t wide[width * height * 3];
     static uint8_t  narrow[width * height * 3];
-    const int       planes = config->colour ? 3 : 1, bits = encoder_bits(config->codec);
+    const int       planes = config->colour ? 3 : 1, bits = video_encoder_bits(config->codec);
     Encoder        *encoder;
     size_t          used = 0;
-    assert_int_equal(encoder_open(&encoder, config), STATUS_OK);
+    assert_int_equal(video_encoder_open(&encoder, config), STATUS_OK);
     for (int f = 0; f < frames; f++) {
         VideoPacket packet;
         draw(wide, config->width, config->height, planes, f, bits);
-        assert_int_equal(encoder_encode(&packet, encoder,
+        assert_int_equal(video_encoder_encode(&packet, encoder,
                                         image_of(narrow, wide, config->width * config->height * planes, bits), f == 3, 1780000000000000 + f),
                          STATUS_OK);
         CHECK(packet.count > 0 && used + packet.count <= octets_most);
@@ -55,7 +55,7 @@ static size_t encode_all(uint8_t *out, const EncoderConfig *config, bool check_k
         memcpy(out + used, packet.bytes, packet.count);
         used += packet.count;
     }
-    encoder_close(encoder);
+    video_encoder_close(encoder);
     return used;
 }
 
@@ -76,12 +76,12 @@ static void decoded_error(double *rms, double *worst, const EncoderConfig *confi
 {
     static uint16_t wide[width * height * 3];
     static uint8_t  narrow[width * height * 3];
-    const int       planes = config->colour ? 3 : 1, bits = encoder_bits(config->codec);
+    const int       planes = config->colour ? 3 : 1, bits = video_encoder_bits(config->codec);
     const size_t    count = (size_t)(config->width * config->height * planes);
     Encoder        *encoder;
-    assert_int_equal(encoder_open(&encoder, config), STATUS_OK);
+    assert_int_equal(video_encoder_open(&encoder, config), STATUS_OK);
     AVCodecParameters *parameters = avcodec_parameters_alloc();
-    assert_int_equal(encoder_parameters(parameters, encoder), STATUS_OK);
+    assert_int_equal(video_encoder_parameters(parameters, encoder), STATUS_OK);
     AVCodecContext *decoder = avcodec_alloc_context3(avcodec_find_decoder(parameters->codec_id));
     /* of the others all is in the packets */
     if (config->codec == VIDEO_FFV1) avcodec_parameters_to_context(decoder, parameters);
@@ -96,7 +96,7 @@ static void decoded_error(double *rms, double *worst, const EncoderConfig *confi
     for (int f = 0; f < frames; f++) {
         VideoPacket coded;
         draw(wide, config->width, config->height, planes, f, bits);
-        assert_int_equal(encoder_encode(&coded, encoder, image_of(narrow, wide, (int)count, bits), f == start, -1),
+        assert_int_equal(video_encoder_encode(&coded, encoder, image_of(narrow, wide, (int)count, bits), f == start, -1),
                          STATUS_OK);
         if (f < start) continue; /* joins in the middle */
         assert_int_equal(av_new_packet(packet, (int)coded.count), 0);
@@ -140,7 +140,7 @@ static void decoded_error(double *rms, double *worst, const EncoderConfig *confi
     av_packet_free(&packet);
     avcodec_free_context(&decoder);
     avcodec_parameters_free(&parameters);
-    encoder_close(encoder);
+    video_encoder_close(encoder);
 }
 
 /* The image's noise is 2, 8, 32 of these levels: the error is smaller, and in 10 and 12 bits half of it. */
@@ -154,8 +154,8 @@ static void grey_levels_come_back(void **state)
             double              rms, worst;
             decoded_error(&rms, &worst, &config, start);
             print_message("codec %d from frame %d: rms %.2f, worst %.0f of %d levels, PSNR %.1f dB\n", codec, start,
-                          rms, worst, 1 << encoder_bits(config.codec),
-                          20 * log10(((1 << encoder_bits(config.codec)) - 1) / fmax(rms, 1e-9)));
+                          rms, worst, 1 << video_encoder_bits(config.codec),
+                          20 * log10(((1 << video_encoder_bits(config.codec)) - 1) / fmax(rms, 1e-9)));
             CHECK_NEAR(rms, 0, most_rms[codec]);
         }
 }

@@ -1,4 +1,4 @@
-"""Data PDUs as sensor/publish/dis_records.h describes them, read from recordings: used by test_replay_publishes.sh, test_five_records.sh
+"""Data PDUs as sensor/publish/dis/consume_dis.h describes them, read from recordings: used by test_replay_publishes.sh, test_five_records.sh
 and test_live_radar.sh.
 
     data_pdus.py receive ADDRESS PORT FILE     datagrams to ADDRESS:PORT into FILE, a line of hex each, until a line

@@ -33,7 +33,7 @@ def coco(folder):
     return found
 
 def data_pdu(folder):
-    """opendis reads the PDU and its datums; the octets of a datum are this program's own, as dis_records.h has them."""
+    """opendis reads the PDU and its datums; the octets of a datum are this program's own, as consume_dis.h has them."""
     from opendis.PduFactory import createPdu
     found = {}
     for line in open(f"{folder}/pdus"):

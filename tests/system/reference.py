@@ -355,8 +355,8 @@ def main():
             take_data_pdus(topics[name], these)
             runs_data_pdu(topics[name], pdus, prints)
     rows = [(t, r) for t in topics.values() for r in t.rows.values()]
-    # counters of a flood are written when they count: sensor/publish/records.c names them
-    source = open("sensor/publish/records.c").read()
+    # counters of a flood are written when they count: sensor/frame/run_record.c names them
+    source = open("sensor/frame/run_record.c").read()
     for topic, row in rows:
         if row.absent == "when 0": check(f'"{row.path.split(".")[-1]}"' in source, topic.name, row.path, "is never written")
         else: check(row.found, topic.name, row.path, "is in the reference and in no product")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # One record of a target, five formats: the same frames' targets from truth.jsonl, coco.json, Data PDUs, ST 0903 and shared
 # memory, each read by a reader of its own, have the same box once each format's index base is taken off; and a box that
-# is off by one in any of them is noticed. What sensor/publish/target_record.h says of COCO's box is shown.
+# is off by one in any of them is noticed. What sensor/frame/target_record.h says of COCO's box is shown.
 . "$(dirname "$0")/common.sh"
 judges ffmpeg python3.numpy python3.pycocotools python3.opendis python3.stanag4609 python3.tstrans
 needs "video: built without FFmpeg's libraries" has_video

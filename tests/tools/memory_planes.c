@@ -2,7 +2,7 @@
  * to the bit, those of the files of the same run: OUT/frames/BAND/FRAME.exr; where OUT/raw/BAND/FRAME.png is, its counts.
  *
  * Prints how many planes are the same. Exit code 0: all are, and there is one at least. */
-#include "sensor/publish/image_file.h"
+#include "sensor/publish/images/image_file.h"
 
 #include <dirent.h>
 #include <stdlib.h>

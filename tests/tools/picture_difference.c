@@ -14,7 +14,7 @@
  *           its four neighbours; 1 is at the edge
  *
  * Exit code 0: compared. 2: nothing to compare, or frames that one of them lacks. */
-#include "sensor/publish/image_file.h"
+#include "sensor/publish/images/image_file.h"
 
 #include <dirent.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* sensor/bench/sensor/speed_files.c: the work after a frame: its files; and the memory of the process. */
 #include "sensor/bench/sensor/speed_private.h"
 
-#include "sensor/publish/frame_files.h"
-#include "sensor/publish/image_file.h"
+#include "sensor/publish/files/frame_files.h"
+#include "sensor/publish/images/image_file.h"
 #include "terrain/landscape/quick_landscape.h"
 
 #include <stdlib.h>
@@ -23,7 +23,7 @@ static void encode(void *user)
     Encode *e = user;
     arena_reset(e->arena);
     e->status = STATUS_OK;
-    if (e->files.png) e->status = displays_make(e->display, &e->shown, e->files.request->bands, e->pool, e->arena);
+    if (e->files.png) e->status = frame_displays_make(e->display, &e->shown, e->files.request->bands, e->pool, e->arena);
     if (e->status == STATUS_OK) e->status = frame_files_write(e->hash, &e->files, e->pool);
 }
 

@@ -4,7 +4,7 @@
 #include "sensor/bench/sensor/network_node.h"
 #include "sensor/bench/sensor/speed_private.h"
 #include "sensor/settings/config.h"
-#include "sensor/world/frame_world.h"
+#include "sensor/frame/frame_world.h"
 
 #include <dirent.h>
 #include <fcntl.h>

@@ -4,7 +4,7 @@
 
 #include "sensor/commands/heat/heat_day.h"
 #include "sensor/commands/overwrite.h"
-#include "sensor/publish/html.h"
+#include "sensor/publish/files/html_page.h"
 #include "sensor/settings/command_line.h"
 #include "sensor/settings/config.h"
 

@@ -7,8 +7,8 @@
 #include "render/scene/upright.h"
 #include "sensor/detector/level.h"
 #include "sensor/detector/quantise.h"
-#include "sensor/publish/image_file.h"
-#include "sensor/publish/letters.h"
+#include "sensor/publish/images/image_file.h"
+#include "sensor/publish/images/picture_text.h"
 
 #include <stdlib.h>
 

@@ -9,9 +9,9 @@
 #include "sensor/detector/colour.h"
 #include "sensor/detector/level.h"
 #include "sensor/detector/quantise.h"
-#include "sensor/publish/image_file.h"
-#include "sensor/publish/letters.h"
-#include "sensor/publish/model_record.h"
+#include "sensor/publish/images/image_file.h"
+#include "sensor/publish/images/picture_text.h"
+#include "sensor/publish/files/model_record.h"
 #include "sensor/settings/command_line.h"
 #include "sensor/settings/config.h"
 

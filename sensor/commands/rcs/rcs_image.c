@@ -2,8 +2,8 @@
  * profiles. */
 #include "sensor/commands/rcs/rcs_private.h"
 
-#include "sensor/publish/letters.h"
-#include "sensor/publish/image_file.h"
+#include "sensor/publish/images/picture_text.h"
+#include "sensor/publish/images/image_file.h"
 
 #include <stdlib.h>
 

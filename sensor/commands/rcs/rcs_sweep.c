@@ -1,7 +1,7 @@
 /* sensor/commands/rcs/rcs_sweep.c: computes a target's fields over aspect and frequency; their table and polar plot. */
 #include "sensor/commands/rcs/rcs_private.h"
 
-#include "sensor/publish/html.h"
+#include "sensor/publish/files/html_page.h"
 
 #include <stdlib.h>
 

@@ -4,7 +4,7 @@
 
 #include "pitviper_output.h"
 #include "sensor/node/run/stop.h"
-#include "sensor/publish/frame_files.h"
+#include "sensor/publish/files/frame_files.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -170,17 +170,17 @@ static Status look_at_first(const SweepRun *s, SweepLook *look)
     return status;
 }
 
-static bool is_run(const MadeRun *run, const SweepRun *s, const Variant *v)
+static bool is_run(const VariantRun *run, const SweepRun *s, const Variant *v)
 {
     return strcmp(run->version, PITVIPER_VERSION) == 0 && strcmp(run->config_sha256, v->config_sha256) == 0 &&
            strcmp(run->log_sha256, s->log_sha256) == 0;
 }
 
-static bool read_run(MadeRun *out, const char *folder, const char *name)
+static bool read_run(VariantRun *out, const char *folder, const char *name)
 {
     char path[path_size + 32];
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    return made_run_read(out, path);
+    return variant_run_read(out, path);
 }
 
 static bool has_coco(const char *folder)
@@ -197,14 +197,14 @@ static Status check_folders(const SweepRun *s)
     Status status = STATUS_OK;
     for (int i = 0; i < s->count && status == STATUS_OK && !s->options->overwrite; i++) {
         const Variant *v = &s->variant[i];
-        MadeRun        run;
+        VariantRun        run;
         snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name);
         bool other = read_run(&run, folder, "run.json") && run.complete && !is_run(&run, s, v);
-        made_run_free(&run);
+        variant_run_free(&run);
         /* settings outside of config_sha256: time span, planes */
         if (!other && read_run(&run, folder, "variant.json")) {
             other = strcmp(run.settings_sha256, v->settings_sha256) != 0;
-            made_run_free(&run);
+            variant_run_free(&run);
         }
         if (!other) continue;
         log_error("sweep: %s holds a run of another log, other settings or another version; choose another folder "
@@ -232,13 +232,13 @@ static Status open_products(SweepRun *s)
 /* Whether the folder holds a complete run of these settings; its run.json is then in the outcome. */
 static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, bool coco)
 {
-    MadeRun    variant, run;
+    VariantRun    variant, run;
     const bool whole = read_run(&variant, folder, "variant.json") && is_run(&variant, s, v) &&
                        strcmp(variant.settings_sha256, v->settings_sha256) == 0 && (!coco || has_coco(folder));
     const bool kept  = read_run(&run, folder, "run.json") && whole && is_run(&run, s, v) && run.complete;
-    made_run_free(&variant);
+    variant_run_free(&variant);
     if (kept) *outcome = (Outcome){.status = "kept", .has_run = true, .run = run};
-    else made_run_free(&run);
+    else variant_run_free(&run);
     return kept;
 }
 
@@ -397,7 +397,7 @@ static Status one_variant(SweepRun *s, int place)
     }
     free(text);
     if (status == STATUS_OK && outcome.has_run && has_coco(folder)) status = coco_merge_add(s->coco, v->name);
-    made_run_free(&outcome.run);
+    variant_run_free(&outcome.run);
     return status;
 }
 

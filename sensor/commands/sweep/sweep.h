@@ -8,7 +8,7 @@
  *         coco.json          with publish.coco
  *     OUT/manifest.jsonl     a line per variant: status made, kept or failed, settings, folder, hashes of its frames
  *     OUT/manifest.html      thumbnails and settings
- *     OUT/coco.json          of all variants that have one (sensor/publish/coco_merge.h)
+ *     OUT/coco.json          of all variants that have one (sensor/publish/coco/coco_file.h)
  *
  * A variant is a run with the given options and the values of the axes over them: settings are passed in
  * settings.yaml, which must read back equal, every other option on the command line of the variant (options_variant).

@@ -1,7 +1,7 @@
 /* sensor/commands/sweep/sweep_draw.c: `mode: random`: draws values of all axes from one seed, without repetition. */
 #include "sensor/commands/sweep/sweep_private.h"
 
-#include "sensor/publish/plane_hash.h"
+#include "sensor/frame/plane.h"
 
 #include <stdlib.h>
 

@@ -4,8 +4,8 @@
 
 #include "pitviper_output.h"
 #include "render/frame/render.h"
-#include "sensor/publish/html.h"
-#include "sensor/publish/image_file.h"
+#include "sensor/publish/files/html_page.h"
+#include "sensor/publish/images/image_file.h"
 
 #include <errno.h>
 #include <stdlib.h>

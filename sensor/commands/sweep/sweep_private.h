@@ -4,8 +4,8 @@
 #define SENSOR_COMMANDS_SWEEP_SWEEP_PRIVATE_H
 
 #include "sensor/commands/sweep/sweep.h"
-#include "sensor/publish/coco_merge.h"
-#include "sensor/publish/variant_record.h"
+#include "sensor/publish/coco/coco_file.h"
+#include "sensor/publish/files/variant_record.h"
 
 /* ---- drawn values ----------------------------------------------------------------------------------- */
 
@@ -49,7 +49,7 @@ typedef struct SweepRun {
 typedef struct Outcome {
     const char *status;
     bool        has_run;
-    MadeRun     run;           /* run.json */
+    VariantRun     run;           /* run.json */
     char        why[400];      /* of a failure */
     double      seconds;
 } Outcome;

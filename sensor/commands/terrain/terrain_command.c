@@ -5,7 +5,7 @@
 #include "pitviper_output.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/node/run/stop.h"
-#include "sensor/publish/json_write.h"
+#include "sensor/frame/json_object.h"
 #include "sensor/settings/command_line.h"
 #include "terrain/import/terrain_import.h"
 
@@ -76,8 +76,8 @@ static void add_source(json_t *list, const ElevationSurvey *s)
     json_object_set_new(source, "above", json_string(datum));
     json_object_set_new(source, "above_from", json_string(datum_from));
     json_object_set_new(source, "looked_at", json_real(s->posts));
-    set_number(source, "low_m", s->low_m);
-    set_number(source, "high_m", s->high_m);
+    json_set_number(source, "low_m", s->low_m);
+    json_set_number(source, "high_m", s->high_m);
     json_object_set_new(source, "voids_declared", json_real(s->voids));
     json_object_set_new(source, "no_heights_on_earth", json_real(s->outside));
     json_object_set_new(source, "suspected_voids", suspects);
@@ -158,23 +158,23 @@ static Status print_json(const char *store, const TerrainReport *r, double secon
     json_object_set_new(all, "spacing_m", json_real(e->spacing_m));
     json_object_set_new(all, "width_m", pair_of(e->width_m[0], e->width_m[1]));
     json_object_set_new(all, "ellipsoidal", json_boolean(e->ellipsoidal));
-    if (!e->ellipsoidal) set_number(all, "geoid_m", e->geoid_m);
+    if (!e->ellipsoidal) json_set_number(all, "geoid_m", e->geoid_m);
     json_object_set_new(all, "voids_filled", json_integer(e->voids));
     json_object_set_new(all, "voids_filled_from_coarser", json_integer(e->voids_coarser));
     if (e->places > 0) {
-        set_number(all, "resampling_rms_m", e->error_rms_m);
-        set_number(all, "resampling_p99_m", e->error_p99_m);
-        set_number(all, "resampling_max_m", e->error_max_m);
+        json_set_number(all, "resampling_rms_m", e->error_rms_m);
+        json_set_number(all, "resampling_p99_m", e->error_p99_m);
+        json_set_number(all, "resampling_max_m", e->error_max_m);
     }
-    set_number(all, "quantisation_max_m", r->store.worst_m[0]);
+    json_set_number(all, "quantisation_max_m", r->store.worst_m[0]);
     json_object_set_new(all, "buildings", json_integer((json_int_t)r->store.buildings));
     json_object_set_new(all, "crowns", json_integer((json_int_t)r->store.crowns));
     for (int s = 1; s < SURFACE_COUNT; s++)
-        if (r->cover.share[s] > 0) set_number(classes, surface_name((SurfaceClass)s), r->cover.share[s]);
+        if (r->cover.share[s] > 0) json_set_number(classes, surface_name((SurfaceClass)s), r->cover.share[s]);
     json_object_set_new(all, "classes", classes);
     if (r->cover.posting_m > 0) json_object_set_new(all, "cover_table", json_string(r->cover.table));
     json_object_set_new(all, "octets", json_integer((json_int_t)r->store.octets));
-    set_number(all, "seconds", seconds);
+    json_set_number(all, "seconds", seconds);
     char        *text = json_dumps(all, JSON_INDENT(1) | JSON_REAL_PRECISION(12));
     const Status status = text ? STATUS_OK : STATUS_NO_MEMORY;
     if (text) printf("%s\n", text);

@@ -4,8 +4,8 @@
 
 #include "pitviper_output.h"
 #include "sensor/commands/overwrite.h"
-#include "sensor/publish/image_file.h"
-#include "sensor/publish/letters.h"
+#include "sensor/publish/images/image_file.h"
+#include "sensor/publish/images/picture_text.h"
 #include "sensor/settings/command_line.h"
 #include "terrain/import/terrain_import.h"
 #include "terrain/store/store.h"

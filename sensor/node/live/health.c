@@ -378,7 +378,7 @@ void health_summary(const LiveCounters *c, const HealthSample *s, uint64_t own)
     log_info("run: %llu datagrams heard, %llu of them our own; lost %llu; frames made %llu, left out %llu%s",
              (unsigned long long)c->datagrams, (unsigned long long)own, (unsigned long long)(c->lost_kernel + c->lost_queue),
              (unsigned long long)frames, (unsigned long long)c->frames_late, sent);
-    const double   share = live_kept_share(c, frames);
+    const double   share = record_live_kept_share(c, frames);
     if (frames > 0 && share < enough_share)
         log_warn("run: kept %.3g of %g frames a second, fewer than half: lower sensor.rate_hz (--rate), the size, or the "
                  "quality (quality.budget, sensor.samples), or render fewer bands", share * c->rate_hz, c->rate_hz);

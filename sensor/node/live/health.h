@@ -7,7 +7,7 @@
 #define SENSOR_NODE_LIVE_HEALTH_H
 
 #include "dis/log.h"
-#include "sensor/publish/records.h"
+#include "sensor/frame/records.h"
 
 typedef enum HealthTopic { HEALTH_RECEIVE, HEALTH_RENDER, HEALTH_SEND, HEALTH_LOSS, HEALTH_PACE, HEALTH_TOPICS } HealthTopic;
 

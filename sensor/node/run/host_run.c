@@ -3,13 +3,13 @@
 
 #include "dis/log.h"
 #include "sensor/node/choices/choices.h"
-#include "sensor/publish/frame_files.h"
-#include "sensor/publish/image_file.h"
+#include "sensor/publish/files/frame_files.h"
+#include "sensor/publish/images/image_file.h"
 #include "sensor/publish/memory/consume_memory.h"
 #include "sensor/publish/video/consume_video.h"
 #include "sensor/quality/quality.h"
 #include "sensor/settings/publish_choice.h"
-#include "sensor/world/frame_world.h"
+#include "sensor/frame/frame_world.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* sensor/node/session/session.c: the seeker of one host: frames rendered, passed to consumers, and listed. */
 #include "sensor/node/session/session_private.h"
 
-#include "sensor/world/frame_radar.h"
+#include "sensor/frame/frame_world.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -6,11 +6,11 @@
 #include "render/frame/render.h"
 #include "sensor/node/choices/choices.h"
 #include "sensor/node/player/player.h"
-#include "sensor/publish/consume_dis.h"
+#include "sensor/publish/dis/consume_dis.h"
 #include "sensor/settings/sensors.h"
-#include "sensor/publish/answer_counters.h"
-#include "sensor/publish/plane_hash.h"
-#include "sensor/publish/records.h"
+#include "sensor/frame/publish_counters.h"
+#include "sensor/frame/plane.h"
+#include "sensor/frame/records.h"
 #include "pitviper.h"
 
 /* Shared by all hosts of one run. */

@@ -2,7 +2,7 @@
 #include "sensor/node/session/session_private.h"
 
 #include "sensor/publish/memory/consume_memory.h"
-#include "sensor/publish/pairs.h"
+#include "sensor/publish/consumers/consume_pairs.h"
 #include "sensor/publish/video/consume_video.h"
 
 #include <stdlib.h>
@@ -184,7 +184,7 @@ static Status add_queue(Session *s, Consumers *behind, QueueRule rule, QueueCoun
     Consumer *consumer = NULL;
     if (behind->count == 0) return STATUS_OK;
     consumers_expect(behind, s->latency);
-    const Status status = frame_queue_open(&consumer, behind, rule, counters);
+    const Status status = consumer_queue_open(&consumer, behind, rule, counters);
     if (status == STATUS_OK) s->queues++;
     return status == STATUS_OK ? consumers_add(&s->consumers, consumer) : status;
 }

@@ -2,10 +2,9 @@
  * measured, its record. */
 #include "sensor/node/session/session_private.h"
 
-#include "sensor/framefile/frame_save.h"
-#include "sensor/publish/pairs.h"
-#include "sensor/world/frame_radar.h"
-#include "sensor/world/frame_world.h"
+#include "sensor/verify/saved_frame/frame_save.h"
+#include "sensor/publish/consumers/consume_pairs.h"
+#include "sensor/frame/frame_world.h"
 
 /* The image motion of a stationary point at the image centre. */
 static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *picture)
@@ -53,7 +52,7 @@ static Status look(FrameView *view, const Session *s, const RenderRequest *reque
     const Status status =
         render(&view->picture, s->shared->world, &view->snapshot, request, air, s->shared->pool, arena);
     if (status != STATUS_OK) return status;
-    if (view->picture.normal[0]) turn_normals(&view->picture, r_host_from_enu);
+    if (view->picture.normal[0]) frame_turn_normals(&view->picture, r_host_from_enu);
     view->plane_count = frame_planes(view->plane, &view->picture, request);
     return STATUS_OK;
 }
@@ -197,7 +196,7 @@ Status session_make_frame(bool *shown, int *left_out, Frame *f, Session *s, int 
     if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
     fill_record(f, s, &eye);
     if (s->wants & WANT_FOOTPRINT) {
-        footprint_of_view(f->footprint, shared->world, &eye.view);
+        truth_footprint(f->footprint, shared->world, &eye.view);
         f->record.footprint = f->footprint;
     }
     f->radar = NULL;

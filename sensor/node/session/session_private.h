@@ -3,12 +3,12 @@
 #define SENSOR_NODE_SESSION_SESSION_PRIVATE_H
 
 #include "render/frame/world_vehicles.h"
-#include "sensor/world/frame_light.h"
+#include "sensor/frame/frame_world.h"
 #include "sensor/node/session/seeker.h"
 #include "sensor/node/player/player.h"
 #include "sensor/node/session/session.h"
-#include "sensor/publish/consumers.h"
-#include "sensor/publish/frame_queue.h"
+#include "sensor/publish/consumers/consumers.h"
+#include "sensor/publish/consumers/consumer.h"
 #include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/memory/detections.h"
 #include "sensor/radar/seeker_radar.h"

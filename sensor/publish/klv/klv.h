@@ -6,13 +6,12 @@
 #ifndef SENSOR_PUBLISH_KLV_KLV_H
 #define SENSOR_PUBLISH_KLV_KLV_H
 
-#include "sensor/publish/records.h"
+#include "sensor/frame/records.h"
 #include "terrain/earth/geoid.h"
 
 enum {
     klv_most_octets  = 8192, /* of a packet; it is below 600 without targets */
     klv_most_targets = 64,   /* reported in one packet */
-    klv_au_octets    = 5,    /* header of a metadata access unit cell */
     klv_version = 19, klv_vmti_version = 6,
 };
 
@@ -55,9 +54,5 @@ size_t klv_frame(uint8_t out[klv_most_octets], const FrameRecord *record, double
 /* The record's targets that are visible, largest first, as truth. out->target: kept, [klv_most_targets]. The id is the
  * entity's: site << 32 | application << 16 | entity. */
 void klv_truth_targets(KlvTargets *out, KlvTarget kept[klv_most_targets], const FrameRecord *record);
-
-/* The header before a packet of `octets` in a synchronous metadata stream (ISO/IEC 13818-1, metadata AU cell): service
- * 0, a whole cell that can be decoded alone. sequence: one more for each cell. False: too long for one cell. */
-bool klv_au_header(uint8_t out[klv_au_octets], unsigned sequence, size_t octets);
 
 #endif

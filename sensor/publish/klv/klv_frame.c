@@ -221,11 +221,3 @@ size_t klv_frame(uint8_t out[klv_most_octets], const FrameRecord *record, double
     klv_put_number(&w, klv_checksum(out, w.used), 2);
     return items.full || w.full ? 0 : w.used;
 }
-
-bool klv_au_header(uint8_t out[klv_au_octets], unsigned sequence, size_t octets)
-{
-    if (octets > UINT16_MAX) return false;
-    const uint8_t header[klv_au_octets] = {0, (uint8_t)sequence, 0xDF, (uint8_t)(octets >> 8), (uint8_t)octets};
-    memcpy(out, header, sizeof header);
-    return true;
-}

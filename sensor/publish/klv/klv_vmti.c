@@ -1,5 +1,8 @@
 /* sensor/publish/klv/klv_vmti.c: the ST 0903 VMTI local set: targets, the algorithms that found them, their classes. */
+
 #include "sensor/publish/klv/klv_private.h"
+#include "sensor/publish/klv/klv.h"
+#include "sensor/frame/target_record.h"
 
 enum {
     most_classes = 16, most_algorithms = 4, /* named in one packet */
@@ -59,8 +62,8 @@ static void put_target(KlvWriter *w, const View *view, const KlvTarget *t, int c
     if (has_box(view, t->box)) {
         const double area_px = (double)(t->box[2] - t->box[0]) * (t->box[3] - t->box[1]);
         uint64_t number[2];
-        box_pixel_numbers(number, t->box, view->width);
-        klv_item_short(w, 1, box_centre_number(t->box, view->width));
+        target_box_pixel_numbers(number, t->box, view->width);
+        klv_item_short(w, 1, target_box_centre_number(t->box, view->width));
         klv_item_short(w, 2, number[0]);
         klv_item_short(w, 3, number[1]);
         if (t->pixels > 0) percent = clamp(floor(100 * t->pixels / area_px + 0.5), 1, 100);
@@ -182,4 +185,36 @@ void klv_vmti(KlvWriter *w, const FrameRecord *record, uint64_t time_us, const K
     put_algorithms(w, &names, targets->truth);
     put_classes(w, &names, targets->truth);
     w->full |= series.full;
+}
+
+/* ---- the targets of a frame's truth as targets of the metadata, marked as truth ------------------ */
+
+static KlvTarget truth_target(const TargetRecord *t)
+{
+    const DisEntityId id  = t->id;
+    KlvTarget         out = {.id = (uint64_t)id.site << 32 | (uint64_t)id.application << 16 | id.entity,
+                             .confidence = NAN, .pixels = t->pixels, .algorithm = "truth",
+                             .algorithm_version = PITVIPER_VERSION, .class_name = target_class_name(t->class_number)};
+    memcpy(out.box, t->box, sizeof out.box);
+    out.located = geodetic_from_ecef(&out.place, t->p_ecef) == STATUS_OK;
+    return out;
+}
+
+void klv_truth_targets(KlvTargets *out, KlvTarget kept[klv_most_targets], const FrameRecord *r)
+{
+    const TargetRecord *largest[klv_most_targets];
+    *out = (KlvTargets){.truth = true, .target = kept};
+    for (int i = 0; i < r->target_count; i++) {
+        const TargetRecord *t = &r->target[i];
+        if (!(t->pixels > 0) || target_box_is_empty(t->box)) continue;
+        out->total++;
+        int at = out->count; /* behind all that are as large */
+        while (at > 0 && largest[at - 1]->pixels < t->pixels) at--;
+        if (at == klv_most_targets) continue;
+        const int moved = (out->count < klv_most_targets ? out->count : klv_most_targets - 1) - at;
+        memmove(&largest[at + 1], &largest[at], (size_t)moved * sizeof *largest);
+        largest[at] = t;
+        if (out->count < klv_most_targets) out->count++;
+    }
+    for (int k = 0; k < out->count; k++) kept[k] = truth_target(largest[k]);
 }

@@ -1,10 +1,10 @@
 /* sensor/publish/memory/consume_memory.h: the consumer that writes each frame into a ring in shared memory, for
- * recognisers on this machine (etc/reference/memory.md). It never waits, so it belongs in the rendering thread, before
- * the other consumers. */
+ * recognisers on this machine (etc/reference/memory.md). It never waits, so it belongs in the rendering thread,
+ * before the other consumers. */
 #ifndef SENSOR_PUBLISH_MEMORY_CONSUME_MEMORY_H
 #define SENSOR_PUBLISH_MEMORY_CONSUME_MEMORY_H
 
-#include "sensor/publish/consumer.h"
+#include "sensor/publish/consumers/consumer.h"
 #include "sensor/settings/config.h"
 
 typedef struct MemoryOf {

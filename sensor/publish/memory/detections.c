@@ -1,7 +1,9 @@
-/* sensor/publish/memory/detections.c: receives detections on loopback and keeps the newest of each band. */
+/* sensor/publish/memory/detections.c: detections received on loopback: checked, the newest of each band kept, all
+ * written to answers.jsonl. */
 #include "sensor/publish/memory/detections.h"
-
-#include "sensor/publish/memory/answers.h"
+#include "pitviper_output.h"
+#include "render/scene/view.h"
+#include "sensor/frame/json_object.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -13,6 +15,171 @@
 #include <stdlib.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
+#include <pitviper_memory.h>
+#include <stdio.h>
+
+/* ---- a datagram of detections, checked ----------------------------------------------------------- */
+
+const char *const detections_reason_name[DETECTIONS_REASONS] = {
+    "good", "size", "magic", "byte_order", "version", "count", "band", "box", "score", "text", "reserved_octets",
+    "unknown_frame", "late", "repeated"};
+
+/* Printable ASCII up to the first 0, then zeros to the end. */
+static bool text_is_good(const char *text, size_t size)
+{
+    size_t n = 0;
+    while (n < size && text[n] >= 0x20 && text[n] <= 0x7e) n++;
+    if (n == size) return false;
+    for (; n < size; n++)
+        if (text[n]) return false;
+    return true;
+}
+
+static DetectionsReason check_one(const PitviperDetection *d, float width, float height)
+{
+    if (!(d->left >= 0 && d->right > d->left && d->right <= width && d->top >= 0 && d->bottom > d->top &&
+          d->bottom <= height)) return DETECTIONS_BOX; /* NaN too */
+    if (!(d->score >= 0 && d->score <= 1)) return DETECTIONS_SCORE;
+    if (!text_is_good(d->class_name, sizeof d->class_name)) return DETECTIONS_TEXT;
+    return d->reserved[0] || d->reserved[1] ? DETECTIONS_RESERVED : DETECTIONS_GOOD;
+}
+
+/* A detection of version 1: its class is shorter. */
+typedef struct DetectionOf1 {
+    float    left, top, right, bottom, score;
+    uint32_t track;
+    char     class_name[16];
+    uint32_t reserved[2];
+} DetectionOf1;
+_Static_assert(sizeof(DetectionOf1) == 48, "as version 1 was laid out");
+
+/* The class needs its 0 within its own room, whatever follows it here. */
+static bool from_1(PitviperDetection *out, const uint8_t *bytes)
+{
+    DetectionOf1 d;
+    memcpy(&d, bytes, sizeof d);
+    *out = (PitviperDetection){.left = d.left, .top = d.top, .right = d.right, .bottom = d.bottom, .score = d.score,
+                               .track = d.track, .reserved = {d.reserved[0], d.reserved[1]}};
+    memcpy(out->class_name, d.class_name, sizeof d.class_name);
+    return d.class_name[sizeof d.class_name - 1] == 0;
+}
+
+DetectionsReason detections_parse(PitviperDetections *out, const uint8_t *bytes, size_t size, unsigned bands, int width,
+                                  int height)
+{
+    const size_t head = PITVIPER_DETECTIONS_SIZE(0);
+    if (size < head || size > sizeof *out) return DETECTIONS_SIZE;
+    memset(out, 0, sizeof *out);
+    memcpy(out, bytes, head);
+    if (memcmp(out->magic, PITVIPER_DETECTIONS_MAGIC, sizeof out->magic) != 0) return DETECTIONS_MAGIC;
+    if (out->byte_order != PITVIPER_MEMORY_BYTE_ORDER) return DETECTIONS_ORDER;
+    const size_t each = out->version == 1 ? sizeof(DetectionOf1) : sizeof *out->detection;
+    if (out->version < 1 || out->version > PITVIPER_DETECTIONS_VERSION || out->detection_size != each)
+        return DETECTIONS_VERSION;
+    if (out->count > pitviper_detections_most) return DETECTIONS_COUNT;
+    if (size != head + out->count * each) return DETECTIONS_SIZE;
+    if (out->band >= BAND_COUNT || !(bands >> out->band & 1)) return DETECTIONS_BAND;
+    if (out->reserved) return DETECTIONS_RESERVED;
+    for (uint32_t i = 0; i < out->count; i++) {
+        const uint8_t *from = bytes + head + i * each;
+        bool           terminated = true;
+        if (out->version == 1) terminated = from_1(&out->detection[i], from);
+        else memcpy(&out->detection[i], from, each);
+        const DetectionsReason reason = check_one(&out->detection[i], (float)width, (float)height);
+        if (reason != DETECTIONS_GOOD) return reason;
+        if (!terminated) return DETECTIONS_TEXT;
+    }
+    out->version        = PITVIPER_DETECTIONS_VERSION;
+    out->detection_size = sizeof *out->detection;
+    return DETECTIONS_GOOD;
+}
+
+/* ---- answers.jsonl: a line per detection in the order of arrival, also one of an answer without any  */
+
+typedef struct Answers {
+    FILE *file;
+    bool  failed; /* reported */
+} Answers;
+
+/* The frame that was answered. */
+typedef struct AnsweredFrame {
+    double time_s;      /* exercise time */
+    double latency_ms;  /* from the end of its rendering to the answer's arrival; NaN: not known */
+    bool   late;        /* a newer frame of the band was answered before */
+} AnsweredFrame;
+
+/* Creates the file in this folder. STATUS_IO, logged. */
+static Status answers_open(Answers **out, const char *folder)
+{
+    char     path[4096];
+    Answers *a = calloc(1, sizeof *a);
+    if (!a) return STATUS_NO_MEMORY;
+    const bool fits = snprintf(path, sizeof path, "%s/answers.jsonl", folder) < (int)sizeof path;
+    if (!fits) errno = ENAMETOOLONG;
+    a->file = fits ? output_file(path, 0) : NULL;
+    if (a->file) {
+        *out = a;
+        return STATUS_OK;
+    }
+    log_error("detections: cannot write %s/answers.jsonl: %s; choose another place with --out", folder,
+              output_reason(errno));
+    free(a);
+    return STATUS_IO;
+}
+
+/* As a sender wrote it, and not the nearest double of its float. */
+static double digits(float value, double unit) { return round((double)value / unit) * unit; }
+
+/* Detection `number` of the answer, from 1 on; 0: there is none. */
+static json_t *line_of(const PitviperDetections *answer, const AnsweredFrame *frame, uint32_t number)
+{
+    json_t *line = json_pack("{s:i,s:s,s:f,s:I,s:I}", "frame", answer->frame, "band", band_name((Band)answer->band), "time_s",
+                             frame->time_s, "answer", (json_int_t)number, "of", (json_int_t)answer->count);
+    if (line && number > 0) {
+        const PitviperDetection *d = &answer->detection[number - 1];
+        json_object_set_new(line, "class", json_string(d->class_name));
+        json_object_set_new(line, "box_px", json_pack("[f,f,f,f]", digits(d->left, 1e-4), digits(d->top, 1e-4),
+                                                      digits(d->right, 1e-4), digits(d->bottom, 1e-4)));
+        json_set_number(line, "score", digits(d->score, 1e-6));
+        if (d->track) json_object_set_new(line, "track", json_integer((json_int_t)d->track));
+    }
+    if (line) json_set_number(line, "latency_ms", round(1e3 * frame->latency_ms) * 1e-3);
+    if (line) json_object_set_new(line, "late", json_boolean(frame->late));
+    return line;
+}
+
+static bool write_line(FILE *file, json_t *line)
+{
+    char      *text = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(12)) : NULL;
+    const bool ok   = text && fprintf(file, "%s\n", text) > 0;
+    free(text);
+    json_decref(line);
+    return ok;
+}
+
+/* The lines of an answer, flushed. What cannot be written is counted, and reported once. */
+static void answers_write(Answers *a, const PitviperDetections *answer, const AnsweredFrame *frame, AnswerCounters *counters)
+{
+    const uint32_t lines = answer->count > 0 ? answer->count : 1;
+    bool           ok = true;
+    for (uint32_t i = 0; i < lines; i++) ok = write_line(a->file, line_of(answer, frame, answer->count > 0 ? i + 1 : 0)) && ok;
+    ok = fflush(a->file) == 0 && ok;
+    counters->lines += ok ? lines : 0;
+    counters->lines_failed += ok ? 0 : lines;
+    if (!ok && !a->failed) log_warn("detections: cannot write answers.jsonl: %s; such lines are counted", strerror(errno));
+    a->failed |= !ok;
+    clearerr(a->file);
+}
+
+/* NULL is valid. */
+static void answers_close(Answers *a)
+{
+    if (!a) return;
+    if (fclose(a->file) != 0 && !a->failed) log_warn("detections: cannot write answers.jsonl: %s", strerror(errno));
+    free(a);
+}
+
+/* ---- the receiver -------------------------------------------------------------------------------- */
 
 typedef struct KnownFrame {
     int      frame;

@@ -7,8 +7,8 @@
 #ifndef SENSOR_PUBLISH_MEMORY_DETECTIONS_H
 #define SENSOR_PUBLISH_MEMORY_DETECTIONS_H
 
-#include "sensor/publish/answer_counters.h"
-#include "sensor/publish/consumer.h"
+#include "sensor/frame/publish_counters.h"
+#include "sensor/publish/consumers/consumer.h"
 
 #include <pitviper_memory.h>
 

@@ -1,10 +1,10 @@
 /* sensor/publish/video/consume_video.c: the consumer that publishes videos and streams. */
 #include "sensor/publish/video/consume_video.h"
 
-#include "sensor/publish/display.h"
-#include "sensor/publish/frame_files.h"
-#include "sensor/publish/letters.h"
-#include "sensor/publish/video/video_library.h"
+#include "sensor/frame/frame_display.h"
+#include "sensor/publish/files/frame_files.h"
+#include "sensor/publish/images/picture_text.h"
+#include "sensor/publish/video/video_encoder.h"
 #include "sensor/publish/video/video_output.h"
 
 #include <stdlib.h>
@@ -54,7 +54,7 @@ static Status make_room(Video *v, size_t octets)
 /* One band's tile into a column of the image. */
 static void put_tile(uint8_t *image, const uint8_t *tile, const EncoderConfig *c, int column, int width, int planes)
 {
-    const size_t octets = encoder_bits(c->codec) == 8 ? 1 : 2, values = c->colour ? 3 : 1;
+    const size_t octets = video_encoder_bits(c->codec) == 8 ? 1 : 2, values = c->colour ? 3 : 1;
     for (int y = 0; y < c->height; y++) {
         uint8_t       *to   = image + ((size_t)y * (size_t)c->width + (size_t)column) * values * octets;
         const uint8_t *from = tile + (size_t)y * (size_t)width * (size_t)planes * octets;
@@ -70,13 +70,13 @@ static void put_tile(uint8_t *image, const uint8_t *tile, const EncoderConfig *c
 /* Names of bands, and boxes and names of targets, as publish.video_labels has it, on the tile that begins at a column. */
 static void label(Video *v, const EncoderConfig *form, Band band, int column, int width, const Frame *frame)
 {
-    const int     bits = encoder_bits(form->codec), times = width < 320 ? 1 : 2;
+    const int     bits = video_encoder_bits(form->codec), times = width < 320 ? 1 : 2;
     const Drawing d = {v->image, form->width, form->height, form->colour ? 3 : 1, bits > 8, (1 << bits) - 1, column, column + width};
     for (int i = 0; v->labels == LABEL_TARGETS && i < frame->record.target_count; i++) {
         const TargetRecord *t = &frame->record.target[i];
         char                id[dis_id_text_size];
         dis_entity_id_text(id, t->id);
-        if (box_is_empty(t->box)) continue;
+        if (target_box_is_empty(t->box)) continue;
         const int box[4] = {t->box[0] + column, t->box[1], t->box[2] + column, t->box[3]};
         drawing_box(&d, box);
         drawing_text(&d, box[0], box[1] >= 10 * times + 2 ? box[1] - 9 * times - 2 : box[3] + 3 * times, times, *t->marking ? t->marking : id);
@@ -93,7 +93,7 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
                             .height = height, .rate_hz = v->of.rate_hz};
     for (int b = 0; b < BAND_COUNT; b++)
         if (c->bands >> b & 1 && frame->display[b].planes == 3) form->colour = true;
-    const int    bits   = encoder_bits(form->codec);
+    const int    bits   = video_encoder_bits(form->codec);
     const size_t octets = (size_t)form->width * (size_t)height * (form->colour ? 3 : 1) * (bits == 8 ? 1 : 2);
     const Status status = make_room(v, octets);
     if (status != STATUS_OK) return status;
@@ -126,15 +126,15 @@ static bool key_is_due(const Channel *c, int64_t pts_90k)
 
 static Status encode(VideoPacket *packet, Video *v, Channel *c, const EncoderConfig *form, int64_t pts_90k, int64_t unix_us)
 {
-    const EncoderConfig *had = c->encoder ? encoder_config(c->encoder) : NULL;
+    const EncoderConfig *had = c->encoder ? video_encoder_config(c->encoder) : NULL;
     if (had && (had->width != form->width || had->height != form->height || had->colour != form->colour)) {
         log_error("video: %s: the image's size or its colours changed during the run", c->what);
         return STATUS_UNSUPPORTED;
     }
-    Status status = had ? STATUS_OK : encoder_open(&c->encoder, form);
-    if (status == STATUS_OK) status = encoder_encode(packet, c->encoder, v->image, key_is_due(c, pts_90k), unix_us);
+    Status status = had ? STATUS_OK : video_encoder_open(&c->encoder, form);
+    if (status == STATUS_OK) status = video_encoder_encode(packet, c->encoder, v->image, key_is_due(c, pts_90k), unix_us);
     if (status == STATUS_OK) return STATUS_OK;
-    encoder_close(c->encoder);
+    video_encoder_close(c->encoder);
     c->encoder = NULL;
     return status;
 }
@@ -183,7 +183,7 @@ static Status close_video(Consumer *consumer)
             if (status == STATUS_OK) status = one;
             free(c->output[k]);
         }
-        encoder_close(c->encoder);
+        video_encoder_close(c->encoder);
         retry_end(&c->retry);
     }
     free(v->image);
@@ -229,7 +229,7 @@ static Status add_stream(Video *v, Channel *c)
     if (!(v->to & VIDEO_TO_STREAM) || !video_stream_url(&url, config, v->of.bands, band)) return STATUS_OK;
     const Status status = add_output(&o, v, c, VIDEO_TS);
     if (status == STATUS_OK) o->sent = v->of.sent;
-    return status == STATUS_OK ? udp_video_open(&o->udp, &url, config->network.interface, config->network.ttl)
+    return status == STATUS_OK ? video_udp_open(&o->udp, &url, config->network.interface, config->network.ttl)
                                : status;
 }
 

@@ -8,10 +8,10 @@
 #ifndef SENSOR_PUBLISH_VIDEO_CONSUME_VIDEO_H
 #define SENSOR_PUBLISH_VIDEO_CONSUME_VIDEO_H
 
-#include "sensor/publish/consumer.h"
-#include "sensor/publish/sent_counters.h"
+#include "sensor/publish/consumers/consumer.h"
+#include "sensor/frame/publish_counters.h"
 #include "sensor/publish/video/video_names.h"
-#include "sensor/publish/klv/klv_detections.h"
+#include "sensor/publish/klv/consume_klv.h"
 
 typedef struct VideoOf {
     const Config    *config;

@@ -1,0 +1,98 @@
+/* sensor/frame/frame.h: a finished frame, as consumers receive it (sensor/publish/consumers/consumer.h).
+ *
+ * Immutable once finished, and reference-counted: a consumer that keeps one beyond its put holds it and releases it.
+ * All that it points to is in its arena or outlives the run. A pool has a fixed number of frames, so memory is
+ * bounded: taking one waits until one is free. */
+#ifndef SENSOR_FRAME_FRAME_H
+#define SENSOR_FRAME_FRAME_H
+
+#include "sensor/frame/frame_display.h"
+#include "sensor/frame/latency.h"
+#include "sensor/frame/plane.h"
+#include "sensor/frame/records.h"
+#include "sensor/radar/radar_frame.h"
+
+enum { frame_max_planes = 48, frame_max_axes = 4 };
+
+typedef enum PlaneKind { PLANE_RADIANCE, PLANE_TRUTH, PLANE_PROFILE } PlaneKind;
+
+/* A named array. The last axis is contiguous in memory. */
+typedef struct FrameArray {
+    const char *group;                   /* `lwir`, `radar`, `truth`: planes that go into one file */
+    const char *name;                    /* within the group: `Y`, `R`, `range_m`, `profile` */
+    const char *unit;
+    const char *model, *wavelengths_um; /* of radiance: its sensor, and its channels in the order of the group's
+                                         * planes */
+    PlaneKind   kind;
+    PlaneType   type;
+    int         axes;
+    const char *axis[frame_max_axes];    /* `row`, `column`, `bin`, `bounce` */
+    int         size[frame_max_axes];
+    const void *values;
+} FrameArray;
+
+/* The rendering of a snapshot: the planes, and their inputs. */
+typedef struct FrameView {
+    Picture    picture;
+    Snapshot   snapshot;
+    int        plane_count;
+    FrameArray plane[frame_max_planes];
+    char       sha256[sha256_text_size]; /* of the planes; empty: not yet, see frame_sha256 */
+} FrameView;
+
+/* The inputs of the frame, its program and its time. */
+typedef struct Provenance {
+    const char *version, *config_sha256;
+    long long   seed;
+    uint64_t    datagrams;               /* of the log, or received, when it was rendered */
+    double      begun_s, posed_s, rendered_s; /* wall_clock_s */
+} Provenance;
+
+typedef struct Frame Frame;
+struct Frame {
+    int               number;
+    double            time_s, unix_s;    /* of the exercise */
+    char              host[dis_id_text_size];
+    FrameView         seen;
+    FrameDisplay      display[BAND_COUNT]; /* consume_displays, if a consumer wants it */
+    GroundPoint       footprint[FOOTPRINT_COUNT]; /* if a consumer wants it; as in record */
+    FrameView        *without;           /* the same without the removed entities; NULL: not requested */
+    const DisEntityId *taken;            /* [taken_count] */
+    int               taken_count;
+    RenderRequest     request;
+    const World      *world;             /* materials and catalog alone: the tracer belongs to the next frame */
+    double            rate_px_s[2];      /* image motion of the scene: column, row */
+    Sun               sun;
+    const RadarFrame *radar;             /* NULL: no radar was asked for */
+    FrameError        error;
+    RadarError        radar_error;
+    FrameRecord       record;            /* its lists and all fields of truth.jsonl; frame_sha256 is NULL */
+    Provenance        provenance;
+    bool              buried;            /* the sensor was below the ground */
+    double            publish_begun_s;   /* wall_clock_s; set when the first consumer receives it */
+    LatencyTimes      times;
+    Latency          *latency;           /* the run's ledger; NULL: none is kept */
+    uint64_t          latency_key;
+    Arena            *arena;
+    struct FramePool *pool;
+    int               holds;             /* protected by the pool's lock */
+};
+
+/* The planes of an image in the order of their groups: bands, then truth, profiles last. Borrowed from it. */
+int    frame_planes(FrameArray plane[frame_max_planes], const Picture *picture, const RenderRequest *request);
+/* As named in the hash: GROUP/NAME, and as a plane of two axes: the first ones are rows, the last one columns. */
+enum { frame_plane_name_size = 64 };
+Plane  frame_plane(char name[frame_plane_name_size], const FrameArray *plane);
+/* Of all planes. Computed on the first call, in the publishing thread. */
+Status frame_sha256(FrameView *view);
+
+typedef struct FramePool FramePool;
+
+Status frame_pool_create(FramePool **out, int frames);
+void   frame_pool_destroy(FramePool *pool); /* all frames must have been released. NULL is valid */
+/* A frame with one reference and an empty arena. Waits for one. */
+Frame *frame_pool_take(FramePool *pool);
+void   frame_hold(Frame *frame);
+void   frame_release(Frame *frame);
+
+#endif

@@ -1,0 +1,41 @@
+/* sensor/frame/frame_world.h: what the settings say of a frame's world: models and ground, materials, atmosphere,
+ * plants, radar, sun. */
+#ifndef SENSOR_FRAME_FRAME_WORLD_H
+#define SENSOR_FRAME_FRAME_WORLD_H
+
+#include "render/frame/render.h"
+#include "sensor/settings/config.h"
+#include "sensor/radar/seeker_radar.h"
+
+/* Borrows catalog and landscape. On failure the only valid call is world_close. */
+Status frame_world(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
+                   const LocalFrame *frame, const char *isa);
+/* Its plants, as terrain.woods_* say. woods must outlive the world; NULL: there are none. */
+Status frame_world_plant(World *world, const Woods *woods, const Config *config, const char *isa, Pool *pool);
+/* The same as its course has it then. */
+Weather frame_weather_at(const Config *config, const World *world, double unix_s);
+/* Its heat, over the weather of weather.* up to unix_s, that of exercise time 0. After the plants. */
+Status frame_world_warm(World *world, const Config *config, double unix_s, Pool *pool);
+
+/* The radar of radar.preset, which is not none. live: signatures that are missing are made in the background. */
+Status frame_radar_open(SeekerRadar **out, const Config *config, const char *isa, bool live);
+
+/* ---- sun and atmosphere of one frame, and the axes for normals in its products ------------------- */
+
+/* The inputs of sun and atmosphere, besides the world and the settings of the weather. */
+typedef struct FrameEye {
+    double      unix_s;
+    double      p_ecef[3];
+    const View *view;
+    unsigned    bands;
+    const GroundMarks *marks; /* NULL: none */
+} FrameEye;
+
+/* Sun at the sensor position, its direction rotated into the world's frame. r_host_from_enu: from the world's ENU to
+ * that of the sensor position. */
+Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *world, const Config *config,
+                   const FrameEye *eye, Pool *pool, Arena *arena);
+/* Products give normals in the host's own ENU. */
+void frame_turn_normals(Picture *picture, const double r_host_from_enu[9]);
+
+#endif

@@ -1,0 +1,127 @@
+/* sensor/publish/consumers/consumer.h: the interface of consumers of finished frames (files, hashes, records), lists
+ * of them, and the thread that puts frames to a list.
+ *
+ * The session holds a list of consumers and knows none by name. It renders the union of what they need, and nothing
+ * else. A new one is a file of its own with a function that creates it, and a line where lists are created
+ * (sensor/node/session/session_consumers.c). */
+#ifndef SENSOR_PUBLISH_CONSUMERS_CONSUMER_H
+#define SENSOR_PUBLISH_CONSUMERS_CONSUMER_H
+
+#include "sensor/frame/frame.h"
+
+typedef enum FrameWant {
+    WANT_PLANES  = 1 << 0, /* of truth; those of the bands are always present */
+    WANT_TARGETS = 1 << 1, /* record.target */
+    WANT_ERROR   = 1 << 2, /* record.error, where the error budget is on */
+    WANT_CELLS   = 1 << 3, /* picture.small: small targets as a detector needs them */
+    WANT_WITHOUT = 1 << 4, /* a second rendering without the target, or without all entities */
+    WANT_SHA256  = 1 << 5, /* of all planes, truth too */
+    WANT_DISPLAY = 1 << 6, /* frame.display: behind the detector, with gain and level */
+    WANT_COUNTS  = 1 << 7, /* frame.display.counts: raw counts of the bands with a sensor */
+    WANT_FOOTPRINT = 1 << 8, /* record.footprint: where the boresight and the corners meet the ground */
+    WANT_LATENCY = 1 << 9, /* when other consumers are done with the frame: closed after those that do not want it */
+} FrameWant;
+
+typedef struct Consumer Consumer;
+struct Consumer {
+    unsigned wants;
+    /* One frame, in order of time. Any result but STATUS_OK, logged, ends the run. */
+    Status (*put)(Consumer *consumer, Frame *frame);
+    /* The frame was rendered and is not put, for lack of time; called in the rendering thread. NULL: not needed. */
+    void   (*left_out)(Consumer *consumer, const Frame *frame);
+    /* Finishes its products and frees the consumer. */
+    Status (*close)(Consumer *consumer);
+    const char *name; /* in the latency ledger; NULL: not in it */
+    /* Makes its folders and files, once and before the first frame: only then may the products of an earlier run go. NULL:
+     * there are none. Any result but STATUS_OK, logged, ends the run. */
+    Status (*begin)(Consumer *consumer);
+};
+
+enum { consumers_max = 16 };
+
+typedef struct Consumers {
+    int       count;
+    Consumer *consumer[consumers_max];
+} Consumers;
+
+/* Takes the consumer over, also when the list is full (STATUS_BAD_VALUE). NULL: nothing. */
+Status   consumers_add(Consumers *list, Consumer *consumer);
+unsigned consumers_wants(const Consumers *list);
+/* Of each that has a begin; the first failure ends it. */
+Status   consumers_begin(const Consumers *list);
+/* The frame to each in turn; the first failure ends it. */
+Status   consumers_put(const Consumers *list, Frame *frame);
+/* Their names into the ledger. NULL: none is kept. */
+void     consumers_expect(const Consumers *list, Latency *latency);
+/* Closes all of them; returns the first failure. */
+Status   consumers_close(Consumers *list);
+/* The planes that a request must contain. Whether the error budget is on is up to the caller. */
+void     consumers_request(RenderRequest *request, unsigned wants);
+
+/* ---- a queue ------------------------------------------------------------------------------------- */
+
+/* A consumer whose consumers run in a thread of their own, so that the next frame is rendered
+ * meanwhile. It receives frames in order and passes them on in order; at most one waits.
+ *
+ *     QUEUE_WAIT       every frame is passed on; putting waits while another frame waits. The first failure is the
+ *                      result of the next put and of the close; no frame after it is passed on
+ *     QUEUE_LEAVE_OUT  putting never waits: the waiting frame is dropped for the newer one; that is counted, its
+ *                      consumers are notified; a failure is counted and ends nothing
+ *
+ * With the frame being rendered, the one waiting and the one being published it takes three frames of a pool. */
+
+enum { queue_frames = 3 };
+typedef enum QueueRule { QUEUE_WAIT, QUEUE_LEAVE_OUT } QueueRule;
+
+typedef struct QueueCounters {
+    int handed, left_out, failed;
+} QueueCounters;
+
+/* Takes the list's consumers over, also on failure. counters: filled in by close; may be NULL. */
+Status consumer_queue_open(Consumer **out, Consumers *list, QueueRule rule, QueueCounters *counters);
+
+/* ---- retries ------------------------------------------------------------------------------------- */
+
+/* Retries a destination that cannot be written while a live node continues: reported once, retried at
+ * intervals. */
+
+typedef struct RetryBackoff {
+    const char *what;   /* the products, as messages name them */
+    double      off_s;  /* wall clock: no retry before */
+    bool        failed; /* the last try */
+    int         lacking; /* number of failures */
+} RetryBackoff;
+
+static const double retry_interval_s = 10;
+
+/* Whether to try now. During a retry the messages of this thread are suppressed: retry_done reports the result. */
+static inline bool retry_due(const RetryBackoff *p)
+{
+    const bool due = wall_clock_s() >= p->off_s;
+    if (due && p->failed) log_suppress(true);
+    return due;
+}
+
+/* After a try, with its status; after none, with STATUS_IO. */
+static inline void retry_done(RetryBackoff *p, bool tried, Status status)
+{
+    if (tried) log_suppress(false);
+    if (status == STATUS_OK) {
+        if (p->failed) log_info("session: %s again; %d frames lack them", p->what, p->lacking);
+        p->failed = false;
+        return;
+    }
+    p->lacking++;
+    if (!tried) return;
+    if (!p->failed) log_warn("session: going on without %s; trying again every %.0f s", p->what, retry_interval_s);
+    p->failed = true;
+    p->off_s  = wall_clock_s() + retry_interval_s;
+}
+
+/* At the end of the run: what it lacks, if that has not been said yet. */
+static inline void retry_end(const RetryBackoff *p)
+{
+    if (p->failed) log_warn("session: %d frames lack %s", p->lacking, p->what);
+}
+
+#endif

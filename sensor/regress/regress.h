@@ -1,8 +1,0 @@
-/* sensor/regress/regress.h: the command `pitviper regress`: re-renders recorded exercises and compares them
- * with approved baselines. Format of a case: sensor/regress/case.h. */
-#ifndef SENSOR_REGRESS_REGRESS_H
-#define SENSOR_REGRESS_REGRESS_H
-
-int regress_command(int argc, char **argv);
-
-#endif

@@ -1,0 +1,121 @@
+/* sensor/verify/regress/regress_private.h: what the files of a regression share: the result of a case, how it is run
+ * and reported. */
+#ifndef SENSOR_VERIFY_REGRESS_REGRESS_PRIVATE_H
+#define SENSOR_VERIFY_REGRESS_REGRESS_PRIVATE_H
+
+#include "sensor/verify/regress/verdict.h"
+
+/* ---- the result of a case, and its messages ------------------------------------------------------ */
+
+typedef enum CaseState {
+    CASE_OK,
+    CASE_FAILED,   /* beyond tolerance of its baseline */
+    CASE_BROKEN,   /* could not be run, or read */
+    CASE_NO_RECORD,
+    CASE_SKIPPED,  /* its log is missing, which is allowed */
+    CASE_STATES
+} CaseState;
+
+typedef struct CaseResult {
+    Case      c;
+    CaseState state;
+    bool      compared, updated;
+    char      line[700];         /* printed after the name */
+    char      chosen[8192];      /* of an update: lines with host, aim and other automatic choices */
+    double    seconds;
+    Verdict   verdict;
+    char      work[case_path_size]; /* work folder; out/ holds the products of replay */
+    char      command[16384];    /* lines: the commands that reproduce it */
+    char      said[8192];        /* last lines of its processes, and log messages about it */
+} CaseResult;
+
+/* ---- one case, from its folder to a verdict (run_case.c) ----------------------------------------- */
+
+typedef struct CaseHow {
+    int         threads;         /* of a child */
+    const char *isa;             /* of the ray tracer; NULL: the default of replay */
+    bool        update, allow_missing; /* allow_missing: of logs */
+    const char *why;
+} CaseHow;
+
+/* result->c has been read and result->work named; the folder is made here. Log lines of the calling thread go to
+ * result->said. */
+void run_case(CaseResult *result, const CaseHow *how);
+/* Destination of the log lines during a case. NULL: the default. */
+void run_case_log(void *user, LogLevel level, const char *line); /* a LogSink */
+
+/* ---- approval of a run as the baseline of its case (case_update.c) ------------------------------- */
+
+/* The products in result->work become result->c.folder/record, all or none of them; card.md gets an entry: why, what
+ * differs from the previous baseline, date of the exercise, version, hash of the settings. Sets the result: CASE_OK,
+ * updated, or CASE_BROKEN with the reason in result->line. */
+void case_update(CaseResult *result, const char *why);
+
+/* ---- reports (regress_report.c, regress_junit.c) ------------------------------------------------- */
+
+const char *case_state_name(CaseState state); /* `ok`, `FAILED`, `skipped` */
+
+/* JUnit's testsuite: failure: beyond tolerance, or no baseline; error: could not be run; skipped: no log. */
+Status regress_junit_write(const char *path, const CaseResult *const *result, int count);
+/* One self-contained page: a table of all cases, images of what failed side by side, passed cases collapsed. Reads the
+ * products of each case again: the work folders must still exist. */
+Status regress_report_write(const char *path, const CaseResult *const *result, int count);
+
+/* ---- planes as PNG in a page, enlarged so that single pixels are visible (false_colour.c) -------- */
+
+typedef enum Colours {
+    COLOURS_HEAT,   /* dark to bright, by a scale */
+    COLOURS_SIGNED, /* blue below 0, red above, white at it */
+    COLOURS_IDS,    /* a colour per id; 0 is dark */
+} Colours;
+
+typedef struct Scale {
+    double low, high;
+} Scale;
+
+/* From the 0.5th to the 99.5th percentile of both together; a plane of one value gets a width. */
+Scale false_colour_scale(const float *a, const float *b, size_t count);
+/* -most .. most: the largest of the finite differences but one in two hundred of those that are not 0, at least
+ * `least`. */
+Scale false_colour_scale_of_difference(const float *difference, size_t count, double least);
+
+/* One plane, or three for red, green, blue of COLOURS_HEAT. Pixels that are not finite are violet. */
+typedef struct FalseColour {
+    const float *plane[3];
+    int          planes, width, height;
+    Colours      colours;
+    Scale        scale;
+} FalseColour;
+
+/* Into the page, as <img>. scratch: a file that may be written. False, and nothing written, when it cannot be made. */
+bool false_colour_picture(FILE *page, const FalseColour *picture, int wanted_width, const char *scratch, const char *alt);
+/* A bar of the colours with the numbers at its ends. */
+bool false_colour_legend(FILE *page, Colours colours, Scale scale, const char *unit, const char *scratch);
+
+/* ---- this program as a child process, so that a crash or a hang affects only one case (case_child.c)  */
+
+enum { child_arguments_max = 640 };
+
+typedef struct ChildLine {
+    int         count;
+    const char *argument[child_arguments_max + 1]; /* argument[0]: `pitviper`; ends with NULL. Borrowed */
+} ChildLine;
+
+typedef struct ChildEnd {
+    bool   timed_out, stopped;  /* ended by this process: after timeout_s; on a signal to stop */
+    int    signal, code;        /* signal 0: it exited with this code */
+    double seconds;
+} ChildEnd;
+
+/* False when there are too many. */
+bool   case_child_add(ChildLine *line, const char *argument);
+/* Runs it to its end, in the environment of this process but with LC_ALL=C and TZ=UTC, standard input empty, its
+ * output in two files. In a process group of its own, which is ended as a whole. STATUS_IO, logged, when it cannot be
+ * started. */
+Status case_child_run(ChildEnd *end, const ChildLine *line, const char *out_path, const char *error_path, double timeout_s);
+/* The command line, quoted for a shell. */
+void   case_child_text(char *out, size_t out_size, const ChildLine *line);
+/* The last lines of a file, that many octets at most; "" when it cannot be read. */
+void   case_child_tail(char *out, size_t out_size, const char *path);
+
+#endif

@@ -1,0 +1,318 @@
+/* sensor/verify/saved_frame/chunks.c: named chunks, each with its size and checksum: written to memory, and read from
+ * it. */
+
+#include "sensor/verify/saved_frame/chunks.h"
+
+#include <stdlib.h>
+#include <zlib.h>
+
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers are copied as they lie in memory");
+
+static const char magic[8] = "PVFRAME\n";
+
+enum { method_plain, method_zlib };
+
+/* ---- writing ------------------------------------------------------------------------------------ */
+
+/* Space for count more octets; NULL: none. */
+static uint8_t *make_room(ByteSink *sink, size_t count)
+{
+    if (sink->failed) return NULL;
+    if (count > sink->capacity - sink->count) {
+        size_t capacity = sink->capacity ? 2 * sink->capacity : 4096;
+        while (capacity - sink->count < count) capacity *= 2;
+        uint8_t *bytes = realloc(sink->bytes, capacity);
+        sink->failed   = !bytes;
+        if (!bytes) return NULL;
+        sink->bytes    = bytes;
+        sink->capacity = capacity;
+    }
+    uint8_t *at = sink->bytes + sink->count;
+    sink->count += count;
+    return at;
+}
+
+void sink_bytes(ByteSink *sink, const void *bytes, size_t count)
+{
+    uint8_t *to = count ? make_room(sink, count) : NULL;
+    if (to) memcpy(to, bytes, count);
+}
+
+void sink_u32(ByteSink *sink, uint32_t value) { sink_bytes(sink, &value, sizeof value); }
+void sink_u64(ByteSink *sink, uint64_t value) { sink_bytes(sink, &value, sizeof value); }
+void sink_f64s(ByteSink *sink, const double *value, int count)
+{
+    sink_bytes(sink, value, (size_t)count * sizeof *value);
+}
+
+void sink_text(ByteSink *sink, const char *text)
+{
+    sink_u32(sink, (uint32_t)strlen(text));
+    sink_bytes(sink, text, strlen(text));
+}
+
+void sink_free(ByteSink *sink)
+{
+    free(sink->bytes);
+    *sink = (ByteSink){0};
+}
+
+void chunks_begin(ByteSink *file)
+{
+    sink_bytes(file, magic, sizeof magic);
+    sink_u32(file, chunks_version);
+}
+
+static void put_header(ByteSink *file, const char *name, uint32_t method, uint32_t crc, uint64_t plain, uint64_t stored)
+{
+    char padded[chunk_name_size] = {0};
+    memcpy(padded, name, strnlen(name, sizeof padded));
+    sink_bytes(file, padded, sizeof padded);
+    sink_u32(file, method);
+    sink_u32(file, crc);
+    sink_u64(file, plain);
+    sink_u64(file, stored);
+}
+
+void chunks_put(ByteSink *file, const char *name, const ByteSink *content)
+{
+    const uint32_t crc = content->count ? (uint32_t)crc32_z(0, content->bytes, content->count) : 0;
+    uLongf         stored = compressBound((uLong)content->count);
+    uint8_t       *packed = malloc(stored);
+    file->failed |= content->failed || !packed;
+    if (file->failed) goto done;
+    const bool shorter =
+        content->count > 0 && stored > 0 &&
+        compress2(packed, &stored, content->bytes, (uLong)content->count, Z_DEFAULT_COMPRESSION) == Z_OK &&
+        stored < content->count;
+    if (!shorter) stored = content->count;
+    put_header(file, name, shorter ? method_zlib : method_plain, crc, content->count, stored);
+    sink_bytes(file, shorter ? packed : content->bytes, stored);
+done:
+    free(packed);
+}
+
+void chunks_end(ByteSink *file) { put_header(file, "end", method_plain, 0, 0, 0); }
+
+/* ---- reading ------------------------------------------------------------------------------------ */
+
+const uint8_t *source_bytes(ByteSource *source, size_t count)
+{
+    if ((size_t)(source->end - source->at) < count) {
+        source->at        = source->end;
+        source->truncated = true;
+        return NULL;
+    }
+    const uint8_t *bytes = source->at;
+    source->at += count;
+    return bytes;
+}
+
+uint32_t source_u32(ByteSource *source)
+{
+    uint32_t       value = 0;
+    const uint8_t *bytes = source_bytes(source, sizeof value);
+    if (bytes) memcpy(&value, bytes, sizeof value);
+    return value;
+}
+
+uint64_t source_u64(ByteSource *source)
+{
+    uint64_t       value = 0;
+    const uint8_t *bytes = source_bytes(source, sizeof value);
+    if (bytes) memcpy(&value, bytes, sizeof value);
+    return value;
+}
+
+void source_f64s(ByteSource *source, double *value, int count)
+{
+    const size_t   octets = (size_t)count * sizeof *value;
+    const uint8_t *bytes = source_bytes(source, octets);
+    if (bytes) memcpy(value, bytes, octets);
+    else memset(value, 0, octets);
+}
+
+char *source_text(ByteSource *source, size_t most, Arena *arena)
+{
+    const uint32_t length = source_u32(source);
+    const uint8_t *bytes  = length <= most ? source_bytes(source, length) : NULL;
+    char          *text   = bytes && !memchr(bytes, 0, length) ? arena_alloc(arena, (size_t)length + 1, 1) : NULL;
+    source->truncated |= !text;
+    return text ? memcpy(text, bytes, length) : NULL;
+}
+
+int source_count(ByteSource *source, size_t octets, int most)
+{
+    const uint32_t count = source_u32(source);
+    if (count <= (uint32_t)most && (uint64_t)count * octets <= (uint64_t)(source->end - source->at)) return (int)count;
+    source->truncated = true;
+    return 0;
+}
+
+Status chunks_open(ChunkSource *out, const uint8_t *bytes, size_t count, Arena *arena)
+{
+    *out = (ChunkSource){.rest = {bytes, bytes + count, false}, .arena = arena};
+    const uint8_t *mark    = source_bytes(&out->rest, sizeof magic);
+    const uint32_t version = source_u32(&out->rest);
+    if (!mark || memcmp(mark, magic, sizeof magic) != 0) {
+        out->fault = "it does not begin as a frame file does";
+        return STATUS_BAD_VALUE;
+    }
+    out->version = (int)version;
+    if (version >= 1 && version <= chunks_version && !out->rest.truncated) return STATUS_OK;
+    out->fault = "it has another version of the format";
+    return STATUS_UNSUPPORTED;
+}
+
+static Status damaged(ChunkSource *chunks, Status status, const char *fault)
+{
+    chunks->fault = fault;
+    return status;
+}
+
+Status chunks_next(ChunkSource *chunks, char name[chunk_name_size + 1], ByteSource *content)
+{
+    ByteSource    *rest   = &chunks->rest;
+    const uint8_t *named  = source_bytes(rest, chunk_name_size);
+    const uint32_t method = source_u32(rest), crc = source_u32(rest);
+    const uint64_t plain = source_u64(rest), stored = source_u64(rest);
+    if (rest->truncated || stored > (uint64_t)(rest->end - rest->at))
+        return damaged(chunks, STATUS_TRUNCATED, "it ends too early");
+    memcpy(name, named, chunk_name_size);
+    name[chunk_name_size] = 0;
+    *content              = (ByteSource){0};
+    if (strcmp(name, "end") == 0) {
+        name[0] = 0;
+        return plain == 0 && stored == 0 ? STATUS_OK : damaged(chunks, STATUS_BAD_VALUE, "its end is damaged");
+    }
+    const uint8_t *bytes = source_bytes(rest, stored);
+    /* zlib compresses by a factor of 1000 at most: no more is allocated than the octets can hold */
+    if (method > method_zlib || (method == method_plain && plain != stored) || plain / 1032 > stored ||
+        plain > chunk_most_octets - chunks->octets)
+        return damaged(chunks, STATUS_BAD_VALUE, "the size of a chunk is damaged");
+    chunks->octets += plain;
+    if (method == method_zlib) {
+        uint8_t *unpacked = arena_alloc(chunks->arena, plain + 1, 1);
+        uLongf   octets   = (uLongf)plain;
+        if (!unpacked) return damaged(chunks, STATUS_NO_MEMORY, "there is no memory for it");
+        if (uncompress(unpacked, &octets, bytes, (uLong)stored) != Z_OK || octets != plain)
+            return damaged(chunks, STATUS_BAD_VALUE, "a chunk is damaged");
+        bytes = unpacked;
+    }
+    if (crc32_z(0, bytes, plain) != crc && plain > 0) return damaged(chunks, STATUS_BAD_VALUE, "a chunk is damaged");
+    *content = (ByteSource){bytes, bytes + plain, false};
+    return STATUS_OK;
+}
+
+/* ---- fields of a chunk, written, or read and checked --------------------------------------------- */
+
+static void expect(Fields *f, const char *name, bool good)
+{
+    if (!good && fields_good(f)) f->fault = name;
+}
+
+void field_bytes(Fields *f, void *bytes, size_t count)
+{
+    if (f->to) {
+        sink_bytes(f->to, bytes, count);
+        return;
+    }
+    const uint8_t *from = source_bytes(f->from, count);
+    if (from && count) memcpy(bytes, from, count);
+    else if (count) memset(bytes, 0, count);
+}
+
+void field_int(Fields *f, const char *name, int *value, int low, int high)
+{
+    if (f->to) {
+        sink_i32(f->to, *value);
+        return;
+    }
+    *value = source_i32(f->from);
+    if (*value >= low && *value <= high) return;
+    expect(f, name, false);
+    *value = low; /* an index is never out of its array, even when writing */
+}
+
+void field_u32(Fields *f, uint32_t *value) { field_bytes(f, value, sizeof *value); }
+void field_u64(Fields *f, uint64_t *value) { field_bytes(f, value, sizeof *value); }
+
+void field_bool(Fields *f, const char *name, bool *value)
+{
+    int number = *value;
+    field_int(f, name, &number, 0, 1);
+    *value = number != 0;
+}
+
+void field_real(Fields *f, const char *name, double *value, double low, double high)
+{
+    field_bytes(f, value, sizeof *value);
+    if (f->from) expect(f, name, *value >= low && *value <= high);
+}
+
+void field_reals(Fields *f, const char *name, double *value, int count, double most)
+{
+    for (int i = 0; i < count; i++) field_real(f, name, &value[i], -most, most);
+}
+
+void field_floats(Fields *f, const char *name, float *value, int count, float low, float high)
+{
+    field_bytes(f, value, (size_t)count * sizeof *value);
+    for (int i = 0; f->from && i < count; i++) expect(f, name, value[i] >= low && value[i] <= high);
+}
+
+void field_unit(Fields *f, const char *name, double v[3])
+{
+    field_reals(f, name, v, 3, 2);
+    if (f->from) expect(f, name, fabs(v3_dot(v, v) - 1) <= 1e-6);
+}
+
+void field_rotation(Fields *f, const char *name, double r[9])
+{
+    double across[3];
+    field_reals(f, name, r, 9, 2);
+    if (!f->from) return;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j <= i; j++)
+            expect(f, name, fabs(v3_dot(r + 3 * i, r + 3 * j) - (i == j)) <= 1e-6);
+    v3_cross(across, r, r + 3);
+    expect(f, name, v3_dot(across, r + 6) > 0);
+}
+
+void field_text(Fields *f, const char *name, const char **text, size_t most)
+{
+    if (f->to) {
+        sink_text(f->to, *text);
+        return;
+    }
+    *text = source_text(f->from, most, f->arena);
+    if (*text) return;
+    expect(f, name, false);
+    *text = "";
+}
+
+void field_chars(Fields *f, const char *name, char *text, size_t size)
+{
+    field_bytes(f, text, size);
+    if (!f->from) return;
+    expect(f, name, memchr(text, 0, size) != NULL);
+    text[size - 1] = 0;
+}
+
+bool field_array(Fields *f, const char *name, int *count, void **array, size_t record, size_t octets, int most)
+{
+    if (f->to) {
+        sink_i32(f->to, *count);
+        return true;
+    }
+    *count = 0;
+    *array = NULL;
+    if (!fields_good(f)) return false;
+    const int found = source_count(f->from, octets, most);
+    expect(f, name, !f->from->truncated);
+    *array = fields_good(f) ? arena_alloc(f->arena, (size_t)found + 1, record) : NULL;
+    if (fields_good(f) && !*array) f->no_memory = true;
+    if (!fields_good(f)) return false;
+    *count = found;
+    return true;
+}

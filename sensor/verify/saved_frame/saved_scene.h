@@ -1,0 +1,42 @@
+/* sensor/verify/saved_frame/saved_scene.h: everything that a frame file needs from this installation, opened and
+ * compared with that of the original frame: settings, tables, models, sensors; and its own ground. */
+#ifndef SENSOR_VERIFY_SAVED_FRAME_SAVED_SCENE_H
+#define SENSOR_VERIFY_SAVED_FRAME_SAVED_SCENE_H
+
+#include "sensor/verify/saved_frame/saved_frame.h"
+#include "sensor/settings/sensors.h"
+#include "sensor/settings/config.h"
+#include "sensor/settings/tables_used.h"
+
+typedef struct SavedScene {
+    Config      config;
+    Sensors     sensors;
+    Catalog    *catalog;
+    Landscape   landscape;
+    Woods       woods;         /* of the world's plants, if any */
+    World       world;
+    EffectTable effects;
+    Snapshot    snapshot;      /* the file's, with the models of this catalog */
+    int         tables_differ;
+} SavedScene;
+
+/* Tables and models that differ from those of the frame are logged by name: STATUS_BAD_VALUE unless forced.
+ * saved_scene_close must follow, also on failure. isa: as world_open. */
+Status saved_scene_open(SavedScene *out, const SavedFrame *file, bool forced, const char *isa, Pool *pool);
+void   saved_scene_close(SavedScene *scene);
+
+/* ---- the ground: in the file, or the terrain store that it names --------------------------------- */
+
+/* Parts may be of a hostile file. Failures are logged. */
+Status saved_ground_open(Landscape *out, const LandscapeParts *parts);
+/* The plants on it, into a world over that ground; nothing for a file without. woods must outlive the world, and is
+ * destroyed by the caller, also on failure. */
+Status saved_ground_plant(World *world, Woods *woods, const SavedFrame *file, const Config *config, const char *isa,
+                          Pool *pool);
+
+/* ---- tables -------------------------------------------------------------------------------------- */
+
+/* The tables that a frame depends on: those of tables_used, and the user's own; models.catalog and models.materials are listed by these names. catalog: that of etc/. */
+Status saved_tables(TablesUsed *out, const Config *config, const char *catalog);
+
+#endif
