@@ -143,9 +143,9 @@ static Status write_truth(const char *out, const SavedFrame *file, const SavedSc
     memcpy(record.r_ecef_from_cam, file->eye.r_ecef_from_cam, sizeof record.r_ecef_from_cam);
     record.target_count =
         truth_targets(target, &again->picture, &s->world, &s->snapshot, &file->request, &file->eye, noise);
-    if (frame_error(&error, &again->picture, &s->world, &s->snapshot, &file->request, target, record.target_count,
-                    s->config.models.sag_m, file->all_on_ground,
-                    world_air_k(&s->world, file->unix_s + file->time_s)))
+    if (frame_error(&error, &(FrameErrorOf){&again->picture, &s->world, &s->snapshot, &file->request, s->config.models.sag_m,
+                                            file->all_on_ground, world_air_k(&s->world, file->unix_s + file->time_s)},
+                    target, record.target_count))
         record.error = &error;
     record.target = target_records(target, record.target_count, &s->snapshot, s->catalog, arena);
     if (!record.target) return STATUS_NO_MEMORY;
@@ -224,7 +224,7 @@ static Status measure(const RadarFrame **out, int *differ, const SavedFrame *fil
     SeekerRadar *radar;
     Status       status = frame_radar_open(&radar, &s->config, "avx2", false);
     if (status != STATUS_OK) return status;
-    status = saved_radar_again(out, radar, file, &s->snapshot, &s->world, picture, &s->config, pool, arena);
+    status = saved_radar_again(out, radar, &(SavedStage){file, &s->snapshot, &s->world, &s->config, pool, arena}, picture);
     if (status == STATUS_OK) status = saved_radar_same(&same, file, *out);
     /* the preset is the radar's own */
     RadarPreset *preset = status == STATUS_OK ? arena_alloc(arena, 1, sizeof *preset) : NULL;
@@ -252,7 +252,7 @@ static Status show(int *differ, const FrameOptions *o, const SavedFrame *file, S
     SavedAgain *again = arena_alloc(arena, 1, sizeof *again);
     if (!again) return STATUS_NO_MEMORY;
     const double begun_s = wall_clock_s();
-    Status status = saved_again(again, file, &s->snapshot, &s->world, &s->config, o->no_skip, pool, arena);
+    Status status = saved_again(again, &(SavedStage){file, &s->snapshot, &s->world, &s->config, pool, arena}, o->no_skip);
     if (status != STATUS_OK) return status;
     log_detail("frame: rendered in %.0f ms", 1e3 * (wall_clock_s() - begun_s));
     *differ = saved_differences(file, &again->made, true);

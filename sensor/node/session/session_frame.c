@@ -127,9 +127,9 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
     r->target_count = truth_targets(target, &seen->picture, shared->world, &seen->snapshot, &f->request, &eye->state,
                                     &noise);
     if (s->wants & WANT_ERROR &&
-        frame_error(&f->error, &seen->picture, shared->world, &seen->snapshot, &f->request, target, r->target_count,
-                    shared->config->models.sag_m, shared->contact == GROUND_CONTACT_ALL,
-                    world_air_k(shared->world, f->unix_s)))
+        frame_error(&f->error, &(FrameErrorOf){&seen->picture, shared->world, &seen->snapshot, &f->request,
+                                               shared->config->models.sag_m, shared->contact == GROUND_CONTACT_ALL,
+                                               world_air_k(shared->world, f->unix_s)}, target, r->target_count))
         r->error = &f->error;
     r->target       = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
     if (!r->target) return STATUS_NO_MEMORY;
