@@ -48,10 +48,8 @@ void log_suppress(bool hushed);
 /* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
  * stderr is no terminal, where information is hidden, and with a sink. Standard output: set it to NULL before. */
 void log_status(const char *text);
-/* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and requested output
- * stay. */
+/* Whether --quiet is set: no choices, progress or notices; warnings, errors and requested output stay. */
 bool log_is_quiet(void);
-bool log_is_verbose(void);
 /* To standard output, output not requested: choices, a summary at the end. Nothing when quiet. */
 void log_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_detail(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -269,7 +267,6 @@ Status settings_set(void *out, bool *given, const SettingTable *table, const cha
 /* The same as if it were in that file, for paths relative to the file's folder. file NULL: as settings_set. */
 Status settings_set_from(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                          const char *source, const char *file);
-bool   settings_is_path(const Setting *row);
 /* Whether each path is of a regular file, of a folder, or of nothing that is there; else logged: a FIFO or a device would
  * be waited for. outputs: names of keys, `a.b,c.d`, that may be of anything. */
 bool   settings_paths_good(const void *from, const SettingTable *table, const char *outputs);
@@ -315,6 +312,7 @@ typedef struct Probe {
 Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out);
 
 /* ---- small vectors ------------------------------------------------------------------------ */
+
 /* Matrices are row by row: r_a_from_b[3 * row + column]. */
 
 static const double pi_rad = 3.14159265358979323846;

@@ -1,4 +1,6 @@
-/* pitviper_file.c: opens files from outside: by what they are, without waiting for what may never come. */
+/* pitviper_file.c: files for reading: those from outside, opened by what they are and without waiting for what may
+ * never come; temporary ones; and where the program's tables are. */
+
 #include "pitviper_file.h"
 
 #include <errno.h>
@@ -88,8 +90,8 @@ bool file_is_regular(char why[file_why_size], const char *path)
     return false;
 }
 
-/* Until there is something to read, or the last writer of a pipe has gone. A FIFO without a first writer is waited for.
- * False: a stop was requested. */
+/* Waits until there is something to read, or the last writer of a pipe has gone. A FIFO without a first writer is
+ * waited for. False: a stop was requested. */
 static bool wait_for(int file)
 {
     struct pollfd at = {.fd = file, .events = POLLIN};
@@ -172,4 +174,120 @@ Status file_read_whole(char **out, size_t *octets, const char *module, const cha
     *out       = text;
     *octets    = size;
     return STATUS_OK;
+}
+
+/* ---- temporary files and folders, in $TMPDIR or /tmp ---------------------------------------- */
+
+static bool name_it(char out[temp_path_size], const char *ending)
+{
+    const char *folder = getenv("TMPDIR");
+    if (!folder || !*folder) folder = "/tmp";
+    if (snprintf(out, temp_path_size, "%s/pitviper-XXXXXX%s", folder, ending) < temp_path_size) return true;
+    log_error("temporary: TMPDIR is longer than %d octets; set a shorter one", temp_path_size - 32);
+    *out = 0;
+    return false;
+}
+
+static bool made(char path[temp_path_size], bool ok)
+{
+    if (ok) return true;
+    log_error("temporary: cannot make %s: %s; set TMPDIR to a folder that can be written", path, strerror(errno));
+    *path = 0;
+    return false;
+}
+
+bool temp_folder(char out[temp_path_size]) { return name_it(out, "") && made(out, mkdtemp(out) != NULL); }
+
+bool temp_file(char out[temp_path_size], const char *ending)
+{
+    if (!name_it(out, ending)) return false;
+    const int handle = mkstemps(out, (int)strlen(ending));
+    if (handle >= 0) close(handle);
+    return made(out, handle >= 0);
+}
+
+/* ---- the program's tables: the user's own first, then those of the program ------------------ */
+
+/* Of an installation that was moved, or made with another --prefix: BIN/../share/pitviper. Empty: not known. */
+static void share_beside_program(char *out, size_t out_size)
+{
+    const ssize_t length = readlink("/proc/self/exe", out, out_size - 1);
+    out[length > 0 ? length : 0] = 0;
+    for (int i = 0; i < 2; i++) { /* the program's name, and bin */
+        char *slash = strrchr(out, '/');
+        if (slash) *slash = 0;
+    }
+    const size_t n = strlen(out);
+    if (snprintf(out + n, out_size - n, "/share/pitviper") >= (int)(out_size - n)) *out = 0;
+}
+
+static bool join(char *out, size_t out_size, const char *folder, const char *name)
+{
+    const size_t n = strlen(folder), m = strlen(name);
+    if (n + 1 + m >= out_size) return false;
+    memcpy(out, folder, n);
+    out[n] = '/';
+    memcpy(out + n + 1, name, m + 1);
+    return true;
+}
+
+bool etc_path(char *out, size_t out_size, const char *name)
+{
+    char        beside[4096];
+    const char *from_environment = getenv("PITVIPER_ETC");
+    if (from_environment) return join(out, out_size, from_environment, name);
+    share_beside_program(beside, sizeof beside);
+    const char *const folders[] = {beside, PITVIPER_ETC_DIR, PITVIPER_ETC_INSTALLED};
+    bool              fits      = false;
+    for (int i = 0; i < 3; i++) {
+        fits = join(out, out_size, folders[i], name);
+        if (fits && access(out, R_OK) == 0) break;
+    }
+    return fits;
+}
+
+bool etc_is_complete(void)
+{
+    static const char *const needed[] = {"catalog.csv", "materials.csv", "surfaces.csv", "ground_heat.csv", "ground_detail.csv",
+                                         "heat.csv", "effects.csv", "sensors.csv", "channels.csv", "atmosphere/bands.csv"};
+    char   path[4096], beside[4096], missing[256] = "";
+    size_t n = 0;
+    for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)
+        if (!etc_path(path, sizeof path, needed[i]) || access(path, R_OK) != 0)
+            n += (size_t)snprintf(missing + n, sizeof missing - n, "%s%s", n ? ", " : "", needed[i]);
+    if (n == 0) return true;
+    const char *from_environment = getenv("PITVIPER_ETC");
+    if (from_environment) {
+        log_error("tables are missing in %s (PITVIPER_ETC): %s; name a folder that has them all, or unset PITVIPER_ETC",
+                  from_environment, missing);
+        return false;
+    }
+    share_beside_program(beside, sizeof beside);
+    log_error("the program's tables are missing: %s; looked in %s, %s and %s", missing, beside, PITVIPER_ETC_DIR,
+              PITVIPER_ETC_INSTALLED);
+    log_error("next: install the whole (`cmake --install BUILD --prefix DIR`) and run DIR/bin/pitviper, or copy "
+              "share/pitviper beside the program's folder, or set PITVIPER_ETC to the folder etc of the sources");
+    return false;
+}
+
+/* A table of the user's own. */
+
+static struct Own {
+    const char *name;
+    char        path[4096];
+} own[] = {{"catalog.csv", ""}, {"materials.csv", ""}, {"sensors.csv", ""}};
+
+bool etc_own_set(const char *name, const char *path)
+{
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        if (strcmp(own[i].name, name) == 0)
+            return snprintf(own[i].path, sizeof own[i].path, "%s", path ? path : "") < (int)sizeof own[i].path;
+    return false;
+}
+
+const char *etc_own(const char *name)
+{
+    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+        if (strcmp(own[i].name, name) == 0 && *own[i].path) return own[i].path;
+    return NULL;
 }

@@ -1,11 +1,77 @@
-/* pitviper_settings_file.c: a YAML file into a struct by its table: libyaml, which keeps line numbers for messages. */
-#include "pitviper_settings_private.h"
+/* pitviper_settings_file.c: YAML files: the subset that is allowed, and a file into a struct by its table; libyaml
+ * keeps line numbers for messages. */
 
+#include "pitviper_settings_private.h"
 #include "pitviper_file.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <yaml.h>
+
+/* ---- the subset of YAML that input files may use, checked before parsing ----------------------- */
+
+/* The time of libyaml is quadratic in the depth of nesting, the number of anchors and the number of directives:
+ * seconds, or hours, for a megabyte. */
+enum { most_depth = 32, most_anchors = 256, most_directives = 8 };
+
+typedef struct Tally {
+    int depth, anchors, documents;
+} Tally;
+
+static const char *too_much(Tally *tally, const yaml_event_t *event)
+{
+    const yaml_char_t *anchor = NULL;
+    switch (event->type) {
+    case YAML_DOCUMENT_START_EVENT: tally->documents++; break;
+    case YAML_SCALAR_EVENT: anchor = event->data.scalar.anchor; break;
+    case YAML_SEQUENCE_START_EVENT: anchor = event->data.sequence_start.anchor, tally->depth++; break;
+    case YAML_MAPPING_START_EVENT: anchor = event->data.mapping_start.anchor, tally->depth++; break;
+    case YAML_SEQUENCE_END_EVENT:
+    case YAML_MAPPING_END_EVENT: tally->depth--; break;
+    default: break;
+    }
+    tally->anchors += anchor != NULL;
+    return tally->depth > most_depth       ? "lists and mappings nest deeper than 32"
+           : tally->anchors > most_anchors ? "more than 256 anchors"
+           : tally->documents > 1          ? "a second document; only one is read"
+                                           : NULL;
+}
+
+Status yaml_check(const char *module, const char *path, const char *text, size_t octets)
+{
+    yaml_parser_t parser;
+    yaml_event_t  event;
+    Tally         tally = {0};
+    const char   *reason = NULL;
+    int           line = 1, directives = 0;
+    bool          more = true;
+    Status        status = STATUS_OK;
+
+    for (size_t i = 0; i < octets && !reason; i++) {
+        directives += text[i] == '%' && (i == 0 || strchr("\r\n", text[i - 1]));
+        reason = !text[i] ? "holds a NUL octet; is it UTF-8 text?" : NULL;
+        if (directives > most_directives) reason = "more than 8 directives";
+        line += text[i] == '\n';
+    }
+    if (!reason) {
+        if (!yaml_parser_initialize(&parser)) return STATUS_NO_MEMORY;
+        yaml_parser_set_input_string(&parser, (const unsigned char *)text, octets);
+        while (more && !reason && (more = yaml_parser_parse(&parser, &event))) {
+            more = event.type != YAML_STREAM_END_EVENT;
+            reason = too_much(&tally, &event);
+            line = (int)event.start_mark.line + 1;
+            yaml_event_delete(&event);
+        }
+        if (parser.error == YAML_MEMORY_ERROR) status = STATUS_NO_MEMORY;
+        else if (parser.error) reason = parser.problem, line = (int)parser.problem_mark.line + 1;
+        yaml_parser_delete(&parser);
+    }
+    if (!reason) return status;
+    log_error("%s: %s:%d: %s", module, path, line, reason);
+    return STATUS_BAD_VALUE;
+}
+
+/* ---- values ------------------------------------------------------------------------------------ */
 
 typedef struct Reading {
     const char      *path, *file; /* file: paths are relative to its folder */
@@ -217,7 +283,7 @@ static Status fill_list(void *out, const Reading *r, const SettingTable *table, 
     return worst;
 }
 
-/* Which list a key names; -1: none. */
+/* The list that a key names; -1: none. */
 static int find_list(const SettingTable *table, const char *name)
 {
     for (int i = 0; i < table->list_count; i++)
@@ -234,9 +300,11 @@ static bool is_section(const SettingTable *table, const char *name)
 }
 
 static Status fill_key(void *out, bool *given, bool *seen, const Reading *r, const SettingTable *table,
-                       const char *section, const yaml_node_t *name, const yaml_node_t *value)
+                       const char *section, const yaml_node_pair_t *pair)
 {
-    char full[key_size], source[source_size];
+    const yaml_node_t *name = yaml_document_get_node(r->document, pair->key);
+    const yaml_node_t *value = yaml_document_get_node(r->document, pair->value);
+    char               full[key_size], source[source_size];
     snprintf(source, sizeof source, "%s:%d", r->path, line_of(name));
     if (name->type != YAML_SCALAR_NODE) {
         log_error("%s: %s: a key must be a word", table->module, source);
@@ -272,9 +340,7 @@ static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r,
     const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start, *end = mapping->data.mapping.pairs.top;
     Status                  worst = STATUS_OK;
     for (; pair < end; pair++) {
-        const Status status = fill_key(out, given, seen, r, table, section,
-                                       yaml_document_get_node(r->document, pair->key),
-                                       yaml_document_get_node(r->document, pair->value));
+        const Status status = fill_key(out, given, seen, r, table, section, pair);
         if (!goes_on(&worst, r, status)) return worst;
     }
     return worst;

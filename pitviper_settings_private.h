@@ -4,8 +4,6 @@
 
 #include "pitviper.h"
 
-/* Each path behind the folder of file, which it is relative to. False: it does not fit. */
-bool settings_place_paths(char *out, size_t out_size, SettingType type, const char *value, const char *file);
 /* A value within its row's range. */
 bool settings_number(double *out, const Setting *row, const char *value);
 /* One value into its place. file: paths are relative to its folder; NULL: to the current one. */

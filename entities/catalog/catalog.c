@@ -1,13 +1,13 @@
 /* entities/catalog/catalog.c: entity type -> model, by the longest pattern of etc/catalog.csv. */
+
 #include "entities/catalog/catalog.h"
-#include "entities/catalog/model_fit.h"
-#include "entities/catalog/size_range.h"
-#include "entities/import/model_import.h"
-#include "entities/parametric/parametric.h"
+#include "entities/shapes/parametric.h"
+#include "pitviper_output.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum { type_fields = 7, any = -1, catalog_columns = 7 };
 static const char *const column_name[catalog_columns] = {"type", "model", "origin", "length_m", "width_m", "height_m",
@@ -129,7 +129,7 @@ static Status find_or_add(int *out, Catalog *catalog, const char *name, const Mo
     return STATUS_OK;
 }
 
-/* With its own facets and size, once. */
+/* Builds the model with its own facets and size, once. */
 static void build_fine(const Catalog *catalog, int index)
 {
     CatalogModel *m = catalog->model + index;
@@ -248,7 +248,7 @@ void catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int do
         if ((kind >= 0 && row.kind != kind) || (domain >= 0 && row.domain >= 0 && row.domain != domain)) continue;
         catalog_size(m, catalog, row.model);
         snprintf(who, sizeof who, "%.40s, line %d", row.note && *row.note ? row.note : row.source, row.line);
-        size_range_take(out, fmax(m[0], fmax(m[1], m[2])), who);
+        model_size_range_take(out, fmax(m[0], fmax(m[1], m[2])), who);
     }
 }
 
@@ -256,11 +256,11 @@ void catalog_size_range(SizeRange *out, const Catalog *catalog, int kind, int do
 static void warn_odd_size(const Catalog *catalog, const CatalogRow *row, const CatalogModel *m)
 {
     static const double slack = 3;
-    const double largest_m = size_of_model(&catalog->model[m->shape].first);
+    const double largest_m = model_size_largest_m(&catalog->model[m->shape].first);
     SizeRange range;
     char advice[200];
     catalog_size_range(&range, catalog, row->field[0], row->field[1]);
-    if (!size_is_odd(advice, largest_m, &range, slack, m->import)) return;
+    if (!model_size_is_odd(advice, largest_m, &range, slack, m->import)) return;
     log_warn("catalog: %s:%d: %s is %.3g m large, but what etc/catalog.csv has of its kind is %.3g m (%s) to %.3g m (%s) large: %s; "
              "if it is right, say so with length_m, width_m, height_m in the row",
              row->own ? catalog->own_path : catalog->path, row->line, m->source, largest_m, range.low_m, range.low, range.high_m,
@@ -299,7 +299,7 @@ static void warn_sizes(const Catalog *catalog)
         const double want_m = fmax(want.length_m, fmax(want.width_m, want.height_m));
         const SizeRange about = {.low_m = want_m, .high_m = want_m};
         char advice[200];
-        if (fit.factor == 0 && size_is_odd(advice, size_of_model(model), &about, 3, m->import))
+        if (fit.factor == 0 && model_size_is_odd(advice, model_size_largest_m(model), &about, 3, m->import))
             snprintf(fit.advice, sizeof fit.advice, "%s", advice);
         char text[3][24];
         const double figure[3] = {want.length_m, want.width_m, want.height_m};
@@ -471,4 +471,29 @@ int catalog_find(const Catalog *catalog, DisEntityType type, Origin *origin, int
     if (matched) *matched = 0;
     build_fine(catalog, 0);
     return 0;
+}
+
+Status catalog_open_one(Catalog **out, int *model, const char *name, double sag_m)
+{
+    char   path[temp_path_size];
+    char  *real = model_is_path(name) ? realpath(name, NULL) : NULL;
+    Status status = STATUS_IO;
+    if (!model_is_path(name) && !parametric_known(name)) return model_say_unknown(name);
+    if (!temp_file(path, ".csv")) {
+        free(real);
+        return STATUS_IO;
+    }
+    FILE *file = output_file(path, 0);
+    if (file) {
+        fputs("type,model,origin\n*,\"", file);
+        for (const char *c = real ? real : name; *c; c++) fputs(*c == '"' ? "\"\"" : (const char[]){*c, 0}, file);
+        fputs("\",base\n", file);
+        if (fclose(file) == 0) status = catalog_open(out, path, sag_m);
+    } else {
+        log_error("model: cannot write %s", path);
+    }
+    unlink(path);
+    free(real);
+    if (status == STATUS_OK) *model = catalog_find(*out, (DisEntityType){.kind = 1}, NULL, NULL);
+    return status;
 }

@@ -3,8 +3,8 @@
 #ifndef ENTITIES_CATALOG_CATALOG_H
 #define ENTITIES_CATALOG_CATALOG_H
 
-#include "dis/pdu.h"
-#include "entities/catalog/size_range.h"
+#include "dis/pdu/pdu.h"
+#include "entities/catalog/model_size.h"
 #include "entities/models/model.h"
 
 /* What the sender's position refers to. */

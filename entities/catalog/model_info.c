@@ -1,10 +1,7 @@
-/* entities/catalog/model_info.c: what `pitviper model info` prints of one model. */
+/* entities/catalog/model_info.c: what `pitviper model info` prints of one model, and `pitviper model list` of all. */
 #include "entities/catalog/model_info.h"
-
-#include "entities/catalog/size_range.h"
-#include "entities/parametric/parametric.h"
 #include "entities/import/sidecar.h"
-
+#include "entities/shapes/parametric.h"
 
 const char *model_info_axis(char out[4], const ModelImport *import, int which)
 {
@@ -106,14 +103,15 @@ static void print_parts(const Model *m)
     }
 }
 
-/* Beyond all of the catalog by half, or hardly a thing at all; else, where its name says what it is, off by a factor of 3. */
+/* A size is odd that is half as large again as anything in the catalog, or hardly that of a thing at all; and, where
+ * the name says what the model is, one that is off by a factor of 3. */
 static void judge_size(ModelInfo *info, const char *name)
 {
     static const double slack = 1.5, named_slack = 3;
     const ModelImport *import = &info->import;
     /* a file that says centimetres may be drawn in metres all the same: 8 cm are then 8 m */
     const double least_m = import->scale_assumed && import->scale_m != 1 ? 0.3 : 0.05;
-    const double largest_m = size_of_model(&info->model);
+    const double largest_m = model_size_largest_m(&info->model);
     const char *slash = strrchr(name, '/');
     char path[4096], advice[200];
     Catalog *catalog;
@@ -124,11 +122,11 @@ static void judge_size(ModelInfo *info, const char *name)
         catalog_close(catalog);
     }
     log_suppress(false);
-    range.low_m = slack * least_m; /* which size_is_odd divides by slack */
-    if (size_range_named(&named, slash ? slash + 1 : name) && size_is_odd(advice, largest_m, &named, named_slack, &info->import))
+    range.low_m = slack * least_m; /* which model_size_is_odd divides by slack */
+    if (model_size_range_named(&named, slash ? slash + 1 : name) && model_size_is_odd(advice, largest_m, &named, named_slack, &info->import))
         snprintf(info->advice, sizeof info->advice, "it is %.3g m large, and `%s`, as it is called, %.3g m: %s", largest_m,
                  named.high, named.high_m, advice);
-    else if (size_is_odd(advice, largest_m, &range, slack, &info->import))
+    else if (model_size_is_odd(advice, largest_m, &range, slack, &info->import))
         snprintf(info->advice, sizeof info->advice, "it is %.3g m large, and %s %.3g m%s%s: %s", largest_m,
                  largest_m > range.high_m ? "nothing of etc/catalog.csv is larger than" : "few things are smaller than",
                  largest_m > range.high_m ? range.high_m : least_m, largest_m > range.high_m ? ", " : "",
@@ -186,4 +184,85 @@ void model_info_print(const ModelInfo *info)
                edges->open, edges->open_parts, edges->crowded, edges->inside_out_parts);
     print_nodes(m);
     print_parts(m);
+}
+
+/* ---- the list: built-in shapes, and the model of each entity type of the catalog -------------- */
+
+/* As IEEE 1278.1 and SISO-REF-010 have kinds and domains. */
+static const char *kind_name(int kind, int domain)
+{
+    static const char *const domains[] = {"other", "land", "air", "surface", "subsurface", "space"};
+    static const char *const kinds[] = {"other",   "platform", "munition", "life form", "environmental",
+                                        "cultural", "supply",  "radio",    "expendable", "sensor/emitter"};
+    if (kind == 1 && domain >= 1 && domain <= 5) return domains[domain];
+    return kind >= 0 && kind <= 9 ? kinds[kind] : "any";
+}
+
+/* turret azimuth, gun elevation, 2 rotors, 6 wheels. */
+static void parts_of(char *out, size_t out_size, const Model *model)
+{
+    size_t n = 0;
+    int wheels = 0, spinning = 0;
+    *out = 0;
+    for (int i = 0; i < model->node_count && n < out_size; i++) {
+        const ModelNode *node = &model->node[i];
+        char text[32];
+        const char *metric = sidecar_metric_text(node->dis_metric);
+        if (node->joint == JOINT_FIXED) continue;
+        if (node->dis_class)
+            n += (size_t)snprintf(out + n, out_size - n, "%s%s %s", n ? ", " : "",
+                                  sidecar_class_text(text, node->dis_class) ? text : node->name, metric ? metric : "?");
+        wheels += node->roll_radius_m > 0;
+        spinning += node->spin_rps_moving != 0;
+    }
+    if (spinning && n < out_size)
+        n += (size_t)snprintf(out + n, out_size - n, "%s%d that spin", n ? ", " : "", spinning);
+    if (wheels && n < out_size) snprintf(out + n, out_size - n, "%s%d wheels", n ? ", " : "", wheels);
+    if (!*out) snprintf(out, out_size, "none");
+}
+
+static Status list_shapes(FILE *to)
+{
+    static const double coarse_chord_error_m = 0.1; /* nodes and sizes do not depend on it */
+    text_print(to, "Built-in shapes: name, size in metres (length x width x height), articulated parts\n\n");
+    for (int i = 0; i < parametric_count(); i++) {
+        Model model;
+        char parts[400], size[40];
+        const Status status = parametric_build(&model, parametric_name(i), coarse_chord_error_m);
+        if (status != STATUS_OK) return status;
+        parts_of(parts, sizeof parts, &model);
+        snprintf(size, sizeof size, "%.2f x %.2f x %.2f", model.length_m, model.width_m,
+                 fmax(model.box_high[2], 0) - model.box_low[2]);
+        text_print(to, "  %-16s %-24s %s\n", parametric_name(i), size, parts);
+        model_destroy(&model);
+    }
+    return STATUS_OK;
+}
+
+Status model_list(FILE *to, const char *catalog_path)
+{
+    Catalog *catalog;
+    Status status = catalog_open(&catalog, catalog_path, 0.1);
+    if (status != STATUS_OK) return status;
+    status = list_shapes(to);
+    text_print(to, "\nCatalog, in the order in which it is searched: entity type, kind, model, size, row, note%s\n\n",
+            etc_own("catalog.csv") ? "; your own first" : "");
+    for (int r = 0; r < catalog_row_count(catalog) && status == STATUS_OK; r++) {
+        CatalogRowInfo row;
+        double m[3];
+        char size[40] = "not seen", parts[400] = "";
+        catalog_row(&row, catalog, r);
+        catalog_size(m, catalog, row.model);
+        if (catalog_has_shape(catalog, row.model)) snprintf(size, sizeof size, "%.2f x %.2f x %.2f", m[0], m[1], m[2]);
+        const char *slash = strrchr(row.path, '/');
+        text_print(to, "  %-22s %-12s %-18s %-24s %s:%d  %s", row.type, kind_name(row.kind, row.domain), row.source,
+                   size, slash ? slash + 1 : row.path, row.line, row.note);
+        if (model_is_path(row.source)) { /* of the others it stands above */
+            parts_of(parts, sizeof parts, catalog_model(catalog, row.model));
+            text_print(to, "; articulated: %s", parts);
+        }
+        fputc('\n', to);
+    }
+    catalog_close(catalog);
+    return status;
 }

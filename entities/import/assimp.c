@@ -1,5 +1,5 @@
 /* entities/import/assimp.c: files that assimp reads, in the reader's process. */
-#include "entities/import/assimp_library.h"
+
 #include "entities/import/reader.h"
 
 #include <assimp/cfileio.h>
@@ -7,6 +7,13 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <stdlib.h>
+
+/* The functions of assimp that are called here. */
+#define ASSIMP(X)                                                                                                     \
+    X(aiCreatePropertyStore) X(aiGetErrorString) X(aiGetMaterialColor) X(aiGetMaterialString)                          \
+    X(aiGetMaterialTextureCount) X(aiImportFileExWithProperties) X(aiIsExtensionSupported)                             \
+    X(aiSetImportPropertyInteger)
+LIBRARY(assimp_library, ASSIMP, "assimp", PITVIPER_ASSIMP_FILE, "libassimp5");
 
 /* ---- assimp's files --------------------------------------------------------------------------------- */
 
@@ -321,7 +328,7 @@ static void fbx_frame(ImportScene *s, const struct aiScene *source, const FileTe
              s->mirrored ? ", left-handed by its CoordAxis: mirrored" : "");
 }
 
-/* By the format: assimp turns most to y up; scanners and printers (PLY, STL) have z up. */
+/* Unit and axes by the format: assimp turns most to y up; scanners and printers (PLY, STL) have z up. */
 static void frame(ImportScene *s, const struct aiScene *source, const FileText *text, ReaderSaid *said)
 {
     const char *e = text->extension;
@@ -359,7 +366,7 @@ static void frame(ImportScene *s, const struct aiScene *source, const FileText *
             text->comment, text->comment_m);
 }
 
-Status import_assimp_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, const char *extension)
+static Status assimp_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, const char *extension)
 {
     Flat flat = {0};
     Files own = {.files = files, .said = said, .scene = s, .text = {.extension = extension}};
@@ -404,5 +411,5 @@ Status import_assimp(ImportScene *out, const char *path, const char *extension)
             path, extension);
         return STATUS_UNSUPPORTED;
     }
-    return reader_run(out, import_assimp_read, path, extension);
+    return reader_run(out, assimp_read, path, extension);
 }

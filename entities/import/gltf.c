@@ -3,7 +3,7 @@
  *
  * assimp 5.2 reads glTF too, but takes quantised numbers for octets of a float, and passes over extensions that the
  * file says it cannot be read without. */
-#include "entities/import/gltf.h"
+#include "entities/import/gltf_private.h"
 
 #include <stdlib.h>
 
@@ -369,7 +369,7 @@ Status import_gltf_text(ImportScene *s, ReaderSaid *said, ReaderFiles *files, ch
     return status;
 }
 
-Status import_gltf_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, const char *extension)
+static Status gltf_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, const char *extension)
 {
     char *text;
     size_t octets;
@@ -383,5 +383,5 @@ Status import_gltf_read(ImportScene *s, ReaderSaid *said, ReaderFiles *files, co
 
 Status import_gltf(ImportScene *out, const char *path, const char *extension)
 {
-    return reader_run(out, import_gltf_read, path, extension);
+    return reader_run(out, gltf_read, path, extension);
 }

@@ -1,6 +1,6 @@
 /* entities/import/gltf_mesh.c: meshes of a glTF file as triangles: strips and fans taken apart, blended by their
  * default weights, posed by their skin as the file's nodes stand. */
-#include "entities/import/gltf.h"
+#include "entities/import/gltf_private.h"
 
 #include <stdlib.h>
 

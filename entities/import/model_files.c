@@ -1,6 +1,8 @@
-/* entities/import/model_files.c: which files a model is read from: its own and its sidecar. */
+/* entities/import/model_files.c: a model by its name: a built-in shape, or the files that it is read from, its own and
+ * its sidecar. */
 #include "entities/import/model_import_private.h"
 
+#include "entities/shapes/parametric.h"
 #include "pitviper_file.h"
 
 #include <ctype.h>
@@ -79,4 +81,22 @@ Status import_find_files(ModelImport *report, Sidecar *sidecar, const char *path
     }
     log_error("model: cannot read: file=%s: larger than 256 MiB", report->file);
     return STATUS_BAD_VALUE;
+}
+
+/* ---- by name ----------------------------------------------------------------------------------- */
+
+Status model_say_unknown(const char *name)
+{
+    WordMeant meant = word_meant(name);
+    for (int i = 0; i < parametric_count(); i++) word_consider(&meant, parametric_name(i));
+    log_error("model: no built-in model of this name: '%s'; `pitviper model list` lists them, a file's name has a dot or "
+              "a slash in it%s", name, word_hint(&meant));
+    return STATUS_UNSUPPORTED;
+}
+
+Status model_open(Model *out, ModelImport *report, bool *imported, const char *name, double sag_m)
+{
+    *imported = model_is_path(name);
+    if (*imported) return model_import(out, report, name);
+    return parametric_known(name) ? parametric_build(out, name, sag_m) : model_say_unknown(name);
 }

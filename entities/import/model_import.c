@@ -1,6 +1,5 @@
 /* entities/import/model_import.c: a flat scene and its sidecar -> a Model. */
 #include "entities/import/model_import_private.h"
-#include "entities/parametric/parametric.h"
 
 #include <stdlib.h>
 
@@ -490,20 +489,4 @@ void model_import_say(const ModelImport *r, const Model *model)
     log_info("model: %s: %.4g x %.4g x %.4g m, %d triangles; %.9g m a unit (%s), axes by %s; lost: %s; sidecar: %s%s",
              r->file, model->length_m, model->width_m, model->height_m, model->triangle_count, r->scale_m, r->unit_from, r->axes_from, lost,
              r->sidecar[0] ? r->sidecar : "none", r->scale_assumed || r->axes_assumed ? " (`scale`, `axes` there say otherwise)" : "");
-}
-
-Status model_say_unknown(const char *name)
-{
-    WordMeant meant = word_meant(name);
-    for (int i = 0; i < parametric_count(); i++) word_consider(&meant, parametric_name(i));
-    log_error("model: no built-in model of this name: '%s'; `pitviper model list` lists them, a file's name has a dot or "
-              "a slash in it%s", name, word_hint(&meant));
-    return STATUS_UNSUPPORTED;
-}
-
-Status model_open(Model *out, ModelImport *report, bool *imported, const char *name, double sag_m)
-{
-    *imported = model_is_path(name);
-    if (*imported) return model_import(out, report, name);
-    return parametric_known(name) ? parametric_build(out, name, sag_m) : model_say_unknown(name);
 }

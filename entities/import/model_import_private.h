@@ -78,7 +78,7 @@ void import_scene_close(ImportScene *scene); /* accepts zeroes */
 /* Everything of it; `.gz` or plain. *out is NUL-terminated. Nothing logged when `quiet`. */
 Status import_read_whole(char **out, size_t *octets, const char *path, bool quiet);
 
-/* ---- model_import_joints.c ------------------------------------------------------------------ */
+/* ---- import_joints.c ------------------------------------------------------------------ */
 
 typedef struct ImportJoint {
     char name[model_name_size];
@@ -115,7 +115,7 @@ bool import_matches(const char *pattern, const char *text);
 const SidecarRule *import_rule(const SidecarRules *rules, const ImportScene *scene, const ImportPlace *place, int node,
                                int damage);
 
-/* ---- model_import_names.c -------------------------------------------------------------------- */
+/* ---- import_names.c -------------------------------------------------------------------- */
 
 /* Logs why a joint of the sidecar has no node: the names that there are, and which was meant. */
 void import_report_missing_node(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, int joint);
@@ -124,7 +124,7 @@ void import_warn_names(const ImportScene *scene, const ImportPlace *place, const
 /* How many nodes have no name, and how many share theirs. */
 void import_count_names(int *unnamed, int *shared, const ImportScene *scene);
 
-/* ---- model_import_surface.c ------------------------------------------------------------------ */
+/* ---- import_surface.c ------------------------------------------------------------------ */
 
 /* Material and heat role of a part without an entry in the sidecar. */
 typedef struct ImportPaints {
@@ -136,15 +136,46 @@ typedef struct ImportPaints {
 Status import_paints_open(ImportPaints *out);
 void import_paints_close(ImportPaints *paints);
 bool import_paints_have(const ImportPaints *paints, const char *name);
-/* By words in the material's name, else by colour, else paint_olive; *source: which of these. */
+/* The paint of a material: by words in its name, else by colour, else paint_olive; *source: which of these. */
 const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints *paints,
                                const ImportMaterial *material);
-/* By words in the path, the last word wins; HEAT_PASSIVE without any. */
+/* The heat role of a part by words in its path, of which the last one wins; HEAT_PASSIVE without any. */
 HeatRole import_role_guess(const char *path);
 
 /* One part's triangles in node axes -> vertices with normals by crease angle. `corner` is triangle * 3 + k.
  * Writes at most 3 * triangle_count vertices, whose count is returned; -1: no memory. */
 int import_smooth(double (*vertex)[3], float (*normal)[3], uint32_t (*triangle)[3], const double (*corner)[3],
                   int triangle_count, double crease_rad);
+
+/* ---- osg_text.c ----------------------------------------------------------------------------- */
+
+/* OpenSceneGraph's text form as a tree: one element per line, `{` opens its children. */
+
+typedef struct OsgElement {
+    int first_word, words;
+    int child, next; /* -1: none */
+} OsgElement;
+
+typedef struct OsgText {
+    const char *path;
+    int element_count, element_room, word_count, word_room;
+    OsgElement *element;
+    char **word;
+    int *by_id; /* element with this UniqueID that has more than the id; -1 */
+    int id_count;
+} OsgText;
+
+/* The tree of a text, which is split in place and must outlive it. STATUS_BAD_VALUE, not logged: it is
+ * incomplete. Close it whatever open returns. */
+Status osg_text_open(OsgText *out, const char *path, char *text, size_t octets);
+void   osg_text_close(OsgText *text);
+
+const char *osg_word(const OsgText *x, int element, int index); /* "": there is none */
+/* The child with this first word; -1: none. */
+int    osg_find(const OsgText *x, int element, const char *name);
+/* A repeated object is written as its id alone: the element with the full definition. */
+int    osg_resolve(const OsgText *x, int element);
+/* Numbers among an element's words from `from` on; false when there are fewer than count. */
+bool   osg_numbers(double *out, int count, const OsgText *x, int element, int from);
 
 #endif

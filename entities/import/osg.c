@@ -3,7 +3,6 @@
  * OpenSceneGraph's own reader turns the records into nodes, metres and polygons; its text form keeps names, degrees of
  * freedom and geometry. */
 #include "entities/import/model_import_private.h"
-#include "entities/import/osg_private.h"
 
 #include <stdlib.h>
 

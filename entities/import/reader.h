@@ -4,6 +4,7 @@
 #define ENTITIES_IMPORT_READER_H
 
 #include "entities/import/model_import_private.h"
+#include "pitviper_library.h"
 
 /* The model `tank.obj.gz` is `tank.obj` to a reader; files it names (materials, buffers) are in the same folder. */
 typedef struct ReaderFiles {
@@ -41,7 +42,6 @@ Status reader_run(ImportScene *out, Reader *read, const char *path, const char *
 /* Room for the scene's counts; its arrays are zero. */
 bool import_scene_room(ImportScene *scene);
 
-Reader import_assimp_read, import_gltf_read;
 /* The same from memory; other files are still of `files`. */
 Status import_gltf_text(ImportScene *out, ReaderSaid *said, ReaderFiles *files, char *text, size_t octets);
 /* False when an index or a count is not what a whole scene has. */
@@ -51,19 +51,13 @@ bool import_scene_is_sound(ImportScene *scene);
  * point, a statement a line, no texture coordinates (nothing uses them). *text is replaced. A statement that cannot be
  * meant as it is fails, with its line. lost: counts that it adds to. */
 Status import_obj_plain(char **text, size_t *octets, int lost[IMPORT_LOST_COUNT], ReaderSaid *said, ReaderFiles *files);
-/* A word of a text: what is between blanks. */
-typedef struct ReaderWord {
-    const char *at;
-    size_t length;
-} ReaderWord;
-
-/* The next word of [*at, end), which it moves; length 0: none. */
-ReaderWord reader_word(const char **at, const char *end);
-bool reader_word_is(ReaderWord word, const char *text);
-
 /* The unit that 3MF, AMF and DXF name, in metres; 0: none. word: as it is said; empty: the format's default. */
 double import_stated_unit(char word[24], const char *extension, const char *bytes, size_t octets);
 /* The unit that comments of a text (OBJ, PLY, STL) name, in metres; 0: none. word: as it stands there. */
 double import_comment_unit(char word[24], const char *text, size_t octets);
+
+/* assimp, loaded when a model file is first imported. */
+
+extern Library assimp_library;
 
 #endif

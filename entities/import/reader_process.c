@@ -1,19 +1,134 @@
-/* entities/import/reader_process.c: a reader of model files in a process of its own.
+/* entities/import/reader_process.c: a reader of model files in a process of its own, and the files that it sees.
  *
  * Readers have crashed on broken files often enough: they run in a child, which hands the flat scene back in memory
  * that both have: header, then arrays. The result is validated like untrusted input. */
 #include "entities/import/reader.h"
 #include "pitviper_confine.h"
+#include "pitviper_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
+#include <stdarg.h>
 #include <stdlib.h>
+#include <strings.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
-#include <signal.h>
 #include <unistd.h>
+#include <zlib.h>
+
+/* ---- files: the model's own and those of its folder ------------------------------------------- */
+
+void reader_files(ReaderFiles *out, const char *path)
+{
+    *out = (ReaderFiles){.path = path};
+    snprintf(out->shown, sizeof out->shown, "%s", path);
+    const size_t length = strlen(out->shown);
+    if (length > 3 && strcasecmp(out->shown + length - 3, ".gz") == 0) out->shown[length - 3] = 0;
+    const char *slash = strrchr(out->shown, '/');
+    out->folder = slash ? (size_t)(slash - out->shown) + 1 : 0;
+}
+
+/* The first name; a library asks for a file several times, and by more than one. */
+static Status refuse(ReaderFiles *files, const char *name)
+{
+    if (!*files->refused) snprintf(files->refused, sizeof files->refused, "%s", name);
+    return STATUS_IO;
+}
+
+Status reader_read(char **out, size_t *octets, ReaderFiles *files, const char *name)
+{
+    char packed[1100];
+    struct stat there;
+    const bool is_model = strcmp(name, files->shown) == 0;
+    if (!is_model && (strncmp(name, files->shown, files->folder) != 0 || strstr(name + files->folder, "..") ||
+                      name[files->folder] == '/'))
+        return refuse(files, name);
+    Status status = import_read_whole(out, octets, is_model ? files->path : name, true);
+    snprintf(packed, sizeof packed, "%s.gz", name);
+    if (status != STATUS_OK && status != STATUS_NO_MEMORY && !is_model)
+        status = import_read_whole(out, octets, packed, true);
+    files->no_memory = files->no_memory || status == STATUS_NO_MEMORY;
+    if (status != STATUS_OK && stat(name, &there) == 0 && !S_ISREG(there.st_mode)) return refuse(files, name);
+    return status;
+}
+
+Status reader_fails(ReaderSaid *said, Status status, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    vsnprintf(said->error, sizeof said->error, format, list);
+    va_end(list);
+    return status;
+}
+
+void reader_warns(ReaderSaid *said, const char *format, ...)
+{
+    if (said->warnings == sizeof said->warning / sizeof *said->warning) return;
+    va_list list;
+    va_start(list, format);
+    vsnprintf(said->warning[said->warnings++], sizeof *said->warning, format, list);
+    va_end(list);
+}
+
+/* ---- whole files ---------------------------------------------------------------------------- */
+
+Status import_read_whole(char **out, size_t *octets, const char *path, bool quiet)
+{
+    char refused[file_why_size];
+    const char *why = NULL;
+    const int file_at = file_open(refused, NULL, path, FILE_FROM_DISK);
+    gzFile file = NULL;
+    char *text = NULL;
+    size_t size = 0, capacity = 1 << 16;
+    Status status = STATUS_IO;
+
+    if (file_at < 0)
+        why = refused;
+    else if (!(file = gzdopen(file_at, "rb"))) {
+        why = strerror(errno);
+        close(file_at);
+    }
+    while (!why) {
+        char *larger = realloc(text, capacity + 1);
+        if (!larger) {
+            status = STATUS_NO_MEMORY;
+            why = "no memory";
+            break;
+        }
+        text = larger;
+        const int got = gzread(file, text + size, (unsigned)(capacity - size));
+        int code;
+        if (got > 0) size += (size_t)got;
+        gzerror(file, &code);
+        if (got < 0 || (code != Z_OK && code != Z_STREAM_END)) {
+            status = STATUS_BAD_VALUE;
+            why = "the packed data are broken or cut short";
+        } else if (size < capacity) {
+            break;
+        } else if (capacity >= import_max_octets) {
+            status = STATUS_BAD_VALUE;
+            why = "larger than 256 MiB";
+        } else {
+            capacity *= 2;
+        }
+    }
+    if (file) gzclose(file);
+    if (why) {
+        if (!quiet) log_error("model: cannot read: file=%s: %s", path, why);
+        free(text);
+        return status;
+    }
+    text[size] = 0;
+    *out = text;
+    *octets = size;
+    return STATUS_OK;
+}
+
+/* ---- the scene in shared memory --------------------------------------------------------------- */
 
 /* The scene's pointers mean nothing to the other side. */
 typedef struct Header {

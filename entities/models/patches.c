@@ -1,23 +1,16 @@
-/* entities/models/patches.c: bodies of a model, how finely they are cut, and the figures of each patch. */
+/* entities/models/patches.c: the patches of a model: how finely its bodies are cut, and the figures of each patch. */
 #include "entities/models/patches_private.h"
 
 #include <stdlib.h>
 
-static const double length_m         = 1.5;   /* of one length of a body, about */
-static const double length_least_m   = 1.0;   /* bodies shorter than this are not cut along */
-static const double inward_least_m   = 1;     /* bodies less wide than this have no inner sides */
 static const double small_share      = 0.02;  /* cells below this share of their body join another, */
 static const double small_m2         = 0.01;  /* and those below this beside larger ones */
-static const double prefer_axis      = 1.03;  /* an extent is longer when it is by this: x before y before z */
 static const double facing_least     = 1e-6;  /* mean normals shorter than this have no direction */
 static const double better           = 0.9;   /* what fits better by less, as mirrored cells may, fits as well */
 static const double open_least       = 0.01;  /* of a patch; with less of it outside, none of it is */
 static const double sinkage_m        = 0.02;  /* what is lower than this over the base, and faces the ground by a cosine of */
 static const double facing_ground    = 0.5;   /* this, touches it: a tyre of 0.5 m radius over 0.28 m; estimate */
 enum { candidates = 16 };                     /* points of a patch among which some are chosen */
-
-/* Ways to group parts, from fine to coarse. */
-typedef enum Grouping { BY_MATERIAL, BY_NODE_ROLE, BY_ROLE, GROUPINGS } Grouping;
 
 /* Ways to cut bodies, from fine to coarse. */
 static const struct Fineness {
@@ -56,169 +49,6 @@ static void add_piece(Sums *sums, const Facet *f, const Piece *piece, double wei
         v3_add_scaled(sums->p, sums->p, part / 3, sum);
         /* second moment of a triangle: a twelfth of the area times this */
         sums->square += part / 12 * (v3_dot(o, o) + v3_dot(a, a) + v3_dot(b, b) + v3_dot(sum, sum));
-    }
-}
-
-/* ---- bodies ----------------------------------------------------------------------------------- */
-
-static bool belongs(const Model *m, const ModelPart *part, const Body *body, Grouping grouping)
-{
-    if (part->role != body->role) return false;
-    if (grouping == BY_ROLE) return true;
-    return part->node == body->node &&
-           (grouping == BY_NODE_ROLE || (strcmp(part->material, m->part[body->part].material) == 0 &&
-                                         part->thickness_m == m->part[body->part].thickness_m));
-}
-
-/* False: more than patches_most. */
-static bool group_parts(Cutter *c, Grouping grouping)
-{
-    const Model *m = c->model;
-    c->bodies = 0;
-    for (int i = 0; i < m->part_count; i++) {
-        int b = 0;
-        while (b < c->bodies && !belongs(m, &m->part[i], &c->body[b], grouping)) b++;
-        if (b == patches_most) return false;
-        if (b == c->bodies)
-            c->body[c->bodies++] = (Body){.node = m->part[i].node, .part = i, .role = m->part[i].role};
-        c->body_of_part[i] = b;
-    }
-    return true;
-}
-
-/* How one node's axes are seen from another's, at rest. */
-static NodePose seen_from(const NodePose *to, const NodePose *from)
-{
-    NodePose out;
-    double   d[3];
-    m3_tmul(out.r_body_from_node, to->r_body_from_node, from->r_body_from_node);
-    v3_sub(d, from->p_body, to->p_body);
-    m3_tmul_v3(out.p_body, to->r_body_from_node, d);
-    return out;
-}
-
-/* Bodies of several nodes take that of their largest part. */
-static Status choose_nodes(Cutter *c)
-{
-    const Model *m = c->model;
-    double largest_m2[patches_most] = {0};
-    free(c->body_of_node);
-    c->body_of_node = calloc((size_t)m->part_count, sizeof *c->body_of_node);
-    if (!c->body_of_node) return STATUS_NO_MEMORY;
-    for (int i = 0; i < m->part_count; i++) {
-        const int b = c->body_of_part[i];
-        double    area_m2 = 0;
-        for (int t = m->part[i].first_triangle; t < m->part[i].first_triangle + m->part[i].triangle_count; t++) {
-            const uint32_t *v = m->triangle[t];
-            double          one[3], other[3], cross[3];
-            v3_sub(one, m->vertex[v[1]], m->vertex[v[0]]);
-            v3_sub(other, m->vertex[v[2]], m->vertex[v[0]]);
-            v3_cross(cross, one, other);
-            area_m2 += 0.5 * v3_length(cross);
-        }
-        if (!(area_m2 > largest_m2[b] * (1 + 1e-3))) continue;
-        largest_m2[b]   = area_m2;
-        c->body[b].node = m->part[i].node;
-    }
-    for (int i = 0; i < m->part_count; i++)
-        c->body_of_node[i] = seen_from(&c->pose[c->body[c->body_of_part[i]].node], &c->pose[m->part[i].node]);
-    return STATUS_OK;
-}
-
-/* Whether a node turns by itself or rolls, with its parents, and about which axis of its own. */
-static bool turns(double axis[3], const Cutter *c, int node)
-{
-    for (int n = node; n >= 0; n = c->model->node[n].parent) {
-        const ModelNode *at = &c->model->node[n];
-        if (at->joint != JOINT_ROTATION || !(at->spin_rps_moving != 0 || at->roll_radius_m > 0)) continue;
-        double axis_body[3];
-        m3_mul_v3(axis_body, c->pose[n].r_body_from_node, at->axis);
-        m3_tmul_v3(axis, c->pose[node].r_body_from_node, axis_body);
-        return true;
-    }
-    return false;
-}
-
-static void widen(double low[3], double high[3], const double p[3])
-{
-    for (int i = 0; i < 3; i++) {
-        low[i]  = fmin(low[i], p[i]);
-        high[i] = fmax(high[i], p[i]);
-    }
-}
-
-static void turned(double out[3], const NodePose *pose, const double p[3])
-{
-    double r[3];
-    m3_mul_v3(r, pose->r_body_from_node, p);
-    v3_add(out, r, pose->p_body);
-}
-
-/* The top of the arc over an edge with these shading normals: exact for a circle, the edge's middle for a plane. False:
- * there is none. So the extents of a coarse build are those of a fine one. */
-static bool arc_top(double top[3], const double p[3], const double q[3], const float np[3], const float nq[3])
-{
-    const double n1[3] = {np[0], np[1], np[2]}, n2[3] = {nq[0], nq[1], nq[2]};
-    double       turn[3], chord[3], mean[3];
-    v3_sub(turn, n2, n1);
-    v3_sub(chord, q, p);
-    v3_add(mean, n1, n2);
-    const double change = v3_length(turn), bent = v3_dot(turn, chord), cos_half = 0.5 * v3_length(mean);
-    /* a quarter of a circle at most: what turns faster is an edge of some solid */
-    if (!(bent > 0 && change > 1e-3 && cos_half > 0.7)) return false;
-    const double height = 0.5 * bent / change * sqrt((1 - cos_half) / (1 + cos_half)); /* half chord tan(angle / 4) */
-    v3_add_scaled(top, p, 0.5, chord);
-    v3_add_scaled(top, top, 0.5 * height / cos_half, mean);
-    return true;
-}
-
-/* Extents at rest, lengths, and faces. */
-static void measure_bodies(Cutter *c)
-{
-    const Model *m = c->model;
-    double low[patches_most][3], high[patches_most][3];
-    for (int b = 0; b < c->bodies; b++)
-        for (int i = 0; i < 3; i++) {
-            low[b][i] = c->body[b].box_low[i] = INFINITY;
-            high[b][i] = c->body[b].box_high[i] = -INFINITY;
-        }
-    for (int t = 0; t < m->triangle_count; t++) {
-        const int       part = m->triangle_part[t], b = c->body_of_part[part];
-        const uint32_t *v    = m->triangle[t];
-        Body           *body = &c->body[b];
-        for (int k = 0; k < 6; k++) {
-            double p[3], q[3];
-            if (k < 3) memcpy(p, m->vertex[v[k]], sizeof p);
-            else if (!arc_top(p, m->vertex[v[k - 3]], m->vertex[v[(k - 2) % 3]], m->normal[v[k - 3]],
-                              m->normal[v[(k - 2) % 3]]))
-                continue;
-            turned(q, &c->pose[m->part[part].node], p);
-            widen(body->box_low, body->box_high, q);
-            if (c->body_of_node) {
-                turned(q, &c->body_of_node[part], p);
-                memcpy(p, q, sizeof p);
-            }
-            widen(low[b], high[b], p);
-        }
-    }
-    for (int b = 0; b < c->bodies; b++) {
-        Body *body  = &c->body[b];
-        body->faces = turns(body->axis, c, body->node) ? 3 : 6;
-        body->along = 0;
-        for (int i = 1; i < 3; i++)
-            if (high[b][i] - low[b][i] > prefer_axis * (high[b][body->along] - low[b][body->along])) body->along = i;
-        const double extent = high[b][body->along] - low[b][body->along];
-        const bool   uncut  = body->faces == 3 || !(extent >= length_least_m);
-        body->lengths = uncut ? 1 : (int)clamp(floor(extent / length_m + 0.5), 1, lengths_most);
-        body->low_m   = low[b][body->along];
-        body->step_m  = extent / body->lengths;
-        double size[3];
-        v3_sub(size, high[b], low[b]);
-        for (int i = 0; i < 3; i++) {
-            body->middle[i]   = 0.5 * (low[b][i] + high[b][i]);
-            body->inward_m[i] = size[i] > inward_least_m ? 0.15 * size[i] : INFINITY;
-        }
-        body->box_m2 = 2 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
     }
 }
 
@@ -324,10 +154,10 @@ static Status cut_model(int *count, Cutter *c)
     Status status = STATUS_OK;
     *count = 0;
     for (int g = BY_MATERIAL; g < GROUPINGS && *count == 0 && status == STATUS_OK; g++) {
-        if (!group_parts(c, (Grouping)g)) continue;
-        if (g == BY_ROLE) status = choose_nodes(c);
+        if (!patches_group(c, (Grouping)g)) continue;
+        if (g == BY_ROLE) status = patches_choose_nodes(c);
         if (status != STATUS_OK) break;
-        measure_bodies(c);
+        patches_measure_bodies(c);
         sum_cells(cell, c);
         double boxes_m2 = 0;
         for (int b = 0; b < c->bodies; b++) boxes_m2 += c->body[b].box_m2;
@@ -361,7 +191,7 @@ static bool is_hidden(const Cutter *c, int triangle, const double p[3], const do
 {
     const NodePose *pose = &c->pose[c->body[c->body_of_part[c->model->triangle_part[triangle]]].node];
     double          p_body[3], n_body[3];
-    turned(p_body, pose, p);
+    patches_moved(p_body, pose, p);
     m3_mul_v3(n_body, pose->r_body_from_node, n);
     return hidden_at(c->hidden, triangle, p_body, n_body);
 }
@@ -502,7 +332,7 @@ static double share_on_ground(const Facet *f, const NodePose *pose)
     if (!(n_body[2] > facing_ground)) return 0;
     for (int k = 0; k < 3; k++) {
         double p_body[3];
-        turned(p_body, pose, f->p[k]);
+        patches_moved(p_body, pose, f->p[k]);
         above[k] = p_body[2] + sinkage_m;
     }
     return share_above(above);
@@ -629,7 +459,7 @@ double patches_value(const Patches *patches, const float *value, int part, const
     if (end - first == 1) return base;
     double p[3] = {p_node[0], p_node[1], p_node[2]}, n[3] = {n_node[0], n_node[1], n_node[2]};
     if (patches->body_of_node) {
-        turned(p, &patches->body_of_node[part], p_node);
+        patches_moved(p, &patches->body_of_node[part], p_node);
         m3_mul_v3(n, patches->body_of_node[part].r_body_from_node, n_node);
     }
     /* differences from the first: a constant comes out exactly */

@@ -1,9 +1,172 @@
-/* entities/models/patches_cut.c: a triangle cut into the cells of its body: by face and by length.
+/* entities/models/patches_cut.c: bodies of a model, and triangles cut into the cells of their bodies: by face and by
+ * length.
  *
  * Shading normals, not those of facets, say where a surface faces, interpolated over the triangle: the border between
  * two faces of a cylinder is then where it is on the true surface, however few facets it has. All cuts are straight
  * lines in barycentric coordinates, for what is compared is linear there. */
 #include "entities/models/patches_private.h"
+
+#include <stdlib.h>
+
+static const double length_m         = 1.5;   /* of one length of a body, about */
+static const double length_least_m   = 1.0;   /* bodies shorter than this are not cut along */
+static const double inward_least_m   = 1;     /* bodies less wide than this have no inner sides */
+static const double prefer_axis      = 1.03;  /* an extent is longer when it is by this: x before y before z */
+
+/* ---- bodies ----------------------------------------------------------------------------------- */
+
+static bool belongs(const Model *m, const ModelPart *part, const Body *body, Grouping grouping)
+{
+    if (part->role != body->role) return false;
+    if (grouping == BY_ROLE) return true;
+    return part->node == body->node &&
+           (grouping == BY_NODE_ROLE || (strcmp(part->material, m->part[body->part].material) == 0 &&
+                                         part->thickness_m == m->part[body->part].thickness_m));
+}
+
+bool patches_group(Cutter *c, Grouping grouping)
+{
+    const Model *m = c->model;
+    c->bodies = 0;
+    for (int i = 0; i < m->part_count; i++) {
+        int b = 0;
+        while (b < c->bodies && !belongs(m, &m->part[i], &c->body[b], grouping)) b++;
+        if (b == patches_most) return false;
+        if (b == c->bodies)
+            c->body[c->bodies++] = (Body){.node = m->part[i].node, .part = i, .role = m->part[i].role};
+        c->body_of_part[i] = b;
+    }
+    return true;
+}
+
+/* How one node's axes are seen from another's, at rest. */
+static NodePose seen_from(const NodePose *to, const NodePose *from)
+{
+    NodePose out;
+    double   d[3];
+    m3_tmul(out.r_body_from_node, to->r_body_from_node, from->r_body_from_node);
+    v3_sub(d, from->p_body, to->p_body);
+    m3_tmul_v3(out.p_body, to->r_body_from_node, d);
+    return out;
+}
+
+Status patches_choose_nodes(Cutter *c)
+{
+    const Model *m = c->model;
+    double largest_m2[patches_most] = {0};
+    free(c->body_of_node);
+    c->body_of_node = calloc((size_t)m->part_count, sizeof *c->body_of_node);
+    if (!c->body_of_node) return STATUS_NO_MEMORY;
+    for (int i = 0; i < m->part_count; i++) {
+        const int b = c->body_of_part[i];
+        double    area_m2 = 0;
+        for (int t = m->part[i].first_triangle; t < m->part[i].first_triangle + m->part[i].triangle_count; t++) {
+            const uint32_t *v = m->triangle[t];
+            double          one[3], other[3], cross[3];
+            v3_sub(one, m->vertex[v[1]], m->vertex[v[0]]);
+            v3_sub(other, m->vertex[v[2]], m->vertex[v[0]]);
+            v3_cross(cross, one, other);
+            area_m2 += 0.5 * v3_length(cross);
+        }
+        if (!(area_m2 > largest_m2[b] * (1 + 1e-3))) continue;
+        largest_m2[b]   = area_m2;
+        c->body[b].node = m->part[i].node;
+    }
+    for (int i = 0; i < m->part_count; i++)
+        c->body_of_node[i] = seen_from(&c->pose[c->body[c->body_of_part[i]].node], &c->pose[m->part[i].node]);
+    return STATUS_OK;
+}
+
+/* Whether a node turns by itself or rolls, with its parents, and about which axis of its own. */
+static bool turns(double axis[3], const Cutter *c, int node)
+{
+    for (int n = node; n >= 0; n = c->model->node[n].parent) {
+        const ModelNode *at = &c->model->node[n];
+        if (at->joint != JOINT_ROTATION || !(at->spin_rps_moving != 0 || at->roll_radius_m > 0)) continue;
+        double axis_body[3];
+        m3_mul_v3(axis_body, c->pose[n].r_body_from_node, at->axis);
+        m3_tmul_v3(axis, c->pose[node].r_body_from_node, axis_body);
+        return true;
+    }
+    return false;
+}
+
+static void widen(double low[3], double high[3], const double p[3])
+{
+    for (int i = 0; i < 3; i++) {
+        low[i]  = fmin(low[i], p[i]);
+        high[i] = fmax(high[i], p[i]);
+    }
+}
+
+/* The top of the arc over an edge with these shading normals: exact for a circle, the edge's middle for a plane. False:
+ * there is none. So the extents of a coarse build are those of a fine one. */
+static bool arc_top(double top[3], const double p[3], const double q[3], const float np[3], const float nq[3])
+{
+    const double n1[3] = {np[0], np[1], np[2]}, n2[3] = {nq[0], nq[1], nq[2]};
+    double       turn[3], chord[3], mean[3];
+    v3_sub(turn, n2, n1);
+    v3_sub(chord, q, p);
+    v3_add(mean, n1, n2);
+    const double change = v3_length(turn), bent = v3_dot(turn, chord), cos_half = 0.5 * v3_length(mean);
+    /* a quarter of a circle at most: what turns faster is an edge of some solid */
+    if (!(bent > 0 && change > 1e-3 && cos_half > 0.7)) return false;
+    const double height = 0.5 * bent / change * sqrt((1 - cos_half) / (1 + cos_half)); /* half chord tan(angle / 4) */
+    v3_add_scaled(top, p, 0.5, chord);
+    v3_add_scaled(top, top, 0.5 * height / cos_half, mean);
+    return true;
+}
+
+void patches_measure_bodies(Cutter *c)
+{
+    const Model *m = c->model;
+    double low[patches_most][3], high[patches_most][3];
+    for (int b = 0; b < c->bodies; b++)
+        for (int i = 0; i < 3; i++) {
+            low[b][i] = c->body[b].box_low[i] = INFINITY;
+            high[b][i] = c->body[b].box_high[i] = -INFINITY;
+        }
+    for (int t = 0; t < m->triangle_count; t++) {
+        const int       part = m->triangle_part[t], b = c->body_of_part[part];
+        const uint32_t *v    = m->triangle[t];
+        Body           *body = &c->body[b];
+        for (int k = 0; k < 6; k++) {
+            double p[3], q[3];
+            if (k < 3) memcpy(p, m->vertex[v[k]], sizeof p);
+            else if (!arc_top(p, m->vertex[v[k - 3]], m->vertex[v[(k - 2) % 3]], m->normal[v[k - 3]],
+                              m->normal[v[(k - 2) % 3]]))
+                continue;
+            patches_moved(q, &c->pose[m->part[part].node], p);
+            widen(body->box_low, body->box_high, q);
+            if (c->body_of_node) {
+                patches_moved(q, &c->body_of_node[part], p);
+                memcpy(p, q, sizeof p);
+            }
+            widen(low[b], high[b], p);
+        }
+    }
+    for (int b = 0; b < c->bodies; b++) {
+        Body *body  = &c->body[b];
+        body->faces = turns(body->axis, c, body->node) ? 3 : 6;
+        body->along = 0;
+        for (int i = 1; i < 3; i++)
+            if (high[b][i] - low[b][i] > prefer_axis * (high[b][body->along] - low[b][body->along])) body->along = i;
+        const double extent = high[b][body->along] - low[b][body->along];
+        const bool   uncut  = body->faces == 3 || !(extent >= length_least_m);
+        body->lengths = uncut ? 1 : (int)clamp(floor(extent / length_m + 0.5), 1, lengths_most);
+        body->low_m   = low[b][body->along];
+        body->step_m  = extent / body->lengths;
+        double size[3];
+        v3_sub(size, high[b], low[b]);
+        for (int i = 0; i < 3; i++) {
+            body->middle[i]   = 0.5 * (low[b][i] + high[b][i]);
+            body->inward_m[i] = size[i] > inward_least_m ? 0.15 * size[i] : INFINITY;
+        }
+        body->box_m2 = 2 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
+    }
+}
+
+/* ---- triangles ---------------------------------------------------------------------------------- */
 
 /* Planes at 45 degrees are up or down rather than sideways, and left or right rather than fore or aft: an exact tie
  * would be decided by rounding. */
@@ -107,7 +270,7 @@ static int best_face(const Facet *f, int faces, int corner)
     return best;
 }
 
-/* Of a face that looks at the middle of its body from behind it: the inner side of a skirt. */
+/* Whether a face looks at the middle of its body from behind it, as the inner side of a skirt does. */
 static bool looks_inwards(const Facet *f, const Body *body, int face)
 {
     const int i = face / 2;

@@ -215,7 +215,8 @@ static Status fill_grid(Grid *g, const Hidden *h, int axis)
 
 /* ---- points ----------------------------------------------------------------------------------- */
 
-/* Of the corners at a point, seen along an axis: of one sign inside, positive where the normal is along the axis. */
+/* Twice the signed areas that a point makes with the sides of a triangle, seen along an axis: of one sign inside,
+ * positive where the normal is along the axis. */
 static inline void shares_of(double *a, double *b, double *c, const Solid *s, int i, int j, const double q[3])
 {
     const double u0 = s->q[0][i] - q[i], v0 = s->q[0][j] - q[j], u1 = s->q[1][i] - q[i], v1 = s->q[1][j] - q[j],

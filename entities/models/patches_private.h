@@ -38,6 +38,27 @@ typedef struct Cutter {
     NodePose    *body_of_node;    /* as in Patches */
 } Cutter;
 
+/* ---- patches_cut.c: bodies --------------------------------------------------------------------- */
+
+/* Ways to group parts, from fine to coarse. */
+typedef enum Grouping { BY_MATERIAL, BY_NODE_ROLE, BY_ROLE, GROUPINGS } Grouping;
+
+/* Groups parts to bodies. False: more than patches_most. */
+bool   patches_group(Cutter *cutter, Grouping grouping);
+/* Bodies of several nodes take that of their largest part. */
+Status patches_choose_nodes(Cutter *cutter);
+/* Extents of the bodies at rest, their lengths and faces. */
+void   patches_measure_bodies(Cutter *cutter);
+/* A point of a node, moved by its pose. */
+static inline void patches_moved(double out[3], const NodePose *pose, const double p[3])
+{
+    double r[3];
+    m3_mul_v3(r, pose->r_body_from_node, p);
+    v3_add(out, r, pose->p_body);
+}
+
+/* ---- patches_cut.c: triangles ------------------------------------------------------------------ */
+
 /* One triangle in its body's axes. */
 typedef struct Facet {
     double p[3][3];
@@ -60,6 +81,8 @@ bool facet_read(Facet *out, const Cutter *cutter, int triangle); /* false: no ar
 int  facet_cut(Piece piece[cells_most], const Facet *facet, const Body *body); /* how many */
 void facet_point(double p[3], const Facet *facet, const double at[3]);
 
+/* ---- patches_hidden.c -------------------------------------------------------------------------- */
+
 /* pose: of the nodes at rest. It keeps model, not pose. STATUS_NO_MEMORY. */
 Status hidden_create(Hidden **out, const Model *model, const NodePose *pose);
 void   hidden_destroy(Hidden *hidden); /* accepts NULL */
@@ -67,6 +90,8 @@ void   hidden_destroy(Hidden *hidden); /* accepts NULL */
 double hidden_open(const Hidden *hidden, int triangle);
 /* Whether a point of a triangle, with its unit normal, is. */
 bool   hidden_at(Hidden *hidden, int triangle, const double p_body[3], const double n_body[3]);
+
+/* ---- patches_links.c --------------------------------------------------------------------------- */
 
 /* patch: finished but for links. STATUS_NO_MEMORY. */
 Status patches_link(Patches *out, const Cutter *cutter);

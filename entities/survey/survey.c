@@ -1,11 +1,10 @@
 /* entities/survey/survey.c: one pass over all PDUs of a log: tracks, shots, clocks, counters. */
 #include "entities/survey/survey.h"
-#include "dis/log_clock.h"
-#include "dis/datagram.h"
-#include "dis/enumerations.h"
+#include "dis/capture/log.h"
+#include "dis/pdu/decode.h"
+#include "dis/pdu/pdu.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_index.h"
-#include "entities/survey/survey_shots.h"
 
 #include <stdlib.h>
 
@@ -102,7 +101,7 @@ static Status add_point(Building *b, int t, const double p_ecef[3], const float 
     if (!(v3_length(v) <= largest_speed_mps)) return STATUS_OK;
     if (dead_reckoning_in_body_axes(b->build[t].algorithm)) {
         double r[9];
-        track_point_rotation(r, point);
+        survey_point_rotation(r, point);
         m3_mul_v3(point->v_ecef_mps, r, v);
     } else memcpy(point->v_ecef_mps, v, sizeof v);
     return STATUS_OK;

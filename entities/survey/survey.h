@@ -3,16 +3,25 @@
 #ifndef ENTITIES_SURVEY_SURVEY_H
 #define ENTITIES_SURVEY_SURVEY_H
 
-#include "dis/decode.h"
-#include "dis/exercise_clock.h"
-#include "dis/log.h"
-#include "entities/survey/shot.h"
+#include "dis/capture/log.h"
+#include "dis/clock/exercise_clock.h"
+#include "dis/pdu/decode.h"
+
+/* One round or missile from its Fire to its Detonation. */
+typedef struct Shot {
+    DisEntityId firing, target, munition; /* as in Fire; target 0:0:0 when unknown */
+    double      fire_s;                   /* NaN: no Fire received */
+    double      detonation_s;             /* NaN: no Detonation received */
+    double      p_burst_ecef[3];
+    DisEntityId hit;                      /* target of the Detonation, 0:0:0: none */
+    uint8_t     result;
+} Shot;
 
 /* One report of where an entity was: 72 octets, and a long log has millions. */
 typedef struct TrackPoint {
     double t_s;
     double p_ecef[3], v_ecef_mps[3]; /* velocity in world axes for all algorithms */
-    float  euler_rad[3];             /* psi, theta, phi as reported: track_point_rotation */
+    float  euler_rad[3];             /* psi, theta, phi as reported: survey_point_rotation */
     bool   frozen, deactivated, engine; /* engine: its power-plant bit */
 } TrackPoint;
 
@@ -58,9 +67,28 @@ const Shot  *survey_shot(const Survey *survey, DisEntityId munition);
 typedef struct TrackPose {
     double p_ecef[3], v_ecef_mps[3], r_ecef_from_body[9];
 } TrackPose;
-void track_at(TrackPose *out, const Track *track, double t_s);
-void track_point_rotation(double r_ecef_from_body[9], const TrackPoint *point);
+void survey_track_at(TrackPose *out, const Track *track, double t_s);
+void survey_point_rotation(double r_ecef_from_body[9], const TrackPoint *point);
 /* Between two rotations, u 0 .. 1: the shortest turn at an even rate. */
-void track_turn(double out[9], const double r0[9], const double r1[9], double u);
+void survey_turn(double out[9], const double r0[9], const double r1[9], double u);
+
+/* ---- shots: which Detonation ended which Fire; for the survey alone ------------------------- */
+
+/* One Fire or Detonation as received. */
+typedef struct WarfareEvent {
+    double      t_s;
+    DisEntityId firing, target, munition;
+    DisEventId  event;
+    double      p_ecef[3]; /* Detonation */
+    uint8_t     result;
+    bool        is_detonation;
+} WarfareEvent;
+
+/* A Detonation belongs to the latest Fire before it of the same munition id that has none yet (ids are used again; the
+ * event id decides where it can), else to that of the same event id. One received twice within half a second is one.
+ * event is put in order of time. *shots is malloc'ed, in order of fire (else detonation) time. */
+Status survey_join_shots(Shot **shots, int *shot_count, WarfareEvent *event, int count);
+/* The numbers of the shots sorted by munition, then by number; malloc'ed. */
+Status survey_order_shots(int **by_munition, const Shot *shot, int count);
 
 #endif

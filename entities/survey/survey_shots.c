@@ -1,5 +1,5 @@
 /* entities/survey/survey_shots.c: matches Fire and Detonation offline, with the whole log at hand. */
-#include "entities/survey/survey_shots.h"
+#include "entities/survey/survey.h"
 #include "entities/table/entity_index.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* entities/table/contact.c: clamps entities to the ground or the water along the local vertical. */
 #include "entities/table/contact.h"
 
-#include "dis/enumerations.h"
+#include "dis/pdu/pdu.h"
 
 /* Pitch and roll follow the ground. */
 static bool leans(DisEntityType type)
@@ -22,7 +22,9 @@ bool contact_floats(DisEntityType type)
     return type.kind == dis_kind_platform && type.domain == dis_domain_surface;
 }
 
-bool contact_lifts(DisEntityType type)
+/* Aircraft below the ground that all entities are clamped to, as over real relief that their sender did not know: those that
+ * stand still are moved onto it; others as far above it as they are below, at most 20 m. */
+static bool is_lifted(DisEntityType type)
 {
     return type.kind == dis_kind_platform && type.domain == dis_domain_air;
 }
@@ -76,7 +78,7 @@ static bool is_airborne(DisEntityType type, const double v_ecef_mps[3], const do
     return v > (type.kind == dis_kind_platform ? 60 : 12) || v_up < -fmax(2, 0.5 * along);
 }
 
-/* From a base to the ground. */
+/* The way from a base to the ground. */
 typedef struct WayUp {
     double up_ecef[3], up[3], p[3]; /* the vertical; ENU: that, and the base */
     double way_m, share;            /* share of it that it is moved */
@@ -141,7 +143,7 @@ void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *mo
     static const double steepest = 1; /* tan 45 degrees: a wall of a surface model is not a road */
     double r_enu_from_body[9], forward[3], right[3];
     WayUp  w;
-    if (ground->elevation && !ground->landscape && contact_lifts(e->type)) lift(e, ground);
+    if (ground->elevation && !ground->landscape && is_lifted(e->type)) lift(e, ground);
     if (!way_to_ground(&w, e->type, e->p_ecef, e->v_ecef_mps, ground)) return;
     const double *up = w.up, *up_ecef = w.up_ecef, *p = w.p, share = w.share;
     double        way_m = w.way_m;

@@ -22,10 +22,6 @@ bool contact_applies(DisEntityType type);
 /* Surface platforms. */
 bool contact_floats(DisEntityType type);
 
-/* Aircraft below the ground that all entities are clamped to, as over real relief that their sender did not know: those that
- * stand still are moved onto it; others as far above it as they are below, at most 20 m. */
-bool contact_lifts(DisEntityType type);
-
 /* Share of the distance to the ground (or the water) that an inconsistent entity is moved: 0 within 0.1 m of the ground
  * (a ship: 1.5 m of heave and draught), 1 from 0.5 m (3 m) on, smooth in between. */
 double contact_share(DisEntityType type, double above_m);
@@ -33,10 +29,10 @@ double contact_share(DisEntityType type, double above_m);
 /* Height of a place above the ground along its local vertical, m; negative below it; NaN beyond the elevation. */
 double contact_above_m(const ContactGround *ground, const double p_ecef[3]);
 
-/* Moves an entity (origin at its base) onto the plane that fits the ground best under it: 5 x 3 points within
- * the model's box about its origin, without what overhangs to one side (a gun). Heading is kept; pitch and roll follow
- * the plane, at most 45 degrees each; aircraft are lifted out of the ground (contact_lifts); velocity keeps its horizontal part and follows the slope. An entity upside down
- * or nose down keeps its attitude. No effect outside of the elevation data.
+/* Moves an entity (origin at its base) onto the plane that fits the ground best under it: 5 x 3 points within the
+ * model's box about its origin, without what overhangs to one side (a gun). Heading is kept; pitch and roll follow the
+ * plane, at most 45 degrees each; aircraft are lifted out of the ground; velocity keeps its horizontal part and follows
+ * the slope. An entity upside down or nose down keeps its attitude. No effect outside of the elevation data.
  *
  * With a landscape: contact_share of that, and none for carried or falling entities (platforms above 60 m/s, others
  * above 12; sinking faster than 2 m/s and half its horizontal speed) and for those above the sea (on a deck, swimming).

@@ -1,5 +1,5 @@
 /* entities/table/entity_effects.c: emissions by an entity's appearance and motion. Appearance bits are those of
- * dis/enumerations.h; a guided munition's motor burns for the time given by drives.c, independent of its bits. */
+ * dis/pdu/pdu.h; a guided munition's motor burns for the time given by drives.c, independent of its bits. */
 #include "entities/table/entity_table_private.h"
 
 static const double moving_mps = 0.3; /* as drives.c: no dust from stationary entities */
@@ -17,7 +17,7 @@ static bool motor_burns(const EntitySlot *slot, double t_s)
             (slot->roles >> HEAT_MOTOR & 1 && slot->drives.motor.until_s > t_s));
 }
 
-/* From the reported position to the centre of the model's base, body axes. */
+/* The vector from the reported position to the centre of the model's base, body axes. */
 static double base_below_m(const EntitySlot *slot, const Model *model)
 {
     return slot->origin == ORIGIN_CENTRE ? 0.5 * model->height_m : 0;
@@ -107,11 +107,18 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
     }
 }
 
+typedef struct Plume {
+    EffectKind         kind;
+    const EffectModel *law;
+    double             length_m, across_scale;
+} Plume;
+
 /* One volume of gas behind the tail with fluctuating length: random at every fiftieth of a second, linear in
  * between. */
-static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, EffectKind kind,
-                         const EffectTable *table, double length_m, double across_scale, double t_s)
+static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, const Plume *plume, double t_s)
 {
+    const EffectKind kind = plume->kind;
+    const double     across_scale = plume->across_scale;
     static const double breath_hz = 50;
     const double at = t_s * breath_hz, floor_at = floor(at);
     double       length = 0, tail_body[3] = {0}, tail_ecef[3];
@@ -120,11 +127,11 @@ static int plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *m
     for (int k = 0; k < 2; k++) {
         const double   share = k ? at - floor_at : 1 - (at - floor_at);
         const uint64_t breath = (uint64_t)(int64_t)floor_at + (uint64_t)k;
-        length += share * length_m * (0.8 + 0.4 * random_uniform(key, 78, kind, breath));
+        length += share * plume->length_m * (0.8 + 0.4 * random_uniform(key, 78, kind, breath));
     }
     *out = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind),
                         .seed = (uint32_t)(int64_t)floor_at, .throw_s = 1, .scale = across_scale, .along_m = 0.5 * length,
-                        .mass_kg = table->law[kind].mass_kg * across_scale * across_scale * length};
+                        .mass_kg = plume->law->mass_kg * across_scale * across_scale * length};
     tail_body[0] = model->box_low[0] - 0.36 * length; /* a seventh of it inside: at its very end it is thin */
     tail_body[2] = -0.5 * model->height_m;
     m3_mul_v3(tail_ecef, e->r_ecef_from_body, tail_body);
@@ -188,19 +195,27 @@ void entity_effects_outlet(EntityTable *table, int model)
     outlet->known = true;
 }
 
+typedef struct Exhaust {
+    EffectKind         kind;
+    const EffectModel *law;
+    double             drive, scale; /* drive: the engine's share of full power */
+} Exhaust;
+
 /* Exhaust as a jet that mixes with the air: puffs of exactly equal intervals of age, the first one growing in. They
  * left where the outlet was at their age ago, and keep its speed and the jet's for a moment; wind and buoyancy carry
  * them on (effects.c). The whole depends on t alone. */
-static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelOutlet *outlet, EffectKind kind,
-                          const EffectTable *table, double drive, double scale, double t_s)
+static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelOutlet *outlet, const Exhaust *exhaust,
+                          double t_s)
 {
+    const EffectKind kind = exhaust->kind;
+    const double     drive = exhaust->drive, scale = exhaust->scale;
     enum { puffs = 5 };
     const double jet_mps = outlet->jet.speed_mps;
     static const double jet_decay_s = 0.12;
     double at_ecef[3], d_ecef[3];
     if (!(drive > 0) || !outlet->is_there) return 0;
     const uint64_t key = entity_key(e->id);
-    const double   interval_s = table->law[kind].life_s / (puffs + 0.5), begun = floor(t_s / interval_s);
+    const double   interval_s = exhaust->law->life_s / (puffs + 0.5), begun = floor(t_s / interval_s);
     const double   phase = t_s / interval_s - begun;
     m3_mul_v3(at_ecef, e->r_ecef_from_body, outlet->jet.at_body);
     m3_mul_v3(d_ecef, e->r_ecef_from_body, outlet->jet.d_body);
@@ -209,7 +224,7 @@ static int exhaust_behind(EffectPuff *out, const SnapshotEntity *e, const ModelO
         *puff = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind),
                              .throw_s = jet_decay_s, .seed = (uint32_t)((int64_t)begun - k), .scale = scale,
                              .age_s = (k + phase + 0.5) * interval_s};
-        puff->mass_kg = table->law[kind].mass_kg * scale * scale * drive * interval_s * (k == 0 ? phase : 1);
+        puff->mass_kg = exhaust->law->mass_kg * scale * scale * drive * interval_s * (k == 0 ? phase : 1);
         v3_add(puff->p_ecef, e->p_ecef, at_ecef);
         v3_add_scaled(puff->p_ecef, puff->p_ecef, -puff->age_s, e->v_ecef_mps);
         v3_scale(puff->up_ecef, 1 / v3_length(e->p_ecef), e->p_ecef);
@@ -246,22 +261,26 @@ int entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTable
     const EffectTable *effects = effect_history_table(table->effects);
     const bool         platform = slot->type.kind == dis_kind_platform, air = slot->type.domain == dis_domain_air;
     const double       drive = platform ? drives_engine(&slot->drives, t_s) : 0;
+    const ModelOutlet *outlet = &table->outlet[entity->model];
 
     if (!(fabs(t_s) < effect_latest_s)) return 0;
     if (motor_burns(slot, t_s)) /* a light missile of 1.2 m: 1.5 m of flame */
-        return plume_behind(out, entity, model, EFFECT_MOTOR_PLUME, effects, fmax(1.25 * model->length_m, 0.5),
-                            clamp(model->width_m / 0.3, 0.5, 4), t_s);
+        return plume_behind(out, entity, model,
+                            &(Plume){EFFECT_MOTOR_PLUME, &effects->law[EFFECT_MOTOR_PLUME], fmax(1.25 * model->length_m, 0.5),
+                                     clamp(model->width_m / 0.3, 0.5, 4)}, t_s);
     if (slot->type.kind == dis_kind_expendable && slot->roles >> HEAT_FLARE & 1 && slot->drives.flare.until_s > t_s)
         return fire_about(out, entity, effects);
     if (platform && air && entity->appearance >> dis_appearance_afterburner_bit & 1)
-        return plume_behind(out, entity, model, EFFECT_AFTERBURNER, effects, 4, 1, t_s);
+        return plume_behind(out, entity, model, &(Plume){EFFECT_AFTERBURNER, &effects->law[EFFECT_AFTERBURNER], 4, 1}, t_s);
     if (!(drive > 0)) return 0;
     if (air && is_rotorcraft(slot->roles))
-        return exhaust_behind(out, entity, &table->outlet[entity->model], EFFECT_TURBINE_EXHAUST, effects, drive, 1, t_s);
+        return exhaust_behind(out, entity, outlet,
+                              &(Exhaust){EFFECT_TURBINE_EXHAUST, &effects->law[EFFECT_TURBINE_EXHAUST], drive, 1}, t_s);
     if (air && slot->roles >> HEAT_TURBINE & 1)
-        return plume_behind(out, entity, model, EFFECT_JET_EXHAUST, effects, 6, 1, t_s);
+        return plume_behind(out, entity, model, &(Plume){EFFECT_JET_EXHAUST, &effects->law[EFFECT_JET_EXHAUST], 6, 1}, t_s);
     if (!air)
-        return exhaust_behind(out, entity, &table->outlet[entity->model], EFFECT_EXHAUST, effects, drive, size_of(model), t_s);
+        return exhaust_behind(out, entity, outlet,
+                              &(Exhaust){EFFECT_EXHAUST, &effects->law[EFFECT_EXHAUST], drive, size_of(model)}, t_s);
     return 0;
 }
 

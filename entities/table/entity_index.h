@@ -3,7 +3,7 @@
 #ifndef ENTITIES_TABLE_ENTITY_INDEX_H
 #define ENTITIES_TABLE_ENTITY_INDEX_H
 
-#include "dis/pdu.h"
+#include "dis/pdu/pdu.h"
 
 /* The three parts in one number that sorts as dis_entity_id_compare does. */
 static inline uint64_t entity_key(DisEntityId id)

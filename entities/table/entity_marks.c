@@ -188,11 +188,13 @@ static double step_of(const EntitySlot *slot, double span_s, int most)
     return step_s;
 }
 
-/* A point of a path, and where it goes: into the history, or into out[*count]. */
+/* Whose trail, and where its points go: into the history, or into out[count]. */
 typedef struct TrailSink {
-    GroundHistory *history;
-    GroundTrack   *out;
-    int            count;
+    const EntityTable *table;
+    const EntitySlot  *slot;
+    GroundHistory     *history;
+    GroundTrack       *out;
+    int                count;
 } TrailSink;
 
 static void put_point(TrailSink *sink, GroundTrail *trail, const double p_ecef[3], double t_s, bool last)
@@ -201,9 +203,10 @@ static void put_point(TrailSink *sink, GroundTrail *trail, const double p_ecef[3
     else sink->count += ground_trail_tail(sink->out + sink->count, trail, p_ecef, t_s, last);
 }
 
-static void path_point(TrailSink *sink, GroundTrail *trail, const EntityTable *table, const EntitySlot *slot, double own_s,
-                       bool last)
+static void path_point(TrailSink *sink, GroundTrail *trail, double own_s, bool last)
 {
+    const EntityTable *table = sink->table;
+    const EntitySlot  *slot = sink->slot;
     Motion motion;
     double p_ecef[3];
     dead_reckon(&motion, &slot->reported, own_s - slot->report_s);
@@ -213,13 +216,12 @@ static void path_point(TrailSink *sink, GroundTrail *trail, const EntityTable *t
 }
 
 /* The extrapolated path after from_s, with its end or without; times: the entity's own. */
-static void follow(TrailSink *sink, GroundTrail *trail, const EntityTable *table, const EntitySlot *slot, double from_s,
-                   double to_s, int most, bool with_end)
+static void follow(TrailSink *sink, GroundTrail *trail, double from_s, double to_s, int most, bool with_end)
 {
-    const double step_s = step_of(slot, to_s - from_s, most), first = floor(from_s / step_s) + 1;
+    const double step_s = step_of(sink->slot, to_s - from_s, most), first = floor(from_s / step_s) + 1;
     for (int i = 0; isfinite(step_s) && i < most && (first + i) * step_s < to_s; i++)
-        path_point(sink, trail, table, slot, (first + i) * step_s, false);
-    if (with_end && to_s > from_s) path_point(sink, trail, table, slot, to_s, true);
+        path_point(sink, trail, (first + i) * step_s, false);
+    if (with_end && to_s > from_s) path_point(sink, trail, to_s, true);
 }
 
 /* End of the extrapolation for t_s, the entity's own time. */
@@ -234,9 +236,9 @@ void entity_marks_before(EntityTable *table, EntitySlot *slot, double t_s)
 {
     if (!slot->trails) return;
     EntityMarks *m = marks_of(table, slot);
-    TrailSink    sink = {.history = table->ground};
+    TrailSink    sink = {.table = table, .slot = slot, .history = table->ground};
     const double to_s = own_end_s(slot, t_s);
-    follow(&sink, &m->trail, table, slot, m->followed_s, to_s, most_points, false);
+    follow(&sink, &m->trail, m->followed_s, to_s, most_points, false);
     m->followed_s = to_s;
 }
 
@@ -298,9 +300,9 @@ void entity_marks_stop(EntityTable *table, EntitySlot *slot, double t_s)
     EntityMarks *m = marks_of(table, slot);
     if (m->stands) ground_stand_until(table->ground, m->stand, INFINITY);
     if (!slot->trails) return;
-    TrailSink    sink = {.history = table->ground};
+    TrailSink    sink = {.table = table, .slot = slot, .history = table->ground};
     const double to_s = own_end_s(slot, t_s);
-    follow(&sink, &m->trail, table, slot, m->followed_s, to_s, most_points, true);
+    follow(&sink, &m->trail, m->followed_s, to_s, most_points, true);
     m->followed_s = to_s;
 }
 
@@ -362,12 +364,12 @@ Status entity_marks_snapshot(Snapshot *snapshot, const EntityTable *table, const
     const int room = most_tail * count;
     const Status status = ground_marks_at(&snapshot->marks, &tail, table->ground, snapshot->t_s, room, arena);
     if (status != STATUS_OK) return status;
-    TrailSink sink = {.out = tail};
+    TrailSink sink = {.table = table, .out = tail};
     for (int i = 0; i < count; i++) {
         const EntitySlot *slot = table->slot + trailing[i];
         GroundTrail       trail = marks_of(table, slot)->trail;
-        follow(&sink, &trail, table, slot, marks_of(table, slot)->followed_s, own_end_s(slot, snapshot->t_s),
-               most_tail_points, true);
+        sink.slot = slot;
+        follow(&sink, &trail, marks_of(table, slot)->followed_s, own_end_s(slot, snapshot->t_s), most_tail_points, true);
     }
     snapshot->marks.tracks += sink.count;
     return STATUS_OK;

@@ -1,7 +1,7 @@
 /* entities/table/entity_report.c: applies an Entity State or its Update to the entity's slot. */
 #include "entities/table/entity_table_private.h"
 
-#include "dis/exercise_clock.h"
+#include "dis/clock/exercise_clock.h"
 
 /* Shorter than any reuse of an id by a launcher. */
 static const double after_detonation_s = 1;
@@ -56,23 +56,6 @@ static bool exceeds_rate(EntityTable *table, DisEntityId id, double t_s)
     return true;
 }
 
-double entity_slot_spin(const EntitySlot *slot, double t_s)
-{
-    if (entity_slot_frozen(slot) || slot->stopped) return slot->spin_s;
-    return slot->spin_s + fmax(0, fmin(t_s, drives_run_until(&slot->drives)) - slot->spin_from_s);
-}
-
-/* Chord times mean heading: within 4 % of the arc up to a radian of turn. */
-double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const double r_ecef_from_body[9])
-{
-    const double *r0 = slot->reported.r_ecef_from_body;
-    const double sum[3] = {r0[0] + r_ecef_from_body[0], r0[3] + r_ecef_from_body[3], r0[6] + r_ecef_from_body[6]};
-    double forward[3], moved[3];
-    if (!v3_normalize(forward, sum)) return 0;
-    v3_sub(moved, p_ecef, slot->reported.p_ecef);
-    return v3_dot(moved, forward);
-}
-
 /* Advances extrapolated state to t_s before the next report replaces it. Distance travelled is the dead-reckoned one,
  * so that wheels never jump; its error is that of the position, a metre. With a static algorithm the displacement
  * between reports is used. */
@@ -86,16 +69,16 @@ static void close_interval(EntitySlot *slot, const double p_next_ecef[3], const 
     double missed_m[3], turn[9];
     v3_sub(missed_m, p_next_ecef, motion.p_ecef);
     m3_tmul(turn, motion.r_ecef_from_body, r_next);
-    slot->missed_m   = v3_length(missed_m);
-    slot->missed_rad = acos(clamp(0.5 * (turn[0] + turn[4] + turn[8] - 1), -1, 1));
-    slot->missed_s   = fmax(t_s - slot->report_s, 0);
+    slot->missed.m   = v3_length(missed_m);
+    slot->missed.rad = acos(clamp(0.5 * (turn[0] + turn[4] + turn[8] - 1), -1, 1));
+    slot->missed.s   = fmax(t_s - slot->report_s, 0);
     if (slot->reported.algorithm == 1) slot->distance_m += entity_slot_forward(slot, p_next_ecef, r_next);
     else slot->distance_m += entity_slot_forward(slot, motion.p_ecef, motion.r_ecef_from_body);
     if (!isfinite(slot->distance_m) || fabs(slot->distance_m) > 1e9) slot->distance_m = 0;
 }
 
-/* By how much a report's time has moved against its sender's stamps since the last one, so that the pose goes on from where
- * it was shown. Below 0.1 ms: as it comes; beyond 5 s the sender began anew. */
+/* Takes in by how much a report's time has moved against its sender's stamps since the last one, so that the pose goes
+ * on from where it was shown. Below 0.1 ms: as it comes; beyond 5 s the sender began anew. */
 static void take_shift(const EntityTable *table, EntitySlot *slot, uint32_t stamp, bool is_first, double t_s)
 {
     static const double least_s = 1e-4, most_s = 5;
@@ -105,7 +88,7 @@ static void take_shift(const EntityTable *table, EntitySlot *slot, uint32_t stam
         slot->shift_s = 0;
         return;
     }
-    const double left_s = entity_shift_left(slot->shift_s, table->arrival_s - slot->shift_from_s);
+    const double left_s = entity_slot_shift_left(slot->shift_s, table->arrival_s - slot->shift_from_s);
     const double moved_s = t_s - slot->report_s - dis_timestamp_step_s(before, stamp);
     const double shift_s = (slot->shift_s != 0 ? left_s : 0) + (fabs(moved_s) >= least_s ? moved_s : 0);
     slot->shift_s      = fabs(shift_s) <= most_s ? shift_s : 0;
@@ -118,7 +101,7 @@ static void take_place(EntityTable *table, EntitySlot *slot, const double p_ecef
 {
     double r[9];
     r_ecef_from_body_euler(r, euler_rad[0], euler_rad[1], euler_rad[2]);
-    if (is_first) slot->spin_s = slot->spin_from_s = t_s, slot->missed_s = 0;
+    if (is_first) slot->spin_s = slot->spin_from_s = t_s, slot->missed.s = 0;
     else close_interval(slot, p_ecef, r, t_s);
 
     memcpy(slot->reported.p_ecef, p_ecef, sizeof slot->reported.p_ecef);
@@ -135,16 +118,24 @@ static double climb_mps(const Kinematics *k)
     return v3_normalize(up, k->p_ecef) ? v3_dot(v_ecef_mps, up) : 0;
 }
 
+/* What both kinds of report say beside place and motion. */
+typedef struct ReportedState {
+    uint8_t                     version;
+    uint32_t                    appearance;
+    const DisVariableParameter *record;
+    int                         records;
+} ReportedState;
+
 /* Appearance, heat, articulation and times: the end of both kinds of report. */
-static void take_state(EntityTable *table, EntitySlot *slot, uint8_t version, uint32_t appearance,
-                       const DisVariableParameter *record, int record_count, bool is_first, double t_s)
+static void take_state(EntityTable *table, EntitySlot *slot, const ReportedState *state, bool is_first, double t_s)
 {
+    const uint32_t appearance = state->appearance;
     slot->appearance = appearance;
     slot->report_s = t_s;
     slot->paused_s = 0;
     if (slot->stopped && slot->reports_on) slot->stop_s = t_s;
     else if (slot->stopped && t_s > slot->stop_s) table->stopped_count--, slot->stopped = false;
-    slot->timeout_s = timeout_of(table, slot, version);
+    slot->timeout_s = timeout_of(table, slot, state->version);
     slot->hold_s = table->config.extrapolation_limit_s * (slot->timeout_s / table->config.timeout_s);
 
     const Kinematics   *k = &slot->reported;
@@ -158,7 +149,7 @@ static void take_state(EntityTable *table, EntitySlot *slot, uint8_t version, ui
     table->changes += is_first || slot->drives.destroyed != was_destroyed;
 
     table->counters.unknown_articulation +=
-        (uint64_t)articulation_report(&slot->articulation, record, record_count, t_s, slot->hold_s);
+        (uint64_t)articulation_report(&slot->articulation, state->record, state->records, t_s, slot->hold_s);
     entity_effects_report(table, slot, t_s);
     entity_marks_report(table, slot, is_first, t_s);
 }
@@ -191,11 +182,11 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
         }
         if (exceeds_rate(table, pdu->id, t_s)) return STATUS_OK;
         slot = entity_slot_new(table, pdu->id, t_s);
-        entity_eviction_rank(table, slot, pdu->p_ecef, t_s);
-        if (!entity_table_evict(table, slot, t_s)) return STATUS_UNSUPPORTED;
+        entity_slot_rank(table, slot, pdu->p_ecef, t_s);
+        if (!entity_slot_admit(table, slot, t_s)) return STATUS_UNSUPPORTED;
         table->counters.created++;
     } else {
-        entity_eviction_rank(table, slot, pdu->p_ecef, t_s);
+        entity_slot_rank(table, slot, pdu->p_ecef, t_s);
     }
     if (!is_first) entity_marks_before(table, slot, t_s);
     if (is_first || !same_type(slot->type, pdu->type)) {
@@ -216,7 +207,8 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
         table->counters.motion_refused++;
     if (!sanitize(slot->reported.w_body_rps, pdu->angular_rate_rps, table->config.rate_limit_rps))
         table->counters.motion_refused++;
-    take_state(table, slot, pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count, is_first, t_s);
+    const ReportedState state = {pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count};
+    take_state(table, slot, &state, is_first, t_s);
     return STATUS_OK;
 }
 
@@ -238,10 +230,11 @@ Status entity_table_entity_state_update(EntityTable *table, const DisEntityState
         entity_slot_remove(table, slot, t_s, &table->counters.deactivated);
         return STATUS_OK;
     }
-    entity_eviction_rank(table, slot, pdu->p_ecef, t_s);
+    entity_slot_rank(table, slot, pdu->p_ecef, t_s);
     entity_marks_before(table, slot, t_s);
     take_place(table, slot, pdu->p_ecef, pdu->velocity_mps, euler_rad, false, t_s);
     take_shift(table, slot, pdu->header.timestamp, false, t_s);
-    take_state(table, slot, pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count, false, t_s);
+    const ReportedState state = {pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count};
+    take_state(table, slot, &state, false, t_s);
     return STATUS_OK;
 }

@@ -9,7 +9,11 @@
 
 static const double timeout_per_heartbeat = 2.4; /* IEEE 1278.1 */
 
-double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s, double speed_mps)
+/* How far from the truth an extrapolated position may be: nothing at its report, growing evenly to the standard's
+ * threshold of 1 m at the sender's heartbeat, and from there as an unreported acceleration of 1 m/s2 would carry
+ * it. Beyond hold_s the entity is held while it moves on at speed_mps. An estimate for error budgets, not a bound:
+ * a sender's own threshold may differ, and a missile's motor start misses by 12 m. */
+static double position_error_m(double age_s, double heartbeat_s, double hold_s, double speed_mps)
 {
     static const double threshold_m = 1, unreported_mps2 = 1;
 
@@ -18,16 +22,16 @@ double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s
            speed_mps * fmax(age - hold_s, 0);
 }
 
-void snapshot_drift(double *drift_m, double *drift_rad, double age_s, double missed_m, double missed_rad, double missed_s,
-                    double otherwise_m, double heartbeat_s)
+void snapshot_drift(double *drift_m, double *drift_rad, double age_s, const SnapshotMiss *missed, double otherwise_m,
+                    double heartbeat_s)
 {
     static const double threshold_rad = 3 * (3.14159265358979323846 / 180);
     *drift_m   = otherwise_m;
     *drift_rad = threshold_rad * fmin(fmax(age_s, 0) / heartbeat_s, 1);
-    if (!(missed_s > 0)) return;
-    const double share = clamp(age_s / missed_s, 0, 1);
-    *drift_m   = missed_m * share * share;
-    *drift_rad = missed_rad * share;
+    if (!(missed->s > 0)) return;
+    const double share = clamp(age_s / missed->s, 0, 1);
+    *drift_m   = missed->m * share * share;
+    *drift_rad = missed->rad * share;
 }
 
 int snapshot_find(const Snapshot *snapshot, DisEntityId id)
@@ -123,7 +127,8 @@ static uint64_t last_wanted(int *at_it, const uint64_t *value, int count, int wa
     return prefix;
 }
 
-/* Of count entities in the order of ids the nearest config.shown, in that order; at equal distance the lower ids. */
+/* Chooses, of `count` entities in the order of ids, the config.shown nearest ones, in that order; at equal distance the
+ * lower ids. */
 static Status keep_nearest(Ordered *order, int *count, const EntityTable *table, Arena *arena)
 {
     const int wanted = table->config.shown;
@@ -259,11 +264,17 @@ static JointDrive drive_joints(const EntitySlot *slot, const SnapshotEntity *e, 
                         .speed_mps = stands ? 0 : v3_length(e->v_ecef_mps)};
 }
 
-static void pose_nodes(NodePose *pose, double *joint_value, const Model *model, const Articulation *articulation,
-                       const JointDrive *drive, double time_s, double hold_s, const SnapshotEntity *e)
+/* What moves an entity's joints: its reports, and its drives at its own time. */
+typedef struct Joints {
+    const Articulation *articulation;
+    JointDrive          drive;
+    double              time_s, hold_s;
+} Joints;
+
+static void pose_nodes(NodePose *pose, double *joint_value, const Model *model, const Joints *joints, const SnapshotEntity *e)
 {
-    articulation_joint_values(joint_value, model, articulation, drive, time_s, hold_s);
-    entity_effects_wreck_joints(joint_value, model, e, articulation->count);
+    articulation_joint_values(joint_value, model, joints->articulation, &joints->drive, joints->time_s, joints->hold_s);
+    entity_effects_wreck_joints(joint_value, model, e, joints->articulation->count);
     model_pose(pose, model, joint_value);
 }
 
@@ -280,7 +291,7 @@ void snapshot_pose(NodePose *pose, double *joint_value, const Snapshot *snapshot
     articulation.count = joints->count;
     if (joints->count > 0)
         memcpy(articulation.joint, snapshot->joint_report + joints->first, (size_t)joints->count * sizeof *articulation.joint);
-    pose_nodes(pose, joint_value, model, &articulation, &joints->drive, joints->time_s, joints->hold_s, e);
+    pose_nodes(pose, joint_value, model, &(Joints){&articulation, joints->drive, joints->time_s, joints->hold_s}, e);
 }
 
 static void keep_joints(SnapshotJoints *to, JointReport *report, const EntitySlot *slot, const SnapshotEntity *e, double t_s)
@@ -305,10 +316,10 @@ static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport
     e->model = slot->model;
     e->age_s = fmax(t_s - slot->report_s, 0);
     const double moved_s = fmax(e->age_s - slot->paused_s, 0); /* time stopped does not add to an error */
-    e->position_error_m = stands ? 0 : snapshot_position_error_m(moved_s, slot->timeout_s / timeout_per_heartbeat,
-                                                                 slot->hold_s, v3_length(e->v_ecef_mps));
-    snapshot_drift(&e->drift_m, &e->drift_rad, moved_s, slot->missed_m, slot->missed_rad, slot->missed_s,
-                   e->position_error_m, slot->timeout_s / timeout_per_heartbeat);
+    e->position_error_m = stands ? 0 : position_error_m(moved_s, slot->timeout_s / timeout_per_heartbeat, slot->hold_s,
+                                                        v3_length(e->v_ecef_mps));
+    snapshot_drift(&e->drift_m, &e->drift_rad, moved_s, &slot->missed, e->position_error_m,
+                   slot->timeout_s / timeout_per_heartbeat);
     if (stands) e->drift_m = e->drift_rad = 0;
     drives_at(&e->drives, &slot->drives, t_s);
     e->exhaust = table->outlet[slot->model].is_there ? &table->outlet[slot->model].jet : NULL;
@@ -474,9 +485,8 @@ bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_
     const int     only = 0;
     reckon_block(&e, table, &order, slot->reported.algorithm, &only, 1, t_s);
     if (node) {
-        const JointDrive drive = drive_joints(slot, &e, t_s);
-        pose_nodes(node, joint_value, catalog_model(table->catalog, slot->model), &slot->articulation, &drive,
-                   entity_slot_time(slot, t_s), slot->hold_s, &e);
+        const Joints joints = {&slot->articulation, drive_joints(slot, &e, t_s), entity_slot_time(slot, t_s), slot->hold_s};
+        pose_nodes(node, joint_value, catalog_model(table->catalog, slot->model), &joints, &e);
     }
     place_origin(&e, table, slot);
     *out = e;

@@ -1,5 +1,5 @@
-/* entities/table/entity_table.c: slots, and the effects of PDUs other than Entity State. Reports: entity_report.c; from
- * a slot to a pose: entity_snapshot.c. */
+/* entities/table/entity_table.c: the table, and the effects of PDUs other than Entity State. Slots: entity_slots.c;
+ * reports: entity_report.c; from a slot to a pose: entity_snapshot.c. */
 #include "entities/table/entity_table_private.h"
 
 #include <stdlib.h>
@@ -92,50 +92,7 @@ void entity_table_destroy(EntityTable *table)
     free(table);
 }
 
-/* ---- slots -------------------------------------------------------------------------------- */
-
-EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id)
-{
-    const int s = entity_index_find(&table->index, entity_key(id));
-    return s < 0 ? NULL : table->slot + s;
-}
-
-EntitySlot *entity_slot_new(EntityTable *table, DisEntityId id, double t_s)
-{
-    const int   s    = table->free_count > 0 ? table->free_slot[--table->free_count] : table->slot_end++;
-    EntitySlot *slot = table->slot + s;
-    const uint32_t generation = slot->generation + 1;
-    memset(slot, 0, sizeof *slot);
-    slot->generation = generation;
-    slot->id = id;
-    slot->created_s = t_s;
-    entity_index_insert(&table->index, entity_key(id), s);
-    table->count++;
-    return slot;
-}
-
-void entity_slot_free(EntityTable *table, EntitySlot *slot)
-{
-    const int s = (int)(slot - table->slot);
-    entity_ranks_remove(table->ranks, s);
-    entity_index_remove(&table->index, entity_key(slot->id));
-    table->stopped_count -= slot->stopped;
-    slot->generation++;
-    table->free_slot[table->free_count++] = s;
-    table->count--;
-}
-
-void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter)
-{
-    if (counter != &table->counters.evicted) { /* which may come back */
-        tombstones_put(table->tombstones, slot->id, t_s, counter == &table->counters.detonated);
-        table->counters.tombstones_dropped = tombstones_dropped(table->tombstones);
-    }
-    entity_effects_end(table, slot, t_s);
-    entity_marks_end(table, slot, entity_slot_silent(slot, t_s), t_s);
-    entity_slot_free(table, slot);
-    ++*counter;
-}
+/* ---- what is in the table ---------------------------------------------------------------------- */
 
 int entity_table_count(const EntityTable *table) { return table->count; }
 

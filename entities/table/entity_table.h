@@ -5,10 +5,10 @@
 #ifndef ENTITIES_TABLE_ENTITY_TABLE_H
 #define ENTITIES_TABLE_ENTITY_TABLE_H
 
-#include "dis/decode.h"
+#include "dis/pdu/decode.h"
 #include "entities/catalog/catalog.h"
 #include "entities/table/contact.h"
-#include "entities/effects/effects_history.h"
+#include "entities/traces/effect_history.h"
 #include "entities/table/snapshot.h"
 
 typedef struct EntityTable EntityTable;
@@ -19,7 +19,7 @@ typedef struct EntityHandle {
 } EntityHandle;
 
 typedef struct EntityTableConfig {
-    int    capacity;              /* most entities at once; beyond it entities are evicted by entity_ranks.h */
+    int    capacity;              /* most entities at once; beyond it entities are evicted by entity_limits.h */
     int    shown;                 /* most entities in a snapshot: those with reported positions nearest the focus */
     double timeout_s;             /* versions 5 and 6: 12 */
     double timeout_land_v7_s;     /* version 7, entities with the long heartbeat: land, sea, life forms, standing;
@@ -57,7 +57,7 @@ void   entity_table_destroy(EntityTable *table);
  * 0:0:0: none. Without a host, or after its end: the previous position. A snapshot of more than config.shown takes the
  * nearest to that position. Extrapolated positions are not used, so the result does not depend on snapshot times. */
 void   entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also);
-/* Which sender has most entities here, and how many. O(senders). */
+/* The sender that has most entities here; returns how many. O(senders). */
 int    entity_table_largest_sender(DisEntityId *sender, const EntityTable *table);
 
 /* A report that deactivates (appearance bit 23) removes. A frozen entity (bit 21) is stationary, and so is one named by

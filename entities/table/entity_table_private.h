@@ -1,18 +1,16 @@
-/* entities/table/entity_table_private.h: state of an entity in the table, read by entity_snapshot.c. */
+/* entities/table/entity_table_private.h: the table's slots, and what the files of the table do with them. */
 #ifndef ENTITIES_TABLE_ENTITY_TABLE_PRIVATE_H
 #define ENTITIES_TABLE_ENTITY_TABLE_PRIVATE_H
 
-#include "dis/enumerations.h"
-#include "entities/models/articulation.h"
+#include "dis/pdu/pdu.h"
+#include "entities/motion/articulation.h"
 #include "entities/motion/dead_reckoning.h"
-#include "entities/effects/effects_history.h"
-#include "entities/marks/ground_marks.h"
+#include "entities/traces/effect_history.h"
+#include "entities/traces/ground_marks.h"
 #include "entities/table/entity_index.h"
-#include "entities/table/entity_ranks.h"
-#include "entities/table/entity_rate.h"
+#include "entities/table/entity_limits.h"
 #include "entities/table/entity_table.h"
-#include "entities/effects/drives.h"
-#include "entities/table/tombstones.h"
+#include "entities/table/snapshot.h"
 
 enum { entity_effect_positions = 4 }; /* flame, smoke, engine smoke, trail */
 
@@ -40,12 +38,11 @@ typedef struct EntitySlot {
     double        shift_s, shift_from_s; /* ahead of its time by this at that time, and less and less since */
     double        spin_s, spin_from_s; /* running clock at spin_from_s */
     double        distance_m; /* distance travelled forward, at the report */
-    double        missed_m, missed_rad, missed_s; /* by how much its last report set the extrapolation of the one before
-                               * right, and after how long; missed_s 0: there was none */
+    SnapshotMiss  missed;
     Kinematics    reported;   /* as sanitized: entity_report.c */
     DriveState    drives;
     Articulation  articulation;
-    uint64_t      effect[entity_effect_positions]; /* what it gives off now: handles of effects_history.h */
+    uint64_t      effect[entity_effect_positions]; /* what it gives off now: handles of effect_history.h */
 } EntitySlot;
 
 /* What an entity leaves on the ground at present, beside its slot. */
@@ -114,7 +111,7 @@ static inline bool entity_slot_silent(const EntitySlot *slot, double t_s)
 
 /* What is left of a shift of its time after dt_s: it falls at a rate of half a second per second, then by e in half a
  * second, at last of 20 ms per second. */
-static inline double entity_shift_left(double shift_s, double dt_s)
+static inline double entity_slot_shift_left(double shift_s, double dt_s)
 {
     static const double fast = 0.5, fall_s = 0.5, slow = 0.02;
     const double high_s = fast * fall_s, low_s = slow * fall_s, sign = shift_s < 0 ? -1 : 1;
@@ -137,7 +134,7 @@ static inline double entity_slot_time(const EntitySlot *slot, double t_s)
 {
     if (entity_slot_frozen(slot)) return slot->report_s;
     const double own_s = (slot->stopped ? fmin(t_s, slot->stop_s) : t_s) - slot->paused_s;
-    return slot->shift_s == 0 ? own_s : own_s + entity_shift_left(slot->shift_s, t_s - slot->shift_from_s);
+    return slot->shift_s == 0 ? own_s : own_s + entity_slot_shift_left(slot->shift_s, t_s - slot->shift_from_s);
 }
 
 /* How far to extrapolate the report for t_s. */
@@ -146,27 +143,28 @@ static inline double entity_slot_dt(const EntitySlot *slot, double t_s)
     return clamp(entity_slot_time(slot, t_s) - slot->report_s, -slot->hold_s, slot->hold_s);
 }
 
-EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id); /* NULL: not there */
-/* There is one slot more than the table keeps: entity_table_evict. */
-EntitySlot *entity_slot_new(EntityTable *table, DisEntityId id, double t_s);
-/* Out of the table, uncounted. */
-void entity_slot_free(EntityTable *table, EntitySlot *slot);
-/* The same with what follows from it; counter: why, one of the table's counters. */
-void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter);
+/* ---- entity_slots.c ---------------------------------------------------------------------------- */
 
-/* entity_eviction.c: for a report received now. */
-void entity_eviction_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s);
-/* Admits a ranked new entity, evicting another if required. False: it is the one evicted. */
-bool entity_table_evict(EntityTable *table, EntitySlot *newcomer, double t_s);
+EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id); /* NULL: not there */
+/* There is one slot more than the table keeps: entity_slot_admit. */
+EntitySlot *entity_slot_new(EntityTable *table, DisEntityId id, double t_s);
+/* Takes an entity out of the table, with what follows from it; counter: why, one of the table's counters. */
+void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter);
 
 /* The running clock of rotors at t_s. */
 double entity_slot_spin(const EntitySlot *slot, double t_s);
 /* Forward way from the report to a pose reached by dead reckoning. */
 double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const double r_ecef_from_body[9]);
+/* Ranks it for a report received now. */
+void entity_slot_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s);
+/* Admits a ranked new entity, evicting another if required. False: it is the one evicted. */
+bool entity_slot_admit(EntityTable *table, EntitySlot *newcomer, double t_s);
 
-/* entity_effects.c: once an entity has this model. */
+/* ---- entity_effects.c -------------------------------------------------------------------------- */
+
+/* Finds the outlet of a model, once an entity has it. */
 void entity_effects_outlet(EntityTable *table, int model);
-/* entity_effects.c: after every change of a slot's motion or appearance; and when it ends. */
+/* After every change of a slot's motion or appearance; and when it ends. */
 void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s);
 void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s);
 /* What it carries along at t_s: the flame behind a motor, exhaust gas, a decoy's fire. Returns how many puffs. */
@@ -175,8 +173,13 @@ int  entity_effects_carried(EffectPuff out[entity_carried_max], const EntityTabl
                             const SnapshotEntity *entity, double t_s);
 Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
                                int carried_count, Arena *arena);
-/* entity_marks.c: before a report changes the slot; after it; at Stop/Freeze and Start/Resume; when the entity ends
- * (silent: by a timeout), or is of another type now. */
+/* reports: of joints, by the sender. */
+void entity_effects_wreck_joints(double *joint_value, const Model *model, const SnapshotEntity *entity, int reports);
+
+/* ---- entity_marks.c ---------------------------------------------------------------------------- */
+
+/* Before a report changes the slot; after it; at Stop/Freeze and Start/Resume; when the entity ends (silent: by a
+ * timeout), or is of another type now. */
 void entity_marks_before(EntityTable *table, EntitySlot *slot, double t_s);
 void entity_marks_report(EntityTable *table, EntitySlot *slot, bool is_first, double t_s);
 void entity_marks_stop(EntityTable *table, EntitySlot *slot, double t_s);
@@ -185,7 +188,4 @@ void entity_marks_end(EntityTable *table, EntitySlot *slot, bool silent, double 
 void entity_marks_detonation(EntityTable *table, const DisDetonation *pdu, double t_s);
 /* trailing[count]: slots of the snapshot that trail, by id. */
 Status entity_marks_snapshot(Snapshot *snapshot, const EntityTable *table, const int *trailing, int count, Arena *arena);
-/* reports: of joints, by the sender. */
-void entity_effects_wreck_joints(double *joint_value, const Model *model, const SnapshotEntity *entity, int reports);
-
 #endif

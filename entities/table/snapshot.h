@@ -3,12 +3,75 @@
 #ifndef ENTITIES_TABLE_SNAPSHOT_H
 #define ENTITIES_TABLE_SNAPSHOT_H
 
-#include "dis/pdu.h"
-#include "entities/effects/drives.h"
-#include "entities/effects/effects.h"
-#include "entities/effects/exhaust_jet.h"
-#include "entities/marks/ground_marks.h"
-#include "entities/models/articulation.h"
+#include "dis/pdu/pdu.h"
+#include "entities/traces/effect_puffs.h"
+#include "entities/traces/ground_marks.h"
+#include "entities/motion/articulation.h"
+
+/* ---- drives: drives.c ------------------------------------------------------------------------- */
+
+/* What an entity does that heats it: its engine, its motion, its shots, flames.
+ *
+ * Evidence is the appearance word *and* the observed motion: VR-Forces flies helicopters and drives tanks without
+ * ever setting the power-plant bit. Engine smoke says that the engine runs, as of a vehicle that makes its own
+ * screen. A plume of smoke from one that is damaged says that it smoulders; from one that is not, a screen, it warms
+ * nothing. Flames need no smoke. Between reports every drive is constant or ends at a known time, so drives at a
+ * time are a function of the reports and of that time. What they do to temperatures: render/heat/vehicle_heat.h. */
+
+/* What heats an entity at one instant. */
+typedef struct EntityDrives {
+    double since_s;      /* exercise time of its first report */
+    float  engine;       /* share of full power: 0.6 idling, 1 at 10 m/s on level ground, or at less uphill and in turns; air
+                          * platforms 1; 0: stopped */
+    float  speed_mps;    /* as reported; 0 when frozen */
+    float  flying;       /* 1: an air platform that is not destroyed */
+    float  alive;        /* 1: a life form alive; a building not destroyed */
+    float  burning;      /* 1: in flames, or destroyed before our eyes in the last ten minutes; 0.1: damaged, a plume of smoke from it */
+    float  motor;        /* 1: a munition's motor burns, in its first two seconds */
+    float  flare;        /* 1: an expendable's grain burns, in its first four seconds */
+    double fired_kg[2];  /* propellant of all its shots: of small guns (below drives_large_kg a shot), of large ones */
+} EntityDrives;
+
+static const double drives_idle = 0.6;   /* engine of one that idles; estimate */
+static const double drives_large_kg = 1; /* of propellant, a shot */
+
+typedef struct DriveUntil {
+    double value, until_s; /* value until then, afterwards 0 */
+} DriveUntil;
+
+typedef struct DriveState {
+    double     since_s, speed_mps;
+    DriveUntil engine, motor, flare, wreck;
+    double     moved_s;  /* when it was last known to move; -INFINITY: never */
+    bool       moving, flying, alive, flaming, smoulders, destroyed;
+    double     fired_kg[2];
+} DriveState;
+
+/* The state of one report. */
+typedef struct DriveEvidence {
+    DisEntityType type;
+    uint32_t      appearance;
+    double        speed_mps; /* as reported; 0 when frozen */
+    double        climb_mps; /* upwards */
+    double        turn_rps;  /* about its own vertical axis */
+} DriveEvidence;
+
+/* Begins with the first report. A wreck without flames does not burn. Munitions and expendables start with their motor
+ * or grain burning. */
+void drives_begin(DriveState *state, const DriveEvidence *evidence, double t_s);
+void drives_report(DriveState *state, const DriveEvidence *evidence, double t_s);
+/* It fired a charge (effect_charge_kg), `rounds` times; or it is the munition that was fired. */
+void drives_fire(DriveState *state, double charge_kg, int rounds);
+void drives_launch(DriveState *state, double t_s);
+void drives_at(EntityDrives *out, const DriveState *state, double t_s);
+
+/* Until when engine and rotors turn without a further report: power-plant bit, moving or moved lately, or an air
+ * platform; never a destroyed one. -INFINITY: they do not turn; INFINITY: until the next report. */
+double drives_run_until(const DriveState *state);
+/* The engine's share of full power at t_s, 0 .. 1. */
+double drives_engine(const DriveState *state, double t_s);
+
+/* ---- the snapshot ----------------------------------------------------------------------------- */
 
 typedef struct SnapshotEntity {
     DisEntityId   id;
@@ -22,7 +85,7 @@ typedef struct SnapshotEntity {
     double        w_body_rps[3];   /* of the rendered attitude: 0 where the algorithm holds it, and when frozen */
     double        r_ecef_from_body[9];
     double        age_s;           /* since the report it was extrapolated from */
-    double        position_error_m;/* estimate: snapshot_position_error_m */
+    double        position_error_m;/* how far from the truth it may be; estimate */
     double        drift_m, drift_rad; /* expected distance and angle from the truth: snapshot_drift */
     int           first_node;      /* into Snapshot.node */
     EntityDrives  drives;          /* what heats it */
@@ -75,19 +138,17 @@ int  snapshot_damage(const SnapshotEntity *entity);
 /* A platform that its sender calls destroyed. */
 bool snapshot_is_wreck(const SnapshotEntity *entity);
 
-/* How far from the truth an extrapolated position may be: nothing at its report, growing evenly to the standard's
- * threshold of 1 m at the sender's heartbeat, and from there as an unreported acceleration of 1 m/s2 would carry
- * it. Beyond hold_s the entity is held while it moves on at speed_mps. An estimate for error budgets, not a bound:
- * a sender's own threshold may differ, and a missile's motor start misses by 12 m. */
-double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s, double speed_mps);
+/* By how much the last report set the extrapolation of the one before right, and after how long. */
+typedef struct SnapshotMiss {
+    double m, rad, s; /* s 0: there was none */
+} SnapshotMiss;
 
-/* Expected error of an extrapolation, from the error of the previous one at the next report:
- * missed_m and missed_rad after missed_s; 0: unknown, then `otherwise` for the place and nothing but the standard's 3
- * degrees a heartbeat for the attitude. The position error grows as by an unreported acceleration, that of the attitude
- * as by an unreported rate, up to the previous error: a larger one would have caused a report.
- * tests/sensor/test_frame_error.c. */
-void snapshot_drift(double *drift_m, double *drift_rad, double age_s, double missed_m, double missed_rad, double missed_s,
-                    double otherwise_m, double heartbeat_s);
+/* Expected error of an extrapolation, from the error of the previous one at the next report; where that is unknown,
+ * `otherwise` for the place and nothing but the standard's 3 degrees a heartbeat for the attitude. The position error
+ * grows as by an unreported acceleration, that of the attitude as by an unreported rate, up to the previous error: a
+ * larger one would have caused a report. tests/sensor/test_frame_error.c. */
+void snapshot_drift(double *drift_m, double *drift_rad, double age_s, const SnapshotMiss *missed, double otherwise_m,
+                    double heartbeat_s);
 
 /* Nodes of entity `index`, with this model, into pose[model->node_count]; joint_value: same size. Most entities are
  * never rendered: a snapshot keeps the joint state, and the renderer poses only what it draws. */

@@ -120,7 +120,7 @@ float *picture_plane(const Picture *picture, int plane);
 typedef struct PictureChannel {
     int     plane;
     Band    band;
-    AirBand channel; /* the same number is the smoke's band (entities/effects/effects.h) */
+    AirBand channel; /* the same number is the smoke's band (entities/traces/effect_puffs.h) */
 } PictureChannel;
 
 /* The channels of a request of these bands, without the radar's, in the planes' order; returns their number. */

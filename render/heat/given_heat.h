@@ -12,7 +12,7 @@
 #ifndef RENDER_HEAT_GIVEN_HEAT_H
 #define RENDER_HEAT_GIVEN_HEAT_H
 
-#include "dis/pdu.h"
+#include "dis/pdu/pdu.h"
 #include "entities/models/model.h"
 
 typedef struct GivenHeat GivenHeat;

@@ -10,7 +10,7 @@
 #ifndef RENDER_HEAT_JET_PATH_H
 #define RENDER_HEAT_JET_PATH_H
 
-#include "entities/effects/exhaust_jet.h"
+#include "entities/traces/effect_puffs.h"
 
 enum { jet_points = 64, jet_run = 8, jet_boxes = jet_points / jet_run };
 

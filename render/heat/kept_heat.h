@@ -7,7 +7,7 @@
 #ifndef RENDER_HEAT_KEPT_HEAT_H
 #define RENDER_HEAT_KEPT_HEAT_H
 
-#include "dis/pdu.h"
+#include "dis/pdu/pdu.h"
 
 typedef struct KeptHeat KeptHeat;
 

@@ -7,7 +7,7 @@
 #ifndef RENDER_HEAT_NEIGHBOURS_H
 #define RENDER_HEAT_NEIGHBOURS_H
 
-#include "dis/pdu.h"
+#include "dis/pdu/pdu.h"
 #include "pitviper.h"
 
 enum { near_seen_most = 8, near_sun_most = 8, near_jet_most = 4, near_most = near_seen_most + near_sun_most + near_jet_most };

@@ -9,7 +9,7 @@
 #ifndef RENDER_RADAR_GIVEN_LIST_H
 #define RENDER_RADAR_GIVEN_LIST_H
 
-#include "dis/pdu.h"
+#include "dis/pdu/pdu.h"
 #include "render/radar/given_signature.h"
 
 typedef struct GivenList GivenList;

@@ -18,7 +18,7 @@
 #include "render/scene/view.h"
 #include "render/smoke/hot_gas.h"
 
-/* Bands in the order of entities/effects/effects.h. */
+/* Bands in the order of entities/traces/effect_puffs.h. */
 enum { smoke_bands = 7, smoke_scatter_orders = 3, smoke_segments_max = 24, veil_together = 96 };
 
 /* Hot gas of a volume, of one temperature. */

@@ -1,7 +1,7 @@
 /* sensor/bench/machine.c: the machine and the program of a run. */
 #include "sensor/bench/bench_private.h"
 
-#include "entities/import/assimp_library.h"
+#include "entities/import/reader.h"
 #include "sensor/publish/images/image_file.h"
 
 #include <gnu/libc-version.h>

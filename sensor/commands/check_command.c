@@ -2,7 +2,7 @@
  * they lead to. */
 #include "sensor/commands/commands.h"
 
-#include "entities/effects/effects_history.h"
+#include "entities/traces/effect_history.h"
 #include "render/heat/given_heat.h"
 #include "render/radar/given_list.h"
 #include "render/heat/part_table.h"

@@ -3,9 +3,9 @@
 #include "sensor/commands/commands.h"
 #include "pitviper_output.h"
 
-#include "dis/recorder.h"
-#include "dis/udp.h"
-#include "entities/scenario/exercise.h"
+#include "dis/capture/recorder.h"
+#include "dis/network/udp.h"
+#include "entities/exercise/exercise.h"
 #include "sensor/settings/command_line.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/node/run/stop.h"

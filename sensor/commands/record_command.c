@@ -1,8 +1,8 @@
 /* sensor/commands/record_command.c: from the receive queue to the file, and how it ends. */
 #include "sensor/commands/commands.h"
 
-#include "dis/recorder.h"
-#include "dis/udp.h"
+#include "dis/capture/recorder.h"
+#include "dis/network/udp.h"
 #include "sensor/settings/command_line.h"
 #include "sensor/commands/overwrite.h"
 #include "sensor/node/run/stop.h"

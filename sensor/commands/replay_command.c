@@ -1,7 +1,7 @@
 /* sensor/commands/replay_command.c: replays a recorded exercise to images and truth. */
 #include "sensor/commands/commands.h"
 
-#include "dis/datagram.h"
+#include "dis/pdu/decode.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/node/player/player.h"

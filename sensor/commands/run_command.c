@@ -3,7 +3,7 @@
 #include "sensor/commands/commands.h"
 #include "pitviper_output.h"
 
-#include "dis/steady_clock.h"
+#include "dis/clock/steady_clock.h"
 #include "sensor/node/live/health.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/node/run/host_run.h"

@@ -8,7 +8,7 @@
 #define SENSOR_FRAME_RECORDS_H
 
 #include "entities/motion/dead_reckoning.h"
-#include "entities/effects/effects_history.h"
+#include "entities/traces/effect_history.h"
 #include "sensor/frame/publish_counters.h"
 #include "sensor/radar/radar_frame.h"
 #include "sensor/truth/truth.h"

@@ -33,7 +33,7 @@
 
 #include "entities/catalog/catalog.h"
 #include "sensor/truth/truth.h"
-#include "dis/pdu.h"
+#include "dis/pdu/pdu.h"
 
 /* The values are those of PitviperMemoryTarget.flags. */
 typedef enum TargetOccluder { OCCLUDER_NONE, OCCLUDER_GROUND, OCCLUDER_ENTITY, OCCLUDER_TREES = 4 } TargetOccluder;

@@ -1,7 +1,7 @@
 /* sensor/reference/reference_run.c: fields of run.json. */
 #include "sensor/reference/reference.h"
 
-#include "dis/pdu.h"
+#include "dis/pdu/pdu.h"
 #include "render/scene/skip.h"
 #include "sensor/node/session/session.h"
 

@@ -2,8 +2,8 @@
  * recording; and what involves several settings. */
 #include "sensor/settings/config_private.h"
 
-#include "dis/pdu.h"
-#include "dis/recorder.h"
+#include "dis/pdu/pdu.h"
+#include "dis/capture/recorder.h"
 #include "pitviper_channels.h"
 #include "sensor/settings/publish_choice.h"
 

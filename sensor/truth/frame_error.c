@@ -2,7 +2,7 @@
  * radar's map. */
 #include "sensor/truth/frame_error.h"
 #include "render/heat/vehicle_heat.h"
-#include "dis/enumerations.h"
+#include "dis/pdu/pdu.h"
 #include "render/frame/error_budget.h"
 #include "render/radar/signature.h"
 

@@ -2,7 +2,7 @@
 #ifndef TESTS_DIS_RANDOM_PDU_H
 #define TESTS_DIS_RANDOM_PDU_H
 
-#include "dis/decode.h"
+#include "dis/pdu/decode.h"
 
 /* Random words in order. */
 typedef struct Dice {

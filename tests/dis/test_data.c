@@ -3,9 +3,9 @@
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
 
-#include "dis/datagram.h"
-#include "dis/log.h"
-#include "dis/reader.h"
+#include "dis/pdu/decode.h"
+#include "dis/capture/log.h"
+#include "dis/pdu/octets.h"
 
 enum { most_octets = 65535 };
 

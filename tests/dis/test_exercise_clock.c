@@ -2,7 +2,7 @@
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
 
-#include "dis/exercise_clock.h"
+#include "dis/clock/exercise_clock.h"
 
 static const double tick_s = 3600.0 / 2147483648.0; /* 1.7 us */
 

@@ -3,7 +3,7 @@
 #include "tests/dis/make_capture.h"
 #include "tests/dis/random_pdu.h"
 
-#include "dis/log.h"
+#include "dis/capture/log.h"
 
 #include <sys/mman.h>
 

@@ -2,8 +2,8 @@
  * packet and of several, packed and not; what becomes of one that is cut meanwhile. */
 #include "tests/check.h"
 
-#include "dis/log.h"
-#include "dis/reader.h"
+#include "dis/capture/log.h"
+#include "dis/pdu/octets.h"
 
 #include <unistd.h>
 #include <zlib.h>

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 #include "tests/dis/make_capture.h"
 
-#include "dis/log.h"
+#include "dis/capture/log.h"
 
 #include <bzlib.h>
 #include <lzma.h>

@@ -1,8 +1,8 @@
 /* Packet times against stamps: which of the two is the clock. */
 #include "tests/check.h"
 
-#include "dis/entity_state.h"
-#include "dis/log.h"
+#include "dis/pdu/decode.h"
+#include "dis/capture/log.h"
 
 enum { pdus = 200 };
 

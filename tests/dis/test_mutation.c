@@ -2,7 +2,7 @@
  * memory of exactly its size so that a sanitizer sees one octet too many. What decodes must encode again. */
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
-#include "dis/datagram.h"
+#include "dis/pdu/decode.h"
 
 static DisPdu  decoded;
 static uint8_t datagram[4 * random_pdu_octets], back[4 * random_pdu_octets], again[4 * random_pdu_octets];

@@ -1,7 +1,7 @@
 /* tests/dis/test_pdu.c: layouts octet by octet, exact inverses, and what a datagram may do wrong. */
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
-#include "dis/datagram.h"
+#include "dis/pdu/decode.h"
 
 static DisPdu decoded, again;
 

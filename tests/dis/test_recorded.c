@@ -2,9 +2,9 @@
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
 
-#include "dis/datagram.h"
-#include "dis/exercise_clock.h"
-#include "dis/log.h"
+#include "dis/pdu/decode.h"
+#include "dis/clock/exercise_clock.h"
+#include "dis/capture/log.h"
 
 static const char *const captures[] = {"dis/vrf-dis5-tow-vs-armor", "dis/vrf-dis7-gaz69-blocks",
                                        "dis/vrf-dis7-gaz69-straight", "dis/singles"};

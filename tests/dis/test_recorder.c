@@ -3,9 +3,9 @@
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
 
-#include "dis/log.h"
-#include "dis/reader.h"
-#include "dis/recorder.h"
+#include "dis/capture/log.h"
+#include "dis/pdu/octets.h"
+#include "dis/capture/recorder.h"
 
 #include <pcap/pcap.h>
 #include <signal.h>

@@ -1,7 +1,7 @@
 /* tests/dis/test_steady_clock.c: what a system's clock that is set does to arrival times: nothing. */
 #include "tests/check.h"
 
-#include "dis/steady_clock.h"
+#include "dis/clock/steady_clock.h"
 
 static const int64_t s_ns = 1000000000, begun_ns = 1750000000ll * 1000000000;
 

@@ -5,7 +5,7 @@
  * tests/system/test_network.sh makes one that nobody else has. */
 #include "tests/dis/udp_peer.h"
 
-#include "dis/udp.h"
+#include "dis/network/udp.h"
 
 #include <errno.h>
 #include <linux/filter.h>

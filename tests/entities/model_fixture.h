@@ -4,8 +4,8 @@
 
 #include "tests/check.h"
 
-#include "entities/parametric/mesh_builder.h"
-#include "entities/parametric/parametric.h"
+#include "entities/shapes/mesh_builder.h"
+#include "entities/shapes/parametric.h"
 
 /* Every model that somebody may meet (`marker` is for tests of the picture alone). */
 static const char *const model_names[] = {"tank",   "truck", "helicopter", "missile",  "unknown", "carrier", "launcher",

@@ -1,6 +1,6 @@
 /* tests/entities/test_articulation.c: joints by class and metric, in any order, with any rubbish between. */
 #include "tests/entities/entity_fixture.h"
-#include "entities/models/articulation.h"
+#include "entities/motion/articulation.h"
 
 enum { azimuth = 11, azimuth_rate = 12, elevation = 13, elevation_rate = 14, turret = 4096, gun = 4416 };
 static const double hold_s = 12;

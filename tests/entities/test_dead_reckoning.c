@@ -1,10 +1,9 @@
 /* tests/entities/test_dead_reckoning.c: the nine algorithms against paper, against an integration in 64-bit
  * mantissa that knows none of the closed forms, and against real senders' own thresholds. labels: physics */
 #include "tests/check.h"
-#include "dis/datagram.h"
-#include "dis/decode.h"
-#include "dis/exercise_clock.h"
-#include "dis/log.h"
+#include "dis/pdu/decode.h"
+#include "dis/clock/exercise_clock.h"
+#include "dis/capture/log.h"
 #include "entities/motion/dead_reckoning.h"
 
 /* ---- the reference ------------------------------------------------------------------------ */

@@ -1,6 +1,6 @@
 /* tests/entities/test_drives.c: what counts as evidence of what heats an entity. labels: physics */
 #include "tests/entities/entity_fixture.h"
-#include "entities/effects/drives.h"
+#include "entities/table/snapshot.h"
 
 static EntityDrives at(const DriveState *s, double t_s)
 {

@@ -1,6 +1,6 @@
 /* What bursts, burns and trails: closed forms against their own formulae, histories against counts on paper. */
 #include "tests/entities/entity_fixture.h"
-#include "entities/effects/effects_history.h"
+#include "entities/traces/effect_history.h"
 
 static const uint32_t flaming_bit = UINT32_C(1) << 15, plume_bit = UINT32_C(1) << 5, dust_bits = UINT32_C(2) << 7;
 static const uint32_t destroyed_bits = UINT32_C(3) << 3;

@@ -2,9 +2,7 @@
  * add; and shots found among many. */
 #include "tests/entities/entity_fixture.h"
 #include "entities/survey/survey.h"
-#include "entities/survey/survey_shots.h"
-#include "entities/table/entity_rate.h"
-#include "entities/table/tombstones.h"
+#include "entities/table/entity_limits.h"
 
 #include <stdlib.h>
 

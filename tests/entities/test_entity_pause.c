@@ -1,7 +1,7 @@
 /* tests/entities/test_entity_pause.c: Stop/Freeze and Start/Resume: which entities stop, what does not count as silence, to whom a
  * PDU applies. */
 #include "tests/entities/entity_fixture.h"
-#include "dis/datagram.h"
+#include "dis/pdu/decode.h"
 
 /* Stop holds it, Start goes on from there without a jump, a report of its own overrules the stop. */
 static void stop_and_start(void **state)

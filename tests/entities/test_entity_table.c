@@ -1,7 +1,7 @@
 /* tests/entities/test_entity_table.c: who is there, since when, until when, and where. */
 #include "tests/entities/entity_fixture.h"
-#include "dis/datagram.h"
-#include "dis/log.h"
+#include "dis/pdu/decode.h"
+#include "dis/capture/log.h"
 #include "entities/table/entity_index.h"
 
 static const EntityCounters *counted(const Fixture *f) { return entity_table_counters(f->table); }

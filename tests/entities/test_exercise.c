@@ -5,8 +5,8 @@
  * The receiver is the entity table, fed from the datagrams; the truth is the cast. */
 #include "tests/entities/entity_fixture.h"
 
-#include "entities/scenario/exercise.h"
-#include "dis/datagram.h"
+#include "entities/exercise/exercise.h"
+#include "dis/pdu/decode.h"
 
 typedef struct Heard {
     Fixture   *fixture;      /* NULL: only counted */

@@ -2,7 +2,7 @@
  * slope, banked turns, formations, shots that arrive; the ground of the plane against GeographicLib. */
 #include "tests/check.h"
 
-#include "entities/scenario/exercise_cast.h"
+#include "entities/exercise/cast.h"
 
 static Scenario scenario;
 

@@ -1,8 +1,8 @@
 /* tests/entities/test_ground_marks.c: what is left on the ground, against drives known on paper; marks depend on PDUs
  * alone; bounds; files. */
-#include "entities/marks/ground_marks.h"
+#include "entities/traces/ground_marks.h"
 #include "entities/table/entity_index.h"
-#include "dis/enumerations.h"
+#include "dis/pdu/pdu.h"
 #include "tests/entities/entity_fixture.h"
 
 enum { heartbeat_s = 5 };

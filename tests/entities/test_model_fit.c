@@ -2,7 +2,7 @@
  * must be the one that was put in. */
 #include "tests/check.h"
 
-#include "entities/catalog/model_fit.h"
+#include "entities/catalog/model_size.h"
 
 static const double sides_m[3] = {6.7, 3.1, 2.6};
 

@@ -516,7 +516,7 @@ static void belts_have_their_volume(void **state)
     const BeltWheel wheel[2] = {{-2, -0.5, 0.4}, {2, -0.5, 0.4}};
     for (double sag_m = 0.01; sag_m > 1e-5; sag_m *= 0.1) {
         MeshBuilder *b = begin(sag_m);
-        mesh_belt(b, place_at(0, 1, 0), wheel, 2, 0.05, -0.3, 0.3, 0, 0, 0);
+        mesh_belt(b, place_at(0, 1, 0), wheel, 2, &(Belt){0.05, -0.3, 0.3, 0, 0, 0});
         Model m = finish(b);
         const double truth = 0.6 * (pi_rad * (0.45 * 0.45 - 0.4 * 0.4) + 2 * 4 * 0.05);
         const double turned = 0.6 * pi_rad * (0.45 * 0.45 - 0.4 * 0.4);
@@ -529,7 +529,7 @@ static void belts_have_their_volume(void **state)
         model_destroy(&m);
 
         b = begin(sag_m);
-        mesh_belt(b, place_at(0, 1, 0), wheel, 2, 0.05, -0.3, 0.3, 40, 0.02, 0.06);
+        mesh_belt(b, place_at(0, 1, 0), wheel, 2, &(Belt){0.05, -0.3, 0.3, 40, 0.02, 0.06});
         m = finish(b);
         CHECK_NEAR(part_volume_m3(&m, &m.part[0]) - v, 40 * 0.6 * 0.06 * (0.02 + 0.2 * 0.05), 1e-9);
         CHECK_NEAR(m.box_high[2], -0.03, 0.002 + sag_m);

@@ -2,8 +2,8 @@
  * their joints do when an exercise moves them. labels: physics */
 #include "tests/entities/model_fixture.h"
 
-#include "entities/models/articulation.h"
-#include "entities/parametric/parts.h"
+#include "entities/motion/articulation.h"
+#include "entities/shapes/parts.h"
 
 /* ---- size ------------------------------------------------------------------------------------- */
 

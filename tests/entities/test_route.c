@@ -2,7 +2,7 @@
  * its derivatives are those that differences give. */
 #include "tests/check.h"
 
-#include "entities/scenario/route.h"
+#include "entities/exercise/cast.h"
 
 static void straight_line(void **state)
 {

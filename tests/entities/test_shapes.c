@@ -3,7 +3,7 @@
  * heavy in any size; and that what has no shape is not there. labels: physics */
 #include "tests/entities/model_fixture.h"
 
-#include "entities/models/articulation.h"
+#include "entities/motion/articulation.h"
 #include "entities/catalog/catalog.h"
 
 /* ---- the common types -------------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 /* tests/entities/test_survey.c: tracks, shots and clocks out of logs made here, and out of real ones. */
 #include "tests/check.h"
-#include "dis/simulation_management.h"
+#include "dis/pdu/decode.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/survey/survey.h"
 
@@ -337,7 +337,7 @@ static void constant_acceleration_is_exact(void **state)
     for (int i = 0; i < 4; i++) point[i] = point_at(t[i], 100 * t[i] + 15 * t[i] * t[i], 100 + 30 * t[i]);
     for (double t_s = 0; t_s <= 5; t_s += 0.03) {
         TrackPose pose;
-        track_at(&pose, &track, t_s);
+        survey_track_at(&pose, &track, t_s);
         CHECK_NEAR(pose.p_ecef[0], 6.4e6 + 100 * t_s + 15 * t_s * t_s, 3e-9); /* one unit in the last place is 0.9 nm */
         CHECK_NEAR(pose.v_ecef_mps[0], 100 + 30 * t_s, 1e-6);
     }
@@ -355,7 +355,7 @@ static void no_overshoot(void **state)
         double last_m = 0;
         for (int k = 0; k <= 100; k++) {
             TrackPose pose;
-            track_at(&pose, &track, 0.005 * k);
+            survey_track_at(&pose, &track, 0.005 * k);
             const double x_m = pose.p_ecef[0] - 6.4e6;
             CHECK(x_m >= last_m - 1e-8 && x_m <= 60 + 1e-8);
             last_m = x_m;
@@ -372,18 +372,18 @@ static void ends_and_gaps_are_held(void **state)
     point[3].deactivated = true;
     const Track track = {.count = 5, .point = point};
     TrackPose pose;
-    track_at(&pose, &track, -100);
+    survey_track_at(&pose, &track, -100);
     CHECK(pose.p_ecef[0] == 6.4e6 && pose.v_ecef_mps[0] == 0);
-    track_at(&pose, &track, 1);
+    survey_track_at(&pose, &track, 1);
     CHECK(pose.p_ecef[0] == 6.4e6 && pose.v_ecef_mps[0] == 5);
-    track_at(&pose, &track, 2); /* two reports at one time: the later counts */
+    survey_track_at(&pose, &track, 2); /* two reports at one time: the later counts */
     CHECK(pose.p_ecef[0] == 6.4e6 + 6);
-    track_at(&pose, &track, 6); /* between two lives of one id */
+    survey_track_at(&pose, &track, 6); /* between two lives of one id */
     CHECK(pose.p_ecef[0] == 6.4e6 + 11 && pose.v_ecef_mps[0] == 0);
-    track_at(&pose, &track, 100);
+    survey_track_at(&pose, &track, 100);
     CHECK(pose.p_ecef[0] == 6.4e6 + 500 && pose.v_ecef_mps[0] == 0);
     const Track one = {.count = 1, .point = point};
-    track_at(&pose, &one, 7);
+    survey_track_at(&pose, &one, 7);
     CHECK(pose.p_ecef[0] == 6.4e6);
 }
 
@@ -405,7 +405,7 @@ static void attitude_turns_evenly(void **state)
         memcpy(turned, m.r_ecef_from_body, sizeof turned);
         for (double t_s = 0; t_s < 1; t_s += 0.23) {
             TrackPose pose;
-            track_turn(pose.r_ecef_from_body, k.r_ecef_from_body, turned, t_s);
+            survey_turn(pose.r_ecef_from_body, k.r_ecef_from_body, turned, t_s);
             dead_reckon(&m, &k, t_s);
             for (int i = 0; i < 9; i++)
                 CHECK_NEAR(pose.r_ecef_from_body[i], m.r_ecef_from_body[i], 2e-12); /* 1e-4 from the half turn */
@@ -454,11 +454,11 @@ static void the_recorded_attack(void **state)
      * a millisecond, at least the velocity stays one. */
     const double flight_s = missile->point[1].t_s, impact_s = missile->point[missile->count - 3].t_s;
     TrackPose before, here;
-    track_at(&before, missile, flight_s);
+    survey_track_at(&before, missile, flight_s);
     double fastest_mps = 0, slowest_mps = INFINITY, fastest_said_mps = 0;
     for (double t_s = missile->point[0].t_s; t_s < missile->point[missile->count - 1].t_s; t_s += 0.0001) {
         double d[3];
-        track_at(&here, missile, t_s);
+        survey_track_at(&here, missile, t_s);
         fastest_said_mps = fmax(fastest_said_mps, v3_length(here.v_ecef_mps));
         if (t_s < flight_s + 0.0002 || t_s > impact_s) {
             before = here;

@@ -2,7 +2,7 @@
  * run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 #include "tests/dis/random_pdu.h"
-#include "dis/datagram.h"
+#include "dis/pdu/decode.h"
 
 #include <stdlib.h>
 

@@ -90,7 +90,7 @@ static void check_survey(const DisLog *log, int exercise)
             TrackPose pose;
             if (!isfinite(track->point[k].t_s) || !v3_is_finite(track->point[k].p_ecef)) abort();
             if (k > 0 && !(track->point[k].t_s >= track->point[k - 1].t_s)) abort();
-            track_at(&pose, track, track->point[k].t_s + 0.3);
+            survey_track_at(&pose, track, track->point[k].t_s + 0.3);
             if (!v3_is_finite(pose.p_ecef) || !v3_is_finite(pose.v_ecef_mps)) abort();
         }
     }

@@ -3,8 +3,7 @@
 #include "tests/fuzz/fuzz_seed.h"
 #include "tests/dis/make_capture.h"
 
-#include "dis/log.h"
-#include "dis/log_stream.h"
+#include "dis/capture/log.h"
 
 #include <stdlib.h>
 

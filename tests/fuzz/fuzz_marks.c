@@ -1,7 +1,7 @@
 /* tests/fuzz/fuzz_marks.c: any octets as a file of ground marks. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "entities/marks/ground_marks.h"
+#include "entities/traces/ground_marks.h"
 
 #include <stdlib.h>
 

@@ -3,8 +3,8 @@
 #include "tests/fuzz/fuzz_seed.h"
 #include "tests/dis/random_pdu.h"
 
-#include "dis/datagram.h"
-#include "dis/exercise_clock.h"
+#include "dis/pdu/decode.h"
+#include "dis/clock/exercise_clock.h"
 
 #include <stdlib.h>
 

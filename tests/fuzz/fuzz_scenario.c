@@ -1,7 +1,7 @@
 /* tests/fuzz/fuzz_scenario.c: any octets as a scenario. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "entities/scenario/scenario.h"
+#include "entities/exercise/scenario.h"
 
 #include <stdlib.h>
 

@@ -5,7 +5,7 @@
 
 #include "pitviper_channels.h"
 #include "entities/catalog/catalog.h"
-#include "entities/effects/effects.h"
+#include "entities/traces/effect_puffs.h"
 #include "render/heat/given_heat.h"
 #include "render/heat/kept_heat.h"
 #include "render/heat/part_table.h"

@@ -24,9 +24,9 @@ MAY = {
     'terrain': (),
     'entities': ('dis/*', 'terrain/*'),
     # a Snapshot and the terrain, never a PDU or the table; pdu.h for its ids alone
-    'render': ('terrain/*', 'entities/models/model.h', 'entities/models/patches.h', 'entities/effects/exhaust_jet.h',
+    'render': ('terrain/*', 'entities/models/model.h', 'entities/models/patches.h', 'entities/traces/effect_puffs.h',
                'entities/import/model_import.h', 'entities/catalog/catalog.h',
-               'entities/table/snapshot.h', 'dis/pdu.h'),
+               'entities/table/snapshot.h', 'dis/pdu/pdu.h'),
     'sensor': ('dis/*', 'terrain/*', 'entities/*', 'render/*'),
     'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),
 }
@@ -212,24 +212,24 @@ def twins():
         plant(bad, **{path: header})
 
     for path, header in re.findall(r'(\S+) (\S+)', """
-        pitviper_log.c dis/pdu.h                        pitviper_log.c sensor/bench/bench_private.h
-        dis/pdu.c sensor/bench/bench_private.h          sensor/commands/run_command.c sensor/bench/sensor/quality.h
-        sensor/publish/files/html_page.c sensor/bench/bench.h      dis/pdu.c terrain/earth/geodesy.h
-        dis/pdu.c entities/models/model.h               terrain/earth/sun.c dis/pdu.h
+        pitviper_log.c dis/pdu/pdu.h                        pitviper_log.c sensor/bench/bench_private.h
+        dis/pdu/pdu.c sensor/bench/bench_private.h          sensor/commands/run_command.c sensor/bench/sensor/quality.h
+        sensor/publish/files/html_page.c sensor/bench/bench.h      dis/pdu/pdu.c terrain/earth/geodesy.h
+        dis/pdu/pdu.c entities/models/model.h               terrain/earth/sun.c dis/pdu/pdu.h
         entities/models/model.c render/frame/render.h   render/frame/render.c entities/table/entity_table.h
-        render/frame/render.c dis/entity_state.h        render/frame/render.c sensor/detector/detector.h
+        render/frame/render.c dis/pdu/decode.h        render/frame/render.c sensor/detector/detector.h
         tests/dis/test_pdu.c entities/models/model.h    tests/render/test_render.c sensor/frame/plane.h
         sensor/node/loop.c render/parts/parts_private.h sensor/node/loop.c loop.h
-        dis/pdu.c tests/check.h                         entities/models/model.c <GeographicLib/Geocentric.hpp>
+        dis/pdu/pdu.c tests/check.h                         entities/models/model.c <GeographicLib/Geocentric.hpp>
         sensor/truth/truth.c <jansson.h>                terrain/earth/geoid.c <gdal.h>
         sensor/detector/scan.c <fftw3.h>                entities/import/sidecar.c <assimp/scene.h>
         entities/import/sidecar.c <yaml.h>"""):
         one(True, path, header)
     for path, header in re.findall(r'(\S+) (\S+)', """
         sensor/bench/run.c sensor/bench/bench_private.h sensor/bench/render/precision_air.c render/air/air_private.h
-        dis/pdu.c pitviper.h                            dis/pdu.c dis/reader_private.h
-        render/air/air.c pitviper_simd.h                entities/table/entity_table.c dis/entity_state.h
-        render/frame/render.c entities/table/snapshot.h sensor/node/loop.c dis/log.h
+        dis/pdu/pdu.c pitviper.h                            dis/pdu/pdu.c dis/pdu/reader_private.h
+        render/air/air.c pitviper_simd.h                entities/table/entity_table.c dis/pdu/decode.h
+        render/frame/render.c entities/table/snapshot.h sensor/node/loop.c dis/capture/log.h
         sensor/publish/truth.c <jansson.h>              tests/dis/test_pdu.c tests/check.h
         main.c sensor/commands/commands.h"""):
         one(False, path, header)
@@ -313,7 +313,7 @@ def changed_tests(paths):
 def changed_twins():
     wrong = []
     for paths, good, bad in (
-            (['dis/pdu.c'], 'dis/test_pdu entities/test_survey sensor/test_truth system/test_live fuzz/fuzz_pdu', 'terrain/test_sun base/test_log'),
+            (['dis/pdu/pdu.c'], 'dis/test_pdu entities/test_survey sensor/test_truth system/test_live fuzz/fuzz_pdu', 'terrain/test_sun base/test_log'),
             (['render/air/air.c'], 'render/test_air sensor/test_truth', 'dis/test_pdu entities/test_survey terrain/test_sun'),
             (['sensor/commands/run_command.c'], 'sensor/test_truth system/test_live', 'render/test_air'),
             (['tests/dis/test_pdu.c'], 'dis/test_pdu system/test_layers', 'dis/test_data dis/test_pdu_more system/test_live'),

@@ -6,7 +6,7 @@
 #include "tests/check.h"
 #include "tests/sensor/attitude.h"
 
-#include "dis/entity_state.h"
+#include "dis/pdu/decode.h"
 #include "entities/motion/dead_reckoning.h"
 #include "sensor/node/session/session.h"
 

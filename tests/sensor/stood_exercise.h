@@ -51,7 +51,7 @@ static inline Track *stand(Exercise *e, DisEntityType type, double x_m, double y
         m3_mul(r, frame.r_ecef_from_enu, r_enu_from_body);
         euler_from_r_ecef_from_body(&euler[0], &euler[1], &euler[2], r);
         for (int k = 0; k < 3; k++) p->euler_rad[k] = (float)euler[k];
-        track_point_rotation(r, p);
+        survey_point_rotation(r, p);
         m3_mul_v3(p->v_ecef_mps, frame.r_ecef_from_enu, v_enu);
         if (origin == ORIGIN_CENTRE)
             for (int k = 0; k < 3; k++) p->p_ecef[k] -= 0.5 * model->height_m * r[3 * k + 2];

@@ -1,7 +1,7 @@
 /* What replay picks by itself, and that it says so. */
 #include "tests/check.h"
 
-#include "dis/entity_state.h"
+#include "dis/pdu/decode.h"
 #include "sensor/node/choices/choices.h"
 
 static bool says(const Choices *choices, const char *text)

@@ -2,7 +2,7 @@
  * read them. */
 #include "tests/check.h"
 
-#include "dis/decode.h"
+#include "dis/pdu/decode.h"
 #include "sensor/publish/dis/consume_dis.h"
 
 #include <stdlib.h>

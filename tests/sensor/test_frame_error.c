@@ -159,15 +159,15 @@ static void corrections_tell(void **state)
 {
     (void)state;
     double m, rad;
-    snapshot_drift(&m, &rad, 2, 0, 0, 0, 0.4, 5); /* nothing known */
+    snapshot_drift(&m, &rad, 2, &(SnapshotMiss){0, 0, 0}, 0.4, 5); /* nothing known */
     CHECK_NEAR(m, 0.4, 0);
     CHECK_NEAR(rad, 0.4 * 3 * rad_per_deg, 1e-15);
-    snapshot_drift(&m, &rad, 1, 0.8, 0.04, 2, 9, 5); /* half the way in time: a quarter, and a half */
+    snapshot_drift(&m, &rad, 1, &(SnapshotMiss){0.8, 0.04, 2}, 9, 5); /* half the way in time: a quarter, and a half */
     CHECK_NEAR(m, 0.2, 1e-15);
     CHECK_NEAR(rad, 0.02, 1e-15);
-    snapshot_drift(&m, &rad, 100, 0.8, 0.04, 2, 9, 5); /* it would have said so */
+    snapshot_drift(&m, &rad, 100, &(SnapshotMiss){0.8, 0.04, 2}, 9, 5); /* it would have said so */
     CHECK(m == 0.8 && rad == 0.04);
-    snapshot_drift(&m, &rad, 0, 0.8, 0.04, 2, 9, 5);
+    snapshot_drift(&m, &rad, 0, &(SnapshotMiss){0.8, 0.04, 2}, 9, 5);
     CHECK(m == 0 && rad == 0);
 }
 

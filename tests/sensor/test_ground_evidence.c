@@ -2,7 +2,7 @@
  * labels: physics */
 #include "tests/check.h"
 
-#include "dis/enumerations.h"
+#include "dis/pdu/pdu.h"
 #include "entities/table/contact.h"
 #include "sensor/node/choices/ground_evidence.h"
 #include "tests/sensor/stood_exercise.h"

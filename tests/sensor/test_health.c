@@ -1,7 +1,7 @@
 /* Why a live node is silent: each reason from counters written down here, and what is said of a story on paper. */
 #include "tests/check.h"
 
-#include "dis/entity_state.h"
+#include "dis/pdu/decode.h"
 #include "sensor/node/live/health.h"
 
 #include <errno.h>

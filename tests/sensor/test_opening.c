@@ -1,7 +1,7 @@
 /* What a causal run makes its choices from: the rule, case by case, with the answer on paper. */
 #include "tests/check.h"
 
-#include "dis/entity_state.h"
+#include "dis/pdu/decode.h"
 #include "sensor/node/player/player.h"
 
 enum { most = 3000 };

@@ -2,8 +2,8 @@
  * spoilt, is passed over. */
 #include "tests/check.h"
 
-#include "dis/log.h"
-#include "dis/recorder.h"
+#include "dis/capture/log.h"
+#include "dis/capture/recorder.h"
 #include "sensor/node/session/session.h"
 
 #include <unistd.h>

@@ -129,7 +129,7 @@ static double worst_m(Kind kind, double heartbeat_s, bool beside, bool causal)
 }
 
 /* The dead-reckoning threshold of 1 m, and the speed times what the clock allows as jitter of arrivals: nothing where the
- * stamps stand still or jump, dis/exercise_clock.h's 0.15 s where they run, but at another rate. */
+ * stamps stand still or jump, dis/clock/exercise_clock.h's 0.15 s where they run, but at another rate. */
 static void a_mover_stays_where_it_is(void **state)
 {
     (void)state;

@@ -2,7 +2,7 @@
  * and what begins in a trunk is counted; what is said of them. */
 #include "tests/check.h"
 
-#include "dis/warfare.h"
+#include "dis/pdu/decode.h"
 #include "sensor/node/choices/choices.h"
 #include "tests/sensor/stood_exercise.h"
 

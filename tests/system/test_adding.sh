@@ -82,10 +82,10 @@ check "shape: code" [ -s "$tmp/parametric_kiosk.c" ]
 declaration=$(grep -oE 'Status parametric_kiosk\(Model \*out, double sag_m\);' etc/ADDING.md | head -n 1)
 row=$(grep -oE '\{"kiosk", parametric_kiosk, NULL\},' etc/ADDING.md | head -n 1)
 check "shape: declaration and row" [ -n "$declaration" -a -n "$row" ]
-sed "s|^static const struct {|$declaration\n&|; s|^    {\"tank\", parametric_tank, NULL},|    $row\n&|" entities/parametric/parametric.c >"$tmp/parametric.c"
+sed "s|^static const struct {|$declaration\n&|; s|^    {\"tank\", parametric_tank, NULL},|    $row\n&|" entities/shapes/parametric.c >"$tmp/parametric.c"
 check "shape: the row is in" grep -q kiosk "$tmp/parametric.c"
 for file in parametric_kiosk parametric; do
-    check "shape: $file.c compiles" "${CC:-cc}" -std=gnu17 -D_GNU_SOURCE -Wall -Werror -Wno-missing-prototypes -I. -include entities/parametric/parametric.h -fsyntax-only "$tmp/$file.c"
+    check "shape: $file.c compiles" "${CC:-cc}" -std=gnu17 -D_GNU_SOURCE -Wall -Werror -Wno-missing-prototypes -I. -include entities/shapes/parametric.h -fsyntax-only "$tmp/$file.c"
 done
 
 # ---- what is listed is there

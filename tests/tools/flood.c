@@ -4,13 +4,11 @@
  * ids=N how many entities; from_s, for_s when, from the first datagram on; senders=K their sites; reports=R of each, one
  * round after the other; reach_m how far about the recording's first entity; parts=P articulation parameters of each;
  * category=C guided munitions of category C instead of tanks. */
-#include "dis/datagram.h"
-#include "dis/decode.h"
-#include "dis/entity_state.h"
-#include "dis/exercise_clock.h"
-#include "dis/log.h"
-#include "dis/recorder.h"
-#include "dis/udp.h"
+#include "dis/pdu/decode.h"
+#include "dis/clock/exercise_clock.h"
+#include "dis/capture/log.h"
+#include "dis/capture/recorder.h"
+#include "dis/network/udp.h"
 
 #include <stdlib.h>
 #include <time.h>

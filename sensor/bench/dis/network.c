@@ -7,9 +7,9 @@
  * failure. */
 #include "sensor/bench/dis/network.h"
 
-#include "dis/log.h"
-#include "dis/recorder.h"
-#include "dis/udp.h"
+#include "dis/capture/log.h"
+#include "dis/capture/recorder.h"
+#include "dis/network/udp.h"
 
 #include <netinet/in.h>
 #include <pthread.h>

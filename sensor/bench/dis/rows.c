@@ -6,10 +6,9 @@
 
 #include "sensor/bench/dis/network.h"
 #include "sensor/bench/dis/stability.h"
-#include "dis/datagram.h"
-#include "dis/decode.h"
-#include "dis/log.h"
-#include "dis/reader.h"
+#include "dis/pdu/decode.h"
+#include "dis/capture/log.h"
+#include "dis/pdu/octets.h"
 
 #include <stdlib.h>
 #include <unistd.h>

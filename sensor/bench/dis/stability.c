@@ -2,10 +2,10 @@
  * float. References: whole ticks in 64 bits, and the octets themselves. */
 #include "sensor/bench/dis/stability.h"
 
-#include "dis/decode.h"
-#include "dis/exercise_clock.h"
-#include "dis/log.h"
-#include "dis/reader.h"
+#include "dis/pdu/decode.h"
+#include "dis/clock/exercise_clock.h"
+#include "dis/capture/log.h"
+#include "dis/pdu/octets.h"
 
 #include <stdlib.h>
 

@@ -5,7 +5,7 @@
 #include "sensor/bench/entities/stability.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_table.h"
-#include "dis/datagram.h"
+#include "dis/pdu/decode.h"
 
 #include <stdlib.h>
 

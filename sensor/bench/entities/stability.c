@@ -3,7 +3,7 @@
  * the rotation's matrix by doubling, in 113 bits where the compiler has them, independent of the closed forms. */
 #include "sensor/bench/entities/stability.h"
 
-#include "entities/models/articulation.h"
+#include "entities/motion/articulation.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/survey/survey.h"
 
@@ -339,9 +339,9 @@ static void tracks(Bench *bench)
         dead_reckon(&half, &k, 0.5);
         for (int p = 0; p < 2; p++) memcpy(point[p].p_ecef, p ? whole.p_ecef : k.p_ecef, sizeof k.p_ecef);
         const double middle_s = 0.5 * (point[0].t_s + point[1].t_s);
-        track_at(&pose, &track, middle_s);
+        survey_track_at(&pose, &track, middle_s);
         /* a report has its attitude in floats: the turn is that of doubles */
-        track_turn(pose.r_ecef_from_body, k.r_ecef_from_body, whole.r_ecef_from_body,
+        survey_turn(pose.r_ecef_from_body, k.r_ecef_from_body, whole.r_ecef_from_body,
                    (middle_s - point[0].t_s) / (point[1].t_s - point[0].t_s));
         stress_rotation(&crooked, pose.r_ecef_from_body);
         bench_worse(&place, pose.p_ecef[0] - 6378137);

@@ -2,8 +2,8 @@
  * refused and counted, or every snapshot that follows must be finite. */
 #include "sensor/bench/entities/stability.h"
 
-#include "dis/datagram.h"
-#include "dis/reader.h"
+#include "dis/pdu/decode.h"
+#include "dis/pdu/octets.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_table.h"
 

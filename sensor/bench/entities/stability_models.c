@@ -4,9 +4,9 @@
 #include "sensor/bench/entities/stability.h"
 #include "pitviper_output.h"
 
-#include "entities/parametric/mesh_builder.h"
+#include "entities/shapes/mesh_builder.h"
 #include "entities/import/model_import.h"
-#include "entities/parametric/parametric.h"
+#include "entities/shapes/parametric.h"
 
 #include <stdlib.h>
 

@@ -4,10 +4,9 @@
 #include "sensor/bench/entities/stability.h"
 #include "pitviper_output.h"
 
-#include "dis/datagram.h"
-#include "dis/decode.h"
-#include "entities/effects/effects.h"
-#include "entities/scenario/exercise.h"
+#include "dis/pdu/decode.h"
+#include "entities/traces/effect_puffs.h"
+#include "entities/exercise/exercise.h"
 #include "render/heat/part_table.h"
 #include "entities/probe.h"
 #include "terrain/probe.h"

@@ -10,9 +10,9 @@
 
 #include "sensor/bench/sensor/network_node.h"
 
-#include "dis/datagram.h"
-#include "dis/exercise_clock.h"
-#include "dis/log.h"
+#include "dis/pdu/decode.h"
+#include "dis/clock/exercise_clock.h"
+#include "dis/capture/log.h"
 #include "sensor/settings/config.h"
 
 #include <errno.h>

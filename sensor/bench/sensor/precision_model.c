@@ -1,7 +1,7 @@
 /* sensor/bench/sensor/precision_model.c: facets for curved surfaces, and mirrors of the pseudo-radar. */
 #include "sensor/bench/sensor/precision.h"
 
-#include "entities/parametric/parametric.h"
+#include "entities/shapes/parametric.h"
 #include "render/parts/parts.h"
 
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* sensor/commands/inspect/findings.c: one pass over a log: every PDU decoded once, rows by id. */
 #include "sensor/commands/inspect/findings.h"
 
-#include "dis/log_clock.h"
-#include "dis/datagram.h"
+#include "dis/capture/log.h"
+#include "dis/pdu/decode.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,9 +2,9 @@
 #ifndef SENSOR_COMMANDS_INSPECT_FINDINGS_H
 #define SENSOR_COMMANDS_INSPECT_FINDINGS_H
 
-#include "dis/decode.h"
-#include "dis/exercise_clock.h"
-#include "dis/log.h"
+#include "dis/pdu/decode.h"
+#include "dis/clock/exercise_clock.h"
+#include "dis/capture/log.h"
 
 typedef struct EntityRow {
     DisEntityId   id;

@@ -2,9 +2,8 @@
  * line by line. exercise: only this one; -1: all. */
 #include "sensor/commands/commands.h"
 
-#include "dis/datagram.h"
-#include "dis/decode.h"
-#include "dis/log.h"
+#include "dis/pdu/decode.h"
+#include "dis/capture/log.h"
 #include "entities/catalog/catalog.h"
 #include "sensor/commands/inspect/findings.h"
 #include "sensor/settings/command_line.h"

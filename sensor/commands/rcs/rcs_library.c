@@ -1,7 +1,7 @@
 /* sensor/commands/rcs/rcs_library.c: makes the signatures of a model for a range of aspects, which a run finds. */
 #include "sensor/commands/rcs/rcs_private.h"
 
-#include "entities/scenario/scenario.h"
+#include "entities/exercise/scenario.h"
 #include "sensor/radar/seeker_radar.h"
 #include "sensor/radar/signature_library.h"
 #include "sensor/settings/config.h"

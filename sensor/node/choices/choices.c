@@ -2,7 +2,7 @@
  * open. */
 #include "sensor/node/choices/choices.h"
 
-#include "dis/datagram.h"
+#include "dis/pdu/decode.h"
 #include "sensor/node/player/player.h"
 #include "terrain/earth/sun.h"
 
@@ -146,7 +146,7 @@ Status choice_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan)
     if (!track && survey->track_count > 0) track = &survey->track[0];
     if (!track) return STATUS_BAD_VALUE;
     TrackPose pose;
-    track_at(&pose, track, plan->end_s);
+    survey_track_at(&pose, track, plan->end_s);
     Geodetic place;
     Status   status = geodetic_from_ecef(&place, pose.p_ecef);
     if (status != STATUS_OK) return status;

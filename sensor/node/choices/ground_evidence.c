@@ -1,7 +1,7 @@
 /* sensor/node/choices/ground_evidence.c: what the reports of an exercise imply about its ground and its sea. */
 #include "sensor/node/choices/ground_evidence.h"
 
-#include "dis/enumerations.h"
+#include "dis/pdu/pdu.h"
 #include "entities/table/contact.h"
 #include "sensor/node/choices/choices.h"
 
@@ -27,7 +27,7 @@ static const double evidence_reach_m = 60000;
 void ground_evidence_base(double base_ecef[3], const TrackPoint *point, double below_m)
 {
     double r[9];
-    track_point_rotation(r, point);
+    survey_point_rotation(r, point);
     for (int k = 0; k < 3; k++) /* third column: body z, down */
         base_ecef[k] = point->p_ecef[k] + below_m * r[3 * k + 2];
 }
@@ -255,7 +255,7 @@ static void add_flight(Gathering *g, int t)
     for (int i = 0; target && i < track->count; i += g->step) {
         TrackPose pose;
         double    centre_ecef[3];
-        track_at(&pose, target, track->point[i].t_s);
+        survey_track_at(&pose, target, track->point[i].t_s);
         for (int k = 0; k < 3; k++) centre_ecef[k] = pose.p_ecef[k] - pose.r_ecef_from_body[3 * k + 2];
         add_line(g, track->point[i].p_ecef, centre_ecef);
     }
@@ -350,7 +350,7 @@ static Status find_sea(Gathering *g)
             if (last && apart_m(point, last) < 0.25 * model->length_m) continue;
             last = point;
             double r[9];
-            track_point_rotation(r, point);
+            survey_point_rotation(r, point);
             for (int end = -1; end <= 1; end++) {
                 double p_ecef[3];
                 for (int k = 0; k < 3; k++)
@@ -369,7 +369,7 @@ static bool is_within(const Gathering *g, const Track *ship, const TrackPoint *p
     const Model *model = model_of(g, ship, NULL);
     TrackPose    pose;
     double       d_ecef[3], d_body[3];
-    track_at(&pose, ship, point->t_s);
+    survey_track_at(&pose, ship, point->t_s);
     v3_sub(d_ecef, point->p_ecef, pose.p_ecef);
     if (v3_length(d_ecef) > model->length_m + mast_m) return false;
     m3_tmul_v3(d_body, pose.r_ecef_from_body, d_ecef);

@@ -2,7 +2,7 @@
  * them open. */
 #include "sensor/node/choices/choices.h"
 
-#include "dis/enumerations.h"
+#include "dis/pdu/pdu.h"
 #include "sensor/node/player/munitions.h"
 
 #include <stdio.h>
@@ -55,7 +55,7 @@ static DisEntityId nearest_entity(const Survey *survey, const double p_ecef[3], 
         double       d[3];
         if (track->type.kind == dis_kind_munition || dis_entity_id_compare(track->id, not) == 0) continue;
         if (track->point[0].t_s > t_s) continue;
-        track_at(&pose, track, t_s);
+        survey_track_at(&pose, track, t_s);
         v3_sub(d, pose.p_ecef, p_ecef);
         if (v3_length(d) < least_m) {
             least_m = v3_length(d);

@@ -2,8 +2,8 @@
  * there is. */
 #include "sensor/node/choices/choices.h"
 
-#include "dis/enumerations.h"
-#include "dis/warfare.h"
+#include "dis/pdu/pdu.h"
+#include "dis/pdu/decode.h"
 #include "sensor/node/choices/ground_evidence.h"
 
 #include <stdlib.h>

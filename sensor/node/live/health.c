@@ -1,8 +1,7 @@
 /* sensor/node/live/health.c: from counters to a reason, from a reason to a message. */
 #include "sensor/node/live/health.h"
 
-#include "dis/datagram.h"
-#include "dis/decode.h"
+#include "dis/pdu/decode.h"
 #include "sensor/node/player/player.h"
 
 #include <errno.h>

@@ -6,14 +6,14 @@
 #ifndef SENSOR_NODE_LIVE_HEALTH_H
 #define SENSOR_NODE_LIVE_HEALTH_H
 
-#include "dis/log.h"
+#include "dis/capture/log.h"
 #include "sensor/frame/records.h"
 
 typedef enum HealthTopic { HEALTH_RECEIVE, HEALTH_RENDER, HEALTH_SEND, HEALTH_LOSS, HEALTH_PACE, HEALTH_TOPICS } HealthTopic;
 
 typedef enum HealthReason {
     HEALTH_FINE,
-    HEALTH_AWAY,           /* the network is not available, which dis/udp.h reports */
+    HEALTH_AWAY,           /* the network is not available, which dis/network/udp.h reports */
     HEALTH_OTHER_EXERCISE, /* PDUs of other exercises, none of the configured one */
     HEALTH_NO_ENTITY,      /* PDUs of the configured exercise, no usable Entity State */
     HEALTH_OWN,            /* datagrams from this node's own site and application alone */

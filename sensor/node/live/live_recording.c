@@ -1,7 +1,7 @@
 /* sensor/node/live/live_recording.c: a recorder behind a lock: the receiving thread adds, the node flushes. */
 #include "sensor/node/live/live_recording.h"
 
-#include "dis/recorder.h"
+#include "dis/capture/recorder.h"
 
 #include <pthread.h>
 #include <stdlib.h>

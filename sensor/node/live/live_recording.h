@@ -3,7 +3,7 @@
 #ifndef SENSOR_NODE_LIVE_LIVE_RECORDING_H
 #define SENSOR_NODE_LIVE_LIVE_RECORDING_H
 
-#include "dis/udp.h"
+#include "dis/network/udp.h"
 
 typedef struct LiveRecording LiveRecording;
 

@@ -1,7 +1,7 @@
 /* sensor/node/player/munitions.c: munitions that were received, their Fires and Detonations. */
 #include "sensor/node/player/munitions.h"
 
-#include "dis/enumerations.h"
+#include "dis/pdu/pdu.h"
 
 /* A munition that was not heard for this long does not become the host. */
 static const double munition_silent_s = 4;

@@ -3,7 +3,7 @@
 #ifndef SENSOR_NODE_PLAYER_MUNITIONS_H
 #define SENSOR_NODE_PLAYER_MUNITIONS_H
 
-#include "dis/warfare.h"
+#include "dis/pdu/decode.h"
 #include "entities/table/entity_table.h"
 
 enum {

@@ -2,11 +2,10 @@
  * which datagrams open a causal run. */
 #include "sensor/node/player/player.h"
 
-#include "dis/datagram.h"
-#include "dis/decode.h"
-#include "dis/enumerations.h"
-#include "dis/exercise_clock.h"
-#include "dis/log_file.h"
+#include "dis/pdu/decode.h"
+#include "dis/pdu/pdu.h"
+#include "dis/clock/exercise_clock.h"
+#include "dis/capture/log.h"
 #include "sensor/node/player/munitions.h"
 
 #include <stdlib.h>

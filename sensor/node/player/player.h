@@ -7,7 +7,7 @@
 #ifndef SENSOR_NODE_PLAYER_PLAYER_H
 #define SENSOR_NODE_PLAYER_PLAYER_H
 
-#include "dis/log.h"
+#include "dis/capture/log.h"
 #include "entities/table/entity_table.h"
 #include "sensor/settings/config.h"
 

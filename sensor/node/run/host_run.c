@@ -1,7 +1,7 @@
 /* sensor/node/run/host_run.c: from received datagrams to choices, a world, a session and run.json. */
 #include "sensor/node/run/host_run.h"
 
-#include "dis/log.h"
+#include "dis/capture/log.h"
 #include "sensor/node/choices/choices.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/publish/images/image_file.h"

@@ -3,7 +3,7 @@
 #ifndef SENSOR_NODE_RUN_HOST_RUN_H
 #define SENSOR_NODE_RUN_HOST_RUN_H
 
-#include "dis/udp.h"
+#include "dis/network/udp.h"
 #include "sensor/node/session/session.h"
 #include "sensor/settings/options.h"
 #include "sensor/settings/tables_used.h"

@@ -1,7 +1,7 @@
 /* sensor/node/session/seeker.c: the sensor on its host: its mount, its gimbal, and how fast its image moves. */
 #include "sensor/node/session/seeker.h"
 
-#include "dis/enumerations.h"
+#include "dis/pdu/pdu.h"
 
 /* ---- the mount -------------------------------------------------------------------------------------- */
 

@@ -1,7 +1,7 @@
 /* sensor/node/session/session_eye.c: position and direction of the sensor. */
 #include "sensor/node/session/session_private.h"
 
-#include "dis/enumerations.h"
+#include "dis/pdu/pdu.h"
 #include "sensor/node/session/seeker.h"
 
 #include <stdio.h>
@@ -38,7 +38,7 @@ static bool host_pose(SnapshotEntity *host, const Session *s, double t_s)
     if (tracked(s, t_s)) {
         TrackPose pose;
         Origin    origin;
-        track_at(&pose, survey_track(shared->survey, s->plan.host), t_s);
+        survey_track_at(&pose, survey_track(shared->survey, s->plan.host), t_s);
         const int    model  = catalog_find(shared->catalog, host->type, &origin, NULL);
         const double down_m = origin == ORIGIN_CENTRE ? 0.5 * catalog_model(shared->catalog, model)->height_m : 0;
         for (int k = 0; k < 3; k++) host->p_ecef[k] = pose.p_ecef[k] + down_m * pose.r_ecef_from_body[3 * k + 2];

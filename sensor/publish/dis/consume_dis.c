@@ -1,9 +1,9 @@
 /* sensor/publish/dis/consume_dis.c: Data PDUs of each frame, of its radar's detections and of the video streams, and
  * the consumer that sends them. */
 #include "sensor/publish/dis/consume_dis.h"
-#include "dis/reader.h"
+#include "dis/pdu/octets.h"
 #include "sensor/settings/publish_choice.h"
-#include "dis/exercise_clock.h"
+#include "dis/clock/exercise_clock.h"
 
 #include <stdlib.h>
 

@@ -66,7 +66,7 @@
 #ifndef SENSOR_PUBLISH_DIS_CONSUME_DIS_H
 #define SENSOR_PUBLISH_DIS_CONSUME_DIS_H
 
-#include "dis/data.h"
+#include "dis/pdu/decode.h"
 #include "sensor/frame/records.h"
 #include "sensor/settings/config.h"
 #include "sensor/publish/consumers/consumer.h"

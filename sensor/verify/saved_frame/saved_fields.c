@@ -2,7 +2,7 @@
  * ranges. */
 #include "sensor/verify/saved_frame/saved_frame_private.h"
 
-#include "entities/effects/effects_history.h"
+#include "entities/traces/effect_history.h"
 
 #include <stdlib.h>
 

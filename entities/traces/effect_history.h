@@ -1,0 +1,68 @@
+/* entities/traces/effect_history.h: sources and times of puffs: shots and bursts of the last minute, and emissions of
+ * entities. Bounded: when full, the oldest is dropped and counted.
+ *
+ * An entity emits a puff at every multiple of its kind's interval of exercise time, at its dead-reckoned position at
+ * that time. The set of puffs at t is therefore a function of the received PDUs and of t alone. */
+#ifndef ENTITIES_TRACES_EFFECT_HISTORY_H
+#define ENTITIES_TRACES_EFFECT_HISTORY_H
+
+#include "dis/pdu/decode.h"
+#include "entities/motion/dead_reckoning.h"
+#include "entities/traces/effect_puffs.h"
+
+enum { effect_event_capacity = 4096, effect_source_capacity = 16384, effect_puff_capacity = 16384 };
+
+/* One interval of emission: the entity's motion, and its sources. */
+typedef struct EffectSource {
+    EffectKind kind;
+    uint64_t   key;              /* of the entity; the puffs' owner */
+    double     from_s, to_s;     /* puffs are emitted in from_s <= t < to_s */
+    Kinematics motion;           /* at motion_s */
+    double     motion_s;
+    double     hold_s;           /* longest extrapolation of it */
+    double     at_body[3], spread_body[3]; /* source, relative to the reported position, and its radius */
+    double     speed_mps;        /* along the path: puffs are stretched to join */
+    bool       grounded;         /* clamped to the ground, its base below_m under the reported position */
+    double     below_m;
+    double     scale, rate;      /* lengths; share of the row's mass a second */
+} EffectSource;
+
+typedef struct EffectCounters {
+    uint64_t refused;        /* Fire or Detonation with no place near the Earth, or no finite one */
+    uint64_t repeated;       /* the same event once more */
+    uint64_t events_dropped; /* still visible when replaced by a newer one */
+    uint64_t sources_dropped;
+} EffectCounters;
+
+/* No puffs beyond: intervals are counted in 64 bits. */
+static const double effect_latest_s = 1e12;
+
+typedef struct EffectHistory EffectHistory;
+
+/* path: etc/effects.csv. */
+Status effect_history_create(EffectHistory **out, const char *path);
+void   effect_history_destroy(EffectHistory *history);
+const EffectTable    *effect_history_table(const EffectHistory *history);
+const EffectCounters *effect_history_counters(const EffectHistory *history);
+
+void effect_history_fire(EffectHistory *history, const DisFire *pdu, double t_s);
+void effect_history_detonation(EffectHistory *history, const DisDetonation *pdu, double t_s);
+/* Returns a handle for the close, never 0; to_s of the source is the latest it can last. Closing a dropped one, or 0,
+ * has no effect. */
+uint64_t effect_history_open(EffectHistory *history, const EffectSource *source);
+void     effect_history_close(EffectHistory *history, uint64_t handle, double t_s);
+
+/* Charge that scales a shot or burst: kg of propellant (fire) or of explosive, from munition type and warhead.
+ * Estimates, by class of munition only: within a factor of three. */
+double effect_charge_kg(const DisDescriptor *descriptor, bool fire);
+bool   effect_is_kinetic(const DisDescriptor *descriptor); /* a penetrator, without explosive */
+/* Result of a Detonation: nothing burst; on the ground; on water. */
+bool   effect_result_is_none(int result);
+bool   effect_result_is_ground(int result);
+bool   effect_result_is_water(int result);
+
+/* All visible puffs at t_s, newest first, at most capacity. Returns how many there are (more than capacity when
+ * they do not all fit). out may be NULL with capacity 0. */
+size_t effect_history_puffs(EffectPuff *out, size_t capacity, const EffectHistory *history, double t_s);
+
+#endif
