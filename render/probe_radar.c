@@ -1,10 +1,12 @@
-/* render/probe_radar.c: `pitviper probe propagation` and `radar-equation`: radio waves through air, and echoes. */
+/* render/probe_radar.c: `pitviper probe propagation`, `radar-equation`, `rcs`, `clutter` and `clutter-cell`: radio
+ * waves through air, the radar equation, a target's scattered field, and ground clutter, for rows of CSV. */
 #include "render/probe_private.h"
-
-#include "render/radar/cloud_attenuation.h"
-#include "render/radar/radar_equation.h"
-#include "render/radar/radar_path.h"
-#include "render/radar/rain_attenuation.h"
+#include "render/scattering/paths/attenuation.h"
+#include "render/scattering/paths/radar_path.h"
+#include "render/scattering/signatures/given_signature.h"
+#include "render/scattering/field/radar_model.h"
+#include "render/scattering/field/total_field.h"
+#include "render/scattering/clutter/clutter.h"
 
 #include <stdlib.h>
 
@@ -151,5 +153,240 @@ const char *radar_equation_probe_row(void *state, const ProbeValue *in, ProbeVal
     out[0].number = 10 * log10(received_w);
     out[1].number = 10 * log10(noise_w);
     out[2].number = out[0].number - out[1].number;
+    return NULL;
+}
+
+/* ---- rcs: the scattered field of a target ------------------------------------------------------- */
+
+typedef struct RcsProbe {
+    RadarMaterials materials;
+    Pool          *pool;
+    RadarModel    *model;     /* of the last row; NULL: none */
+    GivenSignature *given;    /* likewise, of a target given:FILE */
+    char           name[512];
+    double         sag_m;
+    TotalField     field;
+} RcsProbe;
+
+static void drop_model(RcsProbe *p)
+{
+    if (p->model) radar_model_close(p->model);
+    free(p->model);
+    p->model = NULL;
+    given_signature_close(p->given);
+    p->given = NULL;
+}
+
+void rcs_probe_close(void *state)
+{
+    RcsProbe *p = state;
+    drop_model(p);
+    total_field_free(&p->field);
+    pool_destroy(p->pool);
+    radar_materials_close(&p->materials);
+    free(p);
+}
+
+Status rcs_probe_open(void **state, int argc, char **argv)
+{
+    (void)argv;
+    if (argc > 1) {
+        log_error("rcs: usage: probe rcs: it takes no arguments");
+        return STATUS_BAD_VALUE;
+    }
+    RcsProbe *p = calloc(1, sizeof *p);
+    if (!p) return STATUS_NO_MEMORY;
+    Status status = radar_materials_load(&p->materials);
+    if (status == STATUS_OK) status = pool_create(&p->pool, thread_processors());
+    if (status == STATUS_OK) *state = p;
+    else rcs_probe_close(p);
+    return status;
+}
+
+/* The target of a row; that of the row before where it is the same and as fine as it must be. */
+static const char *take_model(RcsProbe *p, const char *name, double sag_m)
+{
+    const char *given = given_signature_path(name);
+    if ((p->given || (p->model && p->sag_m == sag_m)) && strcmp(p->name, name) == 0) return NULL;
+    drop_model(p);
+    if (snprintf(p->name, sizeof p->name, "%s", name) >= (int)sizeof p->name) return "the target's name is too long";
+    p->sag_m = sag_m;
+    if (given)
+        return given_signature_open(&p->given, given) == STATUS_OK ? NULL
+                                                                   : "no such signature, or it is broken (see the log)";
+    p->model = calloc(1, sizeof *p->model);
+    if (!p->model) return "out of memory";
+    if (radar_model_open(p->model, name, &p->materials, sag_m) == STATUS_OK) return NULL;
+    free(p->model);
+    p->model = NULL;
+    return "no such target, or it is broken (see the log)";
+}
+
+static const char *trace(ScatterMatrix *s, RcsProbe *p, const ScatterAntenna *tx, const ScatterAntenna *rx, double f_hz)
+{
+    TubeConfig config = tubes_default_config(f_hz);
+    config.polygon_faces = polygon_faces_few;
+    const Status status = total_field_trace(&p->field, p->model->target, tx, rx, &config, true, p->pool);
+    if (status == STATUS_NO_MEMORY) return "out of memory";
+    if (status != STATUS_OK) return "too near or too large (see the log)";
+    return total_field_sweep(s, 1, f_hz, 0, &p->field, NULL, NULL, p->pool) == STATUS_OK ? NULL : "out of memory";
+}
+
+static const char *look_up(ScatterMatrix *s, const RcsProbe *p, const ScatterAntenna *antenna, double f_hz,
+                           bool bistatic)
+{
+    if (bistatic) return "a given signature is monostatic: leave rx_az_deg and rx_el_deg empty";
+    if (!given_signature_knows(p->given, antenna, f_hz))
+        return "the given signature ends before this look and frequency";
+    given_signature_field(s, p->given, antenna, f_hz);
+    return NULL;
+}
+
+const char *rcs_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    RcsProbe      *p = state;
+    ScatterAntenna tx, rx;
+    ScatterMatrix  s;
+    const double   f_hz = in[1].number * 1e9, range_m = isnan(in[4].number) ? INFINITY : in[4].number;
+    const bool     bistatic = !isnan(in[5].number) || !isnan(in[6].number);
+    if (!(f_hz >= 1e8 && f_hz <= 3e11)) return "f_ghz must be in 0.1 .. 300";
+    if (!(fabs(in[2].number) <= 720 && fabs(in[3].number) <= 90)) return "az_deg must be within 720, el_deg within 90";
+    if (!(range_m > 0)) return "range_m must be above 0";
+    if (bistatic && !(fabs(in[5].number) <= 720 && fabs(in[6].number) <= 90))
+        return "rx_az_deg must be within 720 and rx_el_deg within 90, or both empty";
+    const char *wrong = take_model(p, in[0].text, radar_sag_m(f_hz));
+    if (wrong) return wrong;
+    radar_look(&tx, in[2].number * rad_per_deg, in[3].number * rad_per_deg, range_m);
+    rx = tx;
+    if (bistatic) radar_look(&rx, in[5].number * rad_per_deg, in[6].number * rad_per_deg, range_m);
+    wrong = p->given ? look_up(&s, p, &tx, f_hz, bistatic) : trace(&s, p, &tx, &rx, f_hz);
+    if (wrong) return wrong;
+    const double complex value[4] = {s.hh, s.hv, s.vh, s.vv};
+    for (int i = 0; i < 4; i++) {
+        out[i].number = value[i] == 0 ? NAN : rcs_dbsm(value[i]);
+        out[4 + 2 * i].number = creal(value[i]);
+        out[5 + 2 * i].number = cimag(value[i]);
+    }
+    return NULL;
+}
+
+/* ---- clutter and clutter-cell: ground clutter's table and its cells ----------------------------- */
+
+Status clutter_probe_open(void **state, int argc, char **argv)
+{
+    char path[1024];
+    (void)argc, (void)argv;
+    if (!etc_path(path, sizeof path, "radar/clutter.csv")) {
+        log_error("probe: path of the tables is too long; set PITVIPER_ETC to a shorter one");
+        return STATUS_BAD_VALUE;
+    }
+    ClutterTable *table = malloc(sizeof *table);
+    if (!table) return STATUS_NO_MEMORY;
+    const Status status = clutter_table_open(table, path);
+    if (status == STATUS_OK)
+        *state = table;
+    else
+        free(table);
+    return status;
+}
+
+void clutter_probe_close(void *state) { free(state); }
+
+/* surface$, frequency_ghz, grazing_deg: the first columns of both. */
+static const char *find_row(SurfaceClass *surface, ClutterBand *band, const ProbeValue *in)
+{
+    *surface = surface_find(in[0].text);
+    if (*surface == SURFACE_NONE) return "surface is no class of etc/surfaces.csv";
+    if (!clutter_band_of(band, 1e9 * in[1].number)) return "frequency_ghz must be in 12 .. 18, 27 .. 40 or 75 .. 110";
+    if (!(in[2].number > 0 && in[2].number <= 90)) return "grazing_deg must be above 0 and at most 90";
+    return NULL;
+}
+
+static double db(double ratio) { return 10 * log10(ratio); }
+
+const char *clutter_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    const ClutterTable *table = state;
+    SurfaceClass        surface;
+    ClutterBand         band;
+    const char         *why = find_row(&surface, &band, in);
+    if (why) return why;
+    const double wind_mps = or_else(in[3].number, 0), depth_m = or_else(in[4].number, 1);
+    if (!(wind_mps >= 0 && wind_mps <= 100)) return "wind_mps must be in 0 .. 100";
+    if (!(depth_m >= 0 && depth_m <= 400)) return "depth_m must be in 0 .. 400";
+
+    const ClutterRow   *row = &table->row[surface][band];
+    const double        frequency_hz = 1e9 * in[1].number, wavelength_m = light_mps / frequency_hz;
+    const double        sigma0 = clutter_sigma0(row, in[2].number * rad_per_deg, wavelength_m);
+    const ClutterMotion motion = clutter_motion(row, frequency_hz, wind_mps);
+    out[0].number = db(sigma0);
+    out[1].number = db(sigma0 * row->hh);
+    out[2].number = db(sigma0 * row->hv);
+    out[3].number = row->rho;
+    out[4].number = isinf(row->nu) ? 0 : row->nu;
+    out[5].number = row->texture_m;
+    out[6].number = motion.still;
+    out[7].number = motion.spread_mps;
+    out[8].number = 2 * sqrt(2) * motion.spread_mps / wavelength_m; /* rms of exp(-|v| / spread): sqrt(2) spread */
+    out[9].number = clutter_foliage_db(row, depth_m);
+    out[10].number = clutter_foliage_volume(row);
+    return NULL;
+}
+
+const char *clutter_cell_probe_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    enum { across = 4, count = across * across };
+    const ClutterTable *table = state;
+    SurfaceClass        surface;
+    ClutterBand         band;
+    const char         *why = find_row(&surface, &band, in);
+    if (why) return why;
+    const double side_m = or_else(in[5].number, 1), psi = in[2].number * rad_per_deg;
+    const double azimuth = or_else(in[6].number, 0) * rad_per_deg;
+    const double seed = or_else(in[9].number, 0);
+    ClutterLook  look = {.frequency_hz = 1e9 * in[1].number, .wind_mps = or_else(in[7].number, 0),
+                         .t_s = or_else(in[8].number, 0)};
+    if (!(fabs(in[3].number) <= 1e6 && fabs(in[4].number) <= 1e6)) return "x_m and y_m must be within 1e6 of 0";
+    if (!(side_m >= 0.01 && side_m <= 1e4)) return "side_m must be in 0.01 .. 10000";
+    if (!(look.wind_mps >= 0 && look.wind_mps <= 100)) return "wind_mps must be in 0 .. 100";
+    if (!(fabs(look.t_s) <= 1e9)) return "t_s must be within 1e9 of 0";
+    if (!(seed >= 0 && seed <= 1e15)) return "seed must be in 0 .. 1e15";
+
+    const ClutterGrid    grid = {side_m / across, (uint64_t)seed};
+    const ScatterAntenna antenna = {{cos(psi) * sin(azimuth), cos(psi) * cos(azimuth), sin(psi)}, INFINITY};
+    const double         k = 2 * pi_rad * look.frequency_hz / light_mps;
+    const int            x0 = across * (int)floor(in[3].number / side_m);
+    const int            y0 = across * (int)floor(in[4].number / side_m);
+    ClutterCell          cell[count];
+    ClutterScatterer     scatterer[count];
+    ScatterMatrix        seen[count], sum = {0};
+    uint8_t              kind[count];
+    double               p[3][count];
+    float                n[3][count];
+    for (int i = 0; i < count; i++) {
+        double place[2];
+        cell[i] = (ClutterCell){x0 + i % across, y0 + i / across, 0};
+        clutter_place(place, &grid, &cell[i]);
+        p[0][i] = place[0], p[1][i] = place[1], p[2][i] = 0;
+        n[0][i] = n[1][i] = 0, n[2][i] = 1;
+        kind[i] = (uint8_t)surface;
+    }
+    clutter_draw(scatterer, &grid, table, band, count, cell, kind);
+    const ClutterGround ground = {count, cell, kind, {p[0], p[1], p[2]}, {n[0], n[1], n[2]}};
+    const double        far_m = 1e12;
+    const double        middle[2] = {(x0 + 0.5 * across) * grid.side_m, (y0 + 0.5 * across) * grid.side_m};
+    for (int a = 0; a < 3; a++) look.antenna_enu[a] = far_m * antenna.u[a];
+    clutter_see(seen, &grid, table, scatterer, &ground, &look);
+    for (int i = 0; i < count; i++) {
+        const double from_middle[3] = {p[0][i] - middle[0], p[1][i] - middle[1], 0};
+        double       u[3];
+        const double complex turn = cexp(-I * k * 2 * scatter_path(u, &antenna, from_middle));
+        sum.vv += seen[i].vv * turn, sum.hh += seen[i].hh * turn, sum.hv += seen[i].hv * turn;
+    }
+    const double complex s[3] = {sum.vv, sum.hh, sum.hv};
+    for (int i = 0; i < 3; i++) out[2 * i].number = creal(s[i]), out[2 * i + 1].number = cimag(s[i]);
+    const double sigma0 = clutter_sigma0(&table->row[surface][band], psi, light_mps / look.frequency_hz);
+    out[6].number = 4 * pi_rad * (creal(sum.vv) * creal(sum.vv) + cimag(sum.vv) * cimag(sum.vv)) /
+                    (sigma0 * side_m * side_m);
     return NULL;
 }

@@ -2,9 +2,9 @@
 #include "sensor/probe.h"
 
 #include "sensor/detector/mrtd.h"
-#include "sensor/detector/noise3d.h"
+#include "sensor/detector/array_noise.h"
 #include "sensor/detector/photons.h"
-#include "sensor/detector/sheet.h"
+#include "sensor/detector/preset.h"
 
 #include <stdlib.h>
 
@@ -99,7 +99,7 @@ static const char *noise3d_row(void *state, const ProbeValue *in, ProbeValue *ou
     Status       status = cube && line ? STATUS_OK : STATUS_NO_MEMORY;
     for (int k = 0; k < frames && status == STATUS_OK; k++) {
         noise3d_add_fixed(cube + (size_t)k * plane, columns, rows, &noise, (uint64_t)seed, 0);
-        noise3d_add_moving(cube + (size_t)k * plane, columns, rows, &noise, (uint64_t)seed, 0, k, line);
+        noise3d_add_moving(cube + (size_t)k * plane, columns, rows, &noise, &(NoiseDraw){(uint64_t)seed, 0, k}, line);
     }
     if (status == STATUS_OK) status = noise3d_estimate(&got, cube, frames, rows, columns);
     free(cube);
@@ -122,7 +122,7 @@ static Status mrtd_open(void **state, int argc, char **argv)
     if (argc < 2) return STATUS_OK;
     SensorPreset *p = malloc(sizeof *p);
     if (!p) return STATUS_NO_MEMORY;
-    const Status status = sheet_read(p, argv[1]);
+    const Status status = preset_read_sheet(p, argv[1]);
     if (status == STATUS_OK) *state = p;
     else free(p);
     return status;

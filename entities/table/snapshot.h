@@ -102,7 +102,7 @@ typedef struct SnapshotJoints {
     int        first, count;     /* into Snapshot.joint_report */
 } SnapshotJoints;
 
-/* A cloud of chaff: radar alone sees it (sensor/radar/radar_chaff.c). */
+/* A cloud of chaff: radar alone sees it (sensor/radar/shot_volume.c). */
 typedef struct SnapshotChaff {
     DisEntityId   id;
     double        p_ecef[3], v_ecef_mps[3]; /* of its middle, as reported and extrapolated */

@@ -4,7 +4,7 @@
 
 #include "render/air/air.h"
 #include "render/frame/request.h"
-#include "render/radar/radar_image.h"
+#include "render/scattering/radar_image.h"
 #include "render/visibility/visibility.h"
 
 /* Planes that carry radiance. */

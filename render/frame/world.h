@@ -9,7 +9,7 @@
 #include "render/heat/patch_set.h"
 #include "render/light/canopy.h"
 #include "render/light/far_woods.h"
-#include "render/radar/radar_image.h"
+#include "render/scattering/radar_image.h"
 #include "render/visibility/visibility.h"
 #include "terrain/landscape/detail.h"
 #include "terrain/weather/weather_course.h"

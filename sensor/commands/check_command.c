@@ -4,7 +4,7 @@
 
 #include "entities/traces/effect_history.h"
 #include "render/heat/given_heat.h"
-#include "render/radar/given_list.h"
+#include "render/scattering/signatures/given_signature.h"
 #include "render/heat/part_table.h"
 #include "sensor/detector/preset.h"
 #include "sensor/node/run/host_run.h"

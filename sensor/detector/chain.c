@@ -2,10 +2,10 @@
 #include "sensor/detector/chain.h"
 
 #include "render/materials/planck.h"
-#include "sensor/detector/bad_pixels.h"
+#include "sensor/detector/array_noise.h"
 #include "sensor/detector/blur.h"
-#include "sensor/detector/coupling.h"
-#include "sensor/detector/quantise.h"
+#include "sensor/detector/line_scan.h"
+#include "sensor/detector/display_values.h"
 #include "sensor/detector/subpixel.h"
 
 #include <stdlib.h>
@@ -34,7 +34,7 @@ struct Chain {
     uint16_t     full;
     Channel      channel[3];
     double      *more;    /* [height][width]: what small targets add to a channel */
-    float       *work, *line, *pool; /* pool: [scan_pool][height][width], or NULL */
+    float       *work, *line, *pool; /* pool: [line_scan_pool][height][width], or NULL */
     double      *columns;
 };
 
@@ -116,16 +116,17 @@ Status chain_create(Chain **out, const SensorPreset *preset, int width, int heig
 
     Status status = STATUS_OK;
     c->work       = calloc(count, sizeof *c->work);
-    c->line       = calloc((size_t)(width > height ? width : height) + scan_taps, sizeof *c->line);
+    c->line       = calloc((size_t)(width > height ? width : height) + line_scan_taps, sizeof *c->line);
     c->columns    = calloc((size_t)width, sizeof *c->columns);
     c->more       = calloc(count, sizeof *c->more);
     if (!c->work || !c->line || !c->columns || !c->more) status = STATUS_NO_MEMORY;
     if (preset->line_noise > 0 && status == STATUS_OK) {
-        c->pool = malloc(scan_pool * count * sizeof *c->pool);
+        c->pool = malloc(line_scan_pool * count * sizeof *c->pool);
         if (!c->pool) status = STATUS_NO_MEMORY;
-        for (int k = 0; c->pool && k < scan_pool; k++)
-            scan_line_noise(c->pool + (size_t)k * count, width, height, &preset->scan, preset->line_noise_px, seed,
-                            (uint32_t)preset->band, k);
+        for (int k = 0; c->pool && k < line_scan_pool; k++) {
+            const LineNoise noise = {preset->line_noise_px, seed, (uint32_t)preset->band, k};
+            line_scan_noise(c->pool + (size_t)k * count, width, height, &preset->scan, &noise);
+        }
     }
     for (int k = 0; k < c->channels && status == STATUS_OK; k++) status = channel_create(&c->channel[k], c, k, places);
     if (status != STATUS_OK) {
@@ -227,6 +228,7 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
     const int             w      = c->width, h = c->height;
     const size_t          count  = (size_t)w * (size_t)h;
     const uint32_t        stream = (uint32_t)(3 * p->band + index);
+    const NoiseDraw       draw   = {c->seed, stream, frame};
     float                *e      = ch->value;
 
     for (size_t i = 0; i < count; i++) e[i] = (float)(c->exposure * photon_table_electrons(ch->photons, radiance[i]));
@@ -240,11 +242,12 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
                        : p->band == BAND_LWIR ? picture_lwir
                                               : picture_optical + index;
     const bool few = small && small->count > 0;
-    if (few)
-        subpixel_targets(ch->sub, e, c->more, w, h, small, plane, ch->photons, c->exposure, moving_px);
+    const SubPixelPlane fine = {.electrons = e, .more = c->more, .width = w, .height = h, .plane = plane,
+                                .photons = ch->photons, .exposure = c->exposure};
+    if (few) subpixel_targets(ch->sub, &fine, small, moving_px);
     blur_apply_with(ch->blur, e, e, moving_px, few ? c->more : NULL);
     if (p->smear && p->scan.line_s > 0 && (rate_px_s[0] != 0 || rate_px_s[1] != 0)) {
-        scan_resample(c->work, e, w, h, &p->scan, rate_px_s, c->line);
+        line_scan_resample(c->work, e, w, h, &p->scan, rate_px_s, c->line);
         memcpy(e, c->work, count * sizeof *e);
     }
 
@@ -263,9 +266,9 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
         const Noise3d moving = {.sigma = {[NOISE_TV] = pattern_e * p->ratio.sigma[NOISE_TV],
                                           [NOISE_TH] = pattern_e * p->ratio.sigma[NOISE_TH],
                                           [NOISE_T] = pattern_e * p->ratio.sigma[NOISE_T]}};
-        noise3d_add_moving(e, w, h, &moving, c->seed, stream, frame, c->columns);
+        noise3d_add_moving(e, w, h, &moving, &draw, c->columns);
         if (c->pool) {
-            const float *line = c->pool + (size_t)(frame % scan_pool) * count;
+            const float *line = c->pool + (size_t)(frame % line_scan_pool) * count;
             for (size_t i = 0; i < count; i++) e[i] = (float)(e[i] + pattern_e * p->line_noise * line[i]);
         }
     } else {
@@ -273,11 +276,11 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
     }
     /* the path of the scan passes a column in line_s active / width, or in line_s; cut-off x that time */
     const double active = p->scan.active > 0 ? p->scan.active : 1;
-    coupling_apply(e, w, h, &p->scan, p->scan.by_columns ? p->ac_per_line : p->ac_per_line * active / w);
+    line_scan_couple(e, w, h, &p->scan, p->scan.by_columns ? p->ac_per_line : p->ac_per_line * active / w);
 
-    quantise_counts(ch->count, e, count, c->step_e, c->full);
+    detector_counts(ch->count, e, count, c->step_e, c->full);
     if (ch->bad) {
-        bad_pixels_insert(ch->count, ch->bad, w, h, c->full, c->seed, stream, frame);
+        bad_pixels_insert(ch->count, ch->bad, w, h, c->full, &draw);
         bad_pixels_replace(ch->count, ch->patched, w, h);
     }
     for (size_t i = 0; i < count; i++) ch->value[i] = ch->count[i];

@@ -20,7 +20,7 @@ typedef struct DetectorConfig {
                              * at 10 %, of the pixels below fire_from: fires take no grey levels from the rest;
                              * 0: percentile_high alone */
     double fire_from;       /* hotter than any ground; ignored where it is half of the pixels */
-    double plateau;         /* share of the pixels that counts in a bin of plateau equalisation (plateau.h); 0: linear */
+    double plateau;         /* share of the pixels that counts in a bin of plateau equalisation (below); 0: linear */
     double step;            /* between neighbouring values of the plane: 1 of counts, 0 of radiance */
     double level_low, level_high;           /* manual, in the plane's unit */
     bool   display_gamma;   /* sRGB transfer curve after gain and level: visible light on a screen */
@@ -41,13 +41,40 @@ typedef struct DetectorLevel {
  * rounding, lands in the middle of the scale. Planes without a finite value: 0 .. 1. */
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count);
 
-/* An automatic level with a time constant: the state of the last frame approaches `now` by 1 - exp(-step_s / time_s). Where
- * it is further away than two spans of `now` (low or high, whichever is further), so that the picture would be nearly black
- * or white, it is put within two spans at once and follows with a tenth of time_s until it is within 0.03 of a span:
- * within 0.42 time_s. Smaller steps settle to 5 % in 3 time_s. Both are the same at any frame rate. time_s 0: immediately.
- * quick: state too, false at first: it is catching up. */
+/* An automatic level with a time constant: the state of the last frame approaches `now` by 1 - exp(-step_s /
+ * time_s). Where it is further away than two spans of `now` (low or high, whichever is further), so that the
+ * picture would be nearly black or white, it is put within two spans at once and follows with a tenth of time_s
+ * until it is within 0.03 of a span: within 0.42 time_s. Smaller steps settle to 5 % in 3 time_s. Both are the same
+ * at any frame rate. time_s 0: immediately. quick: state too, false at first: it is catching up. */
 void detector_level_follow(DetectorLevel *state, bool *quick, DetectorLevel now, double step_s, double time_s);
-/* The same of anything: the share of the difference that is left after step_s; left: the difference, in spans. */
-double detector_follow_keep(bool *quick, double left, double step_s, double time_s);
+
+/* ---- plateau equalisation ----------------------------------------------------------------------- */
+
+/* Grey levels go where the pixels are, as in the automatic gain control of thermal cameras.
+ *
+ * A histogram is summed, each bin counting for at most a plateau, and the sum is the grey level: a wide plateau is
+ * histogram equalisation, a narrow one gives each value that occurs the same. Source: V. E. Vickers, "Plateau
+ * equalization algorithm for real-time display of high-quality infrared imagery", Optical Engineering 35 (1996) 1921.
+ */
+enum { curve_steps = 256 };
+
+/* Value displayed at k / curve_steps of full scale, ascending; linear between. */
+typedef struct DetectorCurve {
+    double value[curve_steps + 1];
+} DetectorCurve;
+
+/* Of one plane: config->plateau, min_span and step count. Bins are min_span / 64 wide, or a step, from the least
+ * value up; what is beyond the last of 16384 counts with it. The slope is at most full scale over min_span, about
+ * the middle of the scale where that leaves some of it unused. No finite value: 0 .. 1. */
+void detector_plateau(DetectorCurve *out, const DetectorConfig *config, const float *plane, size_t count);
+
+/* A curve with a time constant, as detector_level_follow; its span is that of the middle eight tenths of the grey
+ * levels. */
+void detector_plateau_follow(DetectorCurve *state, bool *quick, const DetectorCurve *now, double step_s, double time_s);
+
+/* Grey levels by the curve; gain, offset and bits of config. NaN and what is below the curve: 0. out as
+ * detector_display's. */
+void detector_display_curve(void *out, const float *in, size_t count, const DetectorConfig *config,
+                            const DetectorCurve *curve);
 
 #endif

@@ -61,7 +61,8 @@ void mrtd_predict(Mrtd *out, const SensorPreset *p, double f, const MrtdObserver
                         : kind2[NOISE_TV] * in_time * across + kind2[NOISE_V] * across;
         if (!p->scan.by_columns) e2 += gain2 * across * along;
         else if (axis == 1) e2 += gain2 * across; /* a row has one detector's gain */
-        const double line2 = ref2 * p->line_noise * p->line_noise / fmin(frames, scan_pool), reach = p->line_noise_px;
+        const double line2 = ref2 * p->line_noise * p->line_noise / fmin(frames, line_scan_pool);
+        const double reach = p->line_noise_px;
         if (line2 > 0 && !(reach > 0)) e2 += line2 * across * along;
         else if (line2 > 0 && axis == 0)
             e2 += line2 * (line_left(width_px, reach) - line_shared(width_px, reach)) * along;

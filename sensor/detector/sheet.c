@@ -1,5 +1,5 @@
 /* sensor/detector/sheet.c: parses a sensor's data sheet, and derives a preset from its entries. */
-#include "sensor/detector/sheet.h"
+#include "sensor/detector/preset.h"
 
 #include <stdlib.h>
 
@@ -88,7 +88,7 @@ static Status read_entry(Sheet *s, Lines *lines, int line, const char *key, cons
         k = strcmp(key, "name") == 0 ? name_entry : strcmp(key, "sensor_type") == 0 ? type_entry : all_entries;
     if (k == all_entries) {
         text_escape(safe, sizeof safe, key, strnlen(key, 40));
-        log_error("sheet: %s:%d: unknown key '%s'; sensor/detector/sheet.h lists them, "
+        log_error("sheet: %s:%d: unknown key '%s'; sensor/detector/preset.h lists them, "
                   "etc/sensors/example_flir2.sheet shows them", lines->path, line,
                   safe);
         return STATUS_BAD_VALUE;
@@ -286,7 +286,7 @@ static Status build(SensorPreset *out, const Sheet *s, const char *path)
     return status;
 }
 
-Status sheet_read(SensorPreset *out, const char *path)
+Status preset_read_sheet(SensorPreset *out, const char *path)
 {
     char  *text = NULL, *next;
     size_t octets;

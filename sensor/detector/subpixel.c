@@ -200,28 +200,27 @@ static void share_cell(SubPixel *s, const Grid *g, const double span[4], int wid
     }
 }
 
-static double electrons_of(const PhotonTable *photons, double exposure, float radiance)
+static double electrons_of(const SubPixelPlane *p, float radiance)
 {
-    const double e = exposure * photon_table_electrons(photons, (double)radiance);
+    const double e = p->exposure * photon_table_electrons(p->photons, (double)radiance);
     return isfinite(e) ? e : 0;
 }
 
 /* Electrons of the cells minus those of the background behind them. */
-static void share_target(SubPixel *s, const Grid *g, const SmallTarget *t, int plane, const PhotonTable *photons,
-                         double exposure, int width, int height)
+static void share_target(SubPixel *s, const Grid *g, const SmallTarget *t, const SubPixelPlane *p)
 {
     const double *box = t->box_px, cell_x = (box[2] - box[0]) / t->columns, cell_y = (box[3] - box[1]) / t->rows;
     for (int cell = 0; cell < t->columns * t->rows; cell++) {
         if (!t->met[cell]) continue;
-        const double own = electrons_of(photons, exposure, t->cell[plane][cell]);
+        const double own = electrons_of(p, t->cell[p->plane][cell]);
         const double x = box[0] + cell_x * (cell % t->columns), y = box[1] + cell_y * (cell / t->columns);
         for (int row = (int)fmax(t->y0, floor(y)); row < t->y1 && row < y + cell_y; row++)
             for (int column = (int)fmax(t->x0, floor(x)); column < t->x1 && column < x + cell_x; column++) {
                 const double span[4] = {fmax(x, column), fmax(y, row), fmin(x + cell_x, column + 1),
                                         fmin(y + cell_y, row + 1)};
                 if (!(span[2] > span[0] && span[3] > span[1])) continue;
-                const float behind = t->behind[plane][(row - t->y0) * (t->x1 - t->x0) + column - t->x0];
-                share_cell(s, g, span, width, height, own - electrons_of(photons, exposure, behind));
+                const float behind = t->behind[p->plane][(row - t->y0) * (t->x1 - t->x0) + column - t->x0];
+                share_cell(s, g, span, p->width, p->height, own - electrons_of(p, behind));
             }
     }
 }
@@ -240,9 +239,9 @@ static void add_kernel(double *more, int width, int height, int column, int row,
     }
 }
 
-static void add_target(SubPixel *s, float *electrons, double *more, int width, int height, const SmallTarget *t,
-                       int plane, const PhotonTable *photons, double exposure)
+static void add_target(SubPixel *s, const SubPixelPlane *p, const SmallTarget *t)
 {
+    const int width = p->width, height = p->height;
     /* pixels that nodes may belong to: a hat at the target's edge reaches one node further */
     const int x0 = t->x0 > 0 ? t->x0 - 1 : 0, x1 = t->x1 < width ? t->x1 + 1 : width;
     const int y0 = t->y0 > 0 ? t->y0 - 1 : 0, y1 = t->y1 < height ? t->y1 + 1 : height;
@@ -250,7 +249,7 @@ static void add_target(SubPixel *s, float *electrons, double *more, int width, i
     const size_t nodes = (size_t)g.columns * (size_t)(y1 - y0) * nodes_per_px;
     assert(nodes <= most_nodes);
     memset(s->node, 0, nodes * sizeof *s->node);
-    share_target(s, &g, t, plane, photons, exposure, width, height);
+    share_target(s, &g, t, p);
     for (int row = y0; row < y1; row++)
         for (int column = x0; column < x1; column++) {
             double sum = 0;
@@ -261,16 +260,15 @@ static void add_target(SubPixel *s, float *electrons, double *more, int width, i
                     const double e = s->node[at];
                     if (e == 0) continue;
                     sum += e;
-                    add_kernel(more, width, height, column, row, &s->kernel[j * nodes_per_px + i], e);
+                    add_kernel(p->more, width, height, column, row, &s->kernel[j * nodes_per_px + i], e);
                 }
-            electrons[(size_t)row * (size_t)width + (size_t)column] += (float)sum;
+            p->electrons[(size_t)row * (size_t)width + (size_t)column] += (float)sum;
         }
 }
 
-void subpixel_targets(SubPixel *s, float *electrons, double *more, int width, int height, const SmallTargets *targets,
-                      int plane, const PhotonTable *photons, double exposure, const double smear_px[2])
+void subpixel_targets(SubPixel *s, const SubPixelPlane *p, const SmallTargets *targets, const double smear_px[2])
 {
-    memset(more, 0, (size_t)width * (size_t)height * sizeof *more);
+    memset(p->more, 0, (size_t)p->width * (size_t)p->height * sizeof *p->more);
     make_kernels(s, smear_px);
     /* first all the background that they hide, then all their own light: a pixel may contain parts of several */
     for (int n = 0; n < targets->count; n++) {
@@ -278,9 +276,8 @@ void subpixel_targets(SubPixel *s, float *electrons, double *more, int width, in
         for (int y = t->y0, k = 0; y < t->y1; y++)
             for (int x = t->x0; x < t->x1; x++, k++)
                 if (t->area[k] > 0)
-                    electrons[(size_t)y * (size_t)width + (size_t)x] =
-                        (float)electrons_of(photons, exposure, t->behind[plane][k]);
+                    p->electrons[(size_t)y * (size_t)p->width + (size_t)x] =
+                        (float)electrons_of(p, t->behind[p->plane][k]);
     }
-    for (int n = 0; n < targets->count; n++)
-        add_target(s, electrons, more, width, height, &targets->target[n], plane, photons, exposure);
+    for (int n = 0; n < targets->count; n++) add_target(s, p, &targets->target[n]);
 }

@@ -23,7 +23,7 @@
 #define SENSOR_DETECTOR_SUBPIXEL_H
 
 #include "render/frame/render.h"
-#include "sensor/detector/mtf.h"
+#include "sensor/detector/blur.h"
 #include "sensor/detector/photons.h"
 
 typedef struct SubPixel SubPixel;
@@ -33,10 +33,18 @@ typedef struct SubPixel SubPixel;
 Status subpixel_create(SubPixel **out, const MtfChain *chain);
 void   subpixel_destroy(SubPixel *s);
 
-/* Electrons of a plane [height][width], of pixels with small targets, from their background and their cells; the
- * correction to be added after the blur goes into more, which is set. exposure: factor of the electrons. 0.7 ms
+/* A plane of the image, and how its radiance becomes electrons. */
+typedef struct SubPixelPlane {
+    float             *electrons;     /* [height][width] */
+    double            *more;          /* likewise: what is to be added after the blur */
+    int                width, height;
+    int                plane;         /* of the targets' cells */
+    const PhotonTable *photons;
+    double             exposure;      /* factor of the electrons */
+} SubPixelPlane;
+
+/* Sets the electrons of pixels with small targets, from their background and their cells, and all of `more`. 0.7 ms
  * where smear has changed, then 0.15 ms per target of less than a pixel, 2 ms for one of 16 x 16. No allocation. */
-void subpixel_targets(SubPixel *s, float *electrons, double *more, int width, int height, const SmallTargets *targets,
-                      int plane, const PhotonTable *photons, double exposure, const double smear_px[2]);
+void subpixel_targets(SubPixel *s, const SubPixelPlane *p, const SmallTargets *targets, const double smear_px[2]);
 
 #endif

@@ -1,9 +1,8 @@
 /* sensor/frame/frame_display.c: bands behind their detectors, with gain and level. */
 #include "sensor/frame/frame_display.h"
 
-#include "sensor/detector/colour.h"
-#include "sensor/detector/noise3d.h"
-#include "sensor/detector/quantise.h"
+#include "sensor/detector/display_values.h"
+#include "sensor/detector/array_noise.h"
 
 /* The planes that a band's detector receives; returns how many. */
 static int band_radiance(const float *plane[3], const Picture *p, int band)

@@ -6,7 +6,6 @@
 #include "render/frame/render.h"
 #include "sensor/detector/chain.h"
 #include "sensor/detector/level.h"
-#include "sensor/detector/plateau.h"
 #include "sensor/settings/config.h"
 #include "sensor/truth/truth.h"
 

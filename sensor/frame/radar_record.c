@@ -113,7 +113,7 @@ static void set_hash(json_t *o, const RadarFrame *r)
 }
 
 /* The scan: how it was made, and the hash of its pictures before anything is rounded for a file. */
-static json_t *scan_json(const RadarScan *s)
+static json_t *scan_json(const RadarSector *s)
 {
     json_t     *o = json_object();
     char        hash[sha256_text_size];

@@ -1,4 +1,4 @@
-/* sensor/radar/antenna.c: see antenna.h. */
+/* sensor/radar/antenna.c: patterns in closed form, their widths, and directions from their ratios. */
 #include "sensor/radar/antenna.h"
 
 /* 2^m m! J_m(u) / u^m, m up to 4: sum of (-u^2 / 4)^k m! / (k! (m + k)!), whose terms are small about the main lobe. */

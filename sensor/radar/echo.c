@@ -1,8 +1,8 @@
-/* sensor/radar/echo.c: see echo.h. */
+/* sensor/radar/echo.c: shares echoes out to the grid over delay and Doppler or the grids row by row, and adds up their sums. */
 #include "sensor/radar/echo.h"
 
-#include "render/radar/scatter.h"
-#include "sensor/radar/pulse_grid.h"
+#include "render/scattering/scatter.h"
+#include "sensor/radar/echo_private.h"
 
 #include <stdlib.h>
 

@@ -10,15 +10,22 @@
  * pulse to pulse (waveform_fold_m): leave those out that the receiver cuts off.
  *
  * Sums are by gridding. An echo whose delay and smear change little over the interval goes onto a grid over delay
- * and Doppler (pulse_grid.h), with as many terms of a series for that change as it needs: up to pulses / 8 of them,
- * and 8. Others, and those that fold over within the interval, go onto grids over delay row by row (row_grid.h).
+ * and Doppler (echo_private.h), with as many terms of a series for that change as it needs: up to pulses / 8 of them,
+ * and 8. Others, and those that fold over within the interval, go onto grids over delay row by row (echo_private.h).
  * Which of both follows from the echo and the waveform alone. Error below 1e-6 of the sum of amplitudes for echoes
  * that keep their paths; for others 3e-3 of their amplitude at the band's ends, 1e-4 in its middle; for |q| up to 70
- * (row_grid.h; tests/sensor/test_echo.c). On each grid sums are in the order of the echoes, whatever the threads. */
+ * (echo_private.h; tests/sensor/test_echo.c). On each grid sums are in the order of the echoes, whatever the threads.
+ */
 #ifndef SENSOR_RADAR_ECHO_H
 #define SENSOR_RADAR_ECHO_H
 
-#include "sensor/radar/row_grid.h"
+#include "sensor/radar/interval.h"
+
+/* One echo: above is what it adds. */
+typedef struct Echo {
+    double path_m, path_per_pulse_m; /* in the middle of the interval; from row to row */
+    double complex amplitude[interval_channels];
+} Echo;
 
 typedef struct EchoGrid EchoGrid;
 

@@ -1,5 +1,5 @@
-/* sensor/radar/radar_frame.h: what a seeker's radar measured in one coherent interval about a frame's time, with its
- * truth; and, if its beam scans, in those before and after.
+/* sensor/radar/radar_frame.h: what a seeker's radar measured in one coherent interval about a frame's time, with
+ * its truth; and, if its beam scans, in those before and after.
  *
  * Immutable once made; all arrays are in the frame's arena. Ranges are in m from the antenna to the place, range
  * rates in m/s, above 0: receding. Directions are cosines along the sensor's right and down axes. */
@@ -8,9 +8,60 @@
 
 #include "sensor/radar/detect.h"
 #include "sensor/radar/radar_preset.h"
-#include "sensor/radar/radar_scan.h"
 
-/* What the ground near an entity adds by mirroring (render/radar/ground_bounce.h); hh, vv, hv, m^2, as if wholly visible. */
+/* ---- the pictures of a sector ----------------------------------------------------------------------- */
+
+/* A beam that scans a sector makes a real-beam picture, that picture sharpened by Doppler, and both on the pixels
+ * of the frame.
+ *
+ * The beam steps through positions in azimuth about the antenna's down axis, an odd number, from left to right; each is
+ * one coherent interval, they follow each other without pause, and the middle one is the frame's own at its time. The
+ * antenna and what it sees move on meanwhile.
+ *
+ *     real beam    mean power of a position's pulses over range (relative to the reference, which is followed)
+ *     sharpened    of the position that comes nearest in azimuth, the pulses summed for the Doppler of still ground
+ *                  there, which the antenna's own velocity gives; over the pattern's loss off the position's axis.
+ *                  Resolution width lambda R / (2 T |v . (down x d)|), which is lambda R / (2 v T sin psi) for level
+ *                  flight: width is the Doppler window's at half power. Where that is no finer than the two-way beam,
+ *                  where the other side of the velocity is within a beamwidth, or Doppler folds over within the beam,
+ *                  the real beam stands in its place (`sharpened` 0)
+ *     on pixels    value at the range and azimuth of what the pixel shows, moved on to when the beam's axis meets it
+ *
+ * The sharpened picture takes the ground as level, at the height of the reference point; the pixels have their own
+ * directions. What moves is displaced in it, as in every picture by Doppler. Between positions the real beam is a cubic
+ * (Catmull and Rom's) of the logarithm: exact for a Gaussian beam. */
+enum { sector_positions_most = 1001, sector_azimuths_most = 4001 };
+
+typedef struct SectorPlan {
+    int    positions;               /* odd; 1: the beam stares */
+    double step_rad, interval_s;    /* between positions */
+} SectorPlan;
+
+/* Positions over a sector, a share of the (one-way) beamwidth apart. STATUS_BAD_VALUE, logged: too many, or more than
+ * 2^27 samples in all. */
+Status radar_sector_plan(SectorPlan *out, const RadarPreset *preset, double sector_rad, double step_share);
+
+/* Arrays are in the frame's arena. */
+typedef struct RadarSector {
+    SectorPlan plan;
+    int      columns;               /* of range, as in the map: the nearest first */
+    double   beam_rad;              /* width of the two-way beam at half power */
+    double   noise_w, sharp_noise_w;/* thermal, in a cell of either picture */
+    double  *power_w;               /* [positions][columns] */
+    int      azimuths;              /* of the sharpened picture, from that of the first position on */
+    double   azimuth_step_rad;
+    double  *sharp_w;               /* [azimuths][columns] */
+    float   *resolution_m;          /* [azimuths][columns]: across, at half power, of what stands there */
+    uint8_t *sharpened;             /* [azimuths][columns] */
+    double   sharpened_share;       /* of these cells */
+    int      width, height;         /* of the frame's pixels; 0: none were given */
+    float   *view_w, *view_sharp_w; /* [height][width]; NAN: sky, or out of sector or window */
+} RadarSector;
+
+/* ---- truth ------------------------------------------------------------------------------------------ */
+
+/* What the ground near an entity adds by mirroring (render/scattering/paths/ground_bounce.h); hh, vv, hv, m^2, as
+ * if wholly visible. */
 typedef struct RadarBounceTruth {
     double coherence; /* share of the amplitude that the ground mirrors, the larger polarisation; 0: left out */
     double once_m2[3], twice_m2[3];    /* by the ground one way (both ways round together), by the ground both ways */
@@ -35,7 +86,7 @@ typedef struct RadarTruth {
     bool   given;                      /* by a signature of radar.given, else by its model */
     double visible;         /* share of its centres' power that relief, plants and other entities leave in sight */
     double rcs_m2[3];       /* hh, vv, hv, at the centre frequency, as if wholly visible and without ground */
-    double rcs_error_db[3]; /* standard deviation, by the grid of tubes (render/radar/signature_error.h); NAN: given */
+    double rcs_error_db[3]; /* standard deviation, by the grid of tubes (signature_error); NAN: given */
     double map_error;       /* error of the map's cells over its centres' power: tubes, and what centres leave out */
     double snr; /* by the radar equation, of the centres in sight, in one cell of the map; 0: there is none */
     int    centres;                    /* scattering centres that it was summed from */
@@ -43,6 +94,8 @@ typedef struct RadarTruth {
     RadarScatterer strongest[radar_strongest]; /* of them, by the mean of hh and vv */
     RadarBounceTruth bounce;
 } RadarTruth;
+
+/* ---- the frame -------------------------------------------------------------------------------------- */
 
 typedef struct RadarFrame {
     const RadarPreset *preset;
@@ -64,7 +117,7 @@ typedef struct RadarFrame {
     int             targets;
     const RadarTruth *target;
     ReceiverReport  receiver;
-    const RadarScan *scan;             /* NULL: the beam stares */
+    const RadarSector *scan;             /* NULL: the beam stares */
     int             ground_cells, ground_hidden; /* scatterers of the ground; of them, hidden by relief or entities */
     double          rain_1_m;          /* backscatter of rain by its volume, m2/m3 */
     int             echoes;            /* of entities, before any goes by way of the ground */

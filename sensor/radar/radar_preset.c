@@ -1,7 +1,7 @@
 /* sensor/radar/radar_preset.c: reads rows of etc/radars.csv or of a table like it. */
 #include "sensor/radar/radar_preset.h"
 
-#include "render/radar/scatter.h"
+#include "render/scattering/scatter.h"
 
 enum {
     CENTRE, BANDWIDTH, SAMPLES, PULSES, REPEAT, PULSE, POWER, LOSS, DISH, TAPER, NOISE_FIGURE, PHASE_NOISE, IQ_GAIN, IQ_PHASE,

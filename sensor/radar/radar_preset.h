@@ -3,7 +3,7 @@
 #define SENSOR_RADAR_RADAR_PRESET_H
 
 #include "sensor/radar/antenna.h"
-#include "sensor/radar/receiver.h"
+#include "sensor/radar/interval.h"
 
 typedef struct RadarPreset {
     char     name[32];

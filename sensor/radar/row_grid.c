@@ -1,9 +1,8 @@
-/* sensor/radar/row_grid.c: see row_grid.h. */
-#include "sensor/radar/row_grid.h"
+/* sensor/radar/row_grid.c: sums echoes over grids of delay, row by row. */
+#include "sensor/radar/echo_private.h"
 
-#include "render/radar/scatter.h"
+#include "render/scattering/scatter.h"
 #include "sensor/detector/transform.h"
-#include "sensor/radar/gridding.h"
 
 #include <stdlib.h>
 

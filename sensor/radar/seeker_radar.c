@@ -1,15 +1,37 @@
-/* sensor/radar/seeker_radar.c: see seeker_radar.h. */
+/* sensor/radar/seeker_radar.c: a seeker's radar: its tables and memory, and the order of work in one shot, from
+ * points to detections. */
 #include "sensor/radar/seeker_radar_private.h"
-
-#include "render/radar/cloud_attenuation.h"
-#include "render/radar/radar_equation.h"
-#include "sensor/radar/mti.h"
+#include "render/scattering/paths/attenuation.h"
+#include "render/scattering/paths/radar_path.h"
+#include "sensor/radar/detect.h"
 
 #include <stdlib.h>
 
 enum { detections_most = 256, stream_noise = 0x3d000000 };
 static const double fog_top_m = 300;       /* above the ground; of fogs 100 .. 500 m deep: estimate */
 static const double no_reference_m = 1000; /* where there is neither an aim nor ground ahead */
+
+/* ---- points -------------------------------------------------------------------------------------- */
+
+RadarPoint *radar_points_room(RadarPoints *points, int more)
+{
+    if (more > INT32_MAX / 2 - points->count) return NULL;
+    const int need = points->count + more;
+    if (need > points->capacity) {
+        const int   capacity = need > 2 * points->capacity ? need : 2 * points->capacity;
+        RadarPoint *grown = realloc(points->point, (size_t)capacity * sizeof *grown);
+        if (!grown) return NULL;
+        points->point = grown;
+        points->capacity = capacity;
+    }
+    return points->point + points->count;
+}
+
+static void points_free(RadarPoints *points)
+{
+    free(points->point);
+    *points = (RadarPoints){0};
+}
 
 /* ---- what lasts -------------------------------------------------------------------------------- */
 
@@ -76,13 +98,13 @@ Status seeker_radar_create(SeekerRadar **out, const SeekerRadarConfig *config)
     if (status == STATUS_OK) status = echo_grid_create(&r->echoes, wave);
     if (status == STATUS_OK)
         status = interval_plan_create(&r->plan, wave, &r->preset.range_window, &r->preset.doppler_window);
-    if (status == STATUS_OK) status = scan_plan(&r->scan, &r->preset, config->scan_rad, config->scan_step);
+    if (status == STATUS_OK) status = radar_sector_plan(&r->sector, &r->preset, config->scan_rad, config->scan_step);
     if (status == STATUS_OK) {
-        const size_t samples = (size_t)r->scan.positions * (size_t)wave->pulses * (size_t)wave->samples;
+        const size_t samples = (size_t)r->sector.positions * (size_t)wave->pulses * (size_t)wave->samples;
         r->batch = malloc(beam_batch * sizeof *r->batch);
-        if (config->scan_rad > 0) r->scan_pulse = malloc(samples * sizeof *r->scan_pulse);
+        if (config->scan_rad > 0) r->sector_pulse = malloc(samples * sizeof *r->sector_pulse);
         if (config->scan_rad > 0) r->position = arena_create();
-        if (!r->batch || (config->scan_rad > 0 && (!r->scan_pulse || !r->position))) status = STATUS_NO_MEMORY;
+        if (!r->batch || (config->scan_rad > 0 && (!r->sector_pulse || !r->position))) status = STATUS_NO_MEMORY;
     }
     r->cells = (ClutterGrid){.side_m = 0.25 * light_mps / wave->bandwidth_hz, .seed = config->seed};
     if (status == STATUS_OK) *out = r;
@@ -99,7 +121,7 @@ void seeker_radar_destroy(SeekerRadar *r)
     clutter_cache_destroy(r->drawn);
     points_free(&r->points);
     free(r->batch);
-    free(r->scan_pulse);
+    free(r->sector_pulse);
     if (r->position) arena_destroy(r->position);
     signatures_destroy(r->signatures);
     signature_library_close(r->library);
@@ -110,66 +132,10 @@ void seeker_radar_destroy(SeekerRadar *r)
     free(r);
 }
 
-/* ---- geometry and the radar equation ------------------------------------------------------------ */
-
-void making_sight(Sight *out, const Making *m, const double p_enu[3], double more_m)
-{
-    double to[3];
-    v3_sub(to, p_enu, m->p_enu);
-    out->range_m = v3_length(to);
-    v3_scale(out->d_enu, 1 / fmax(out->range_m, 1e-3), to);
-    out->cos_right = v3_dot(out->d_enu, m->right);
-    out->cos_down = v3_dot(out->d_enu, m->down);
-    const double fold_m = waveform_fold_m(&m->preset->wave);
-    double       off_m = out->range_m - m->reference_m;
-    if (m->preset->far_m > 0 && out->range_m < m->preset->far_m + more_m) off_m -= fold_m * nearbyint(off_m / fold_m);
-    out->within = v3_dot(out->d_enu, m->ahead) > 0 && fabs(off_m) < m->half_window_m + (m->sweep_m + more_m);
-}
-
-double making_off_axis(const Making *m, const Sight *sight)
-{
-    if (!(m->scan_half_rad > 0)) return sqrt(sight->cos_right * sight->cos_right + sight->cos_down * sight->cos_down);
-    const double ahead = v3_dot(sight->d_enu, m->ahead), azimuth = atan2(sight->cos_right, ahead);
-    const double off = azimuth - clamp(azimuth, -m->scan_half_rad, m->scan_half_rad);
-    return hypot(sin(off) * hypot(sight->cos_right, ahead), sight->cos_down);
-}
-
-double making_range_rate(const Making *m, const Sight *sight, const double v_enu_mps[3])
-{
-    return v3_dot(sight->d_enu, v_enu_mps) - v3_dot(sight->d_enu, m->scene->v_enu_mps);
-}
-
-double making_appears_m(const Making *m, const Sight *sight, double range_rate_mps)
-{
-    const double followed_mps = m->preset->wave.uncompensated ? 0 : m->reference_rate_mps, middle_m = m->reference_m;
-    return middle_m + waveform_appears_m(&m->preset->wave, sight->range_m - middle_m, range_rate_mps - followed_mps);
-}
-
-void making_amplitudes(double complex amplitude[interval_channels], const Making *m, const Sight *sight,
-                       const ScatterMatrix *s)
-{
-    const RadarPreset   *p = m->preset;
-    const AntennaGain    gain = antenna_gain(&p->antenna, sight->cos_right, sight->cos_down);
-    const RadarLink      link = {p->power_w, 1, 1, p->antenna.wavelength_m, sight->range_m, p->loss};
-    const double         through_np = m->air_np_m * sight->range_m + making_volume_np(m, sight);
-    const double unit =
-        sqrt(radar_received_w(&link, 4 * pi_rad) * exp(-2 * through_np)) * waveform_share(&p->wave, sight->range_m);
-    const double complex same = unit * gain.sum * (p->transmits_h ? s->hh : s->vv);
-    const double complex other = unit * gain.sum * (p->transmits_h ? s->vh : s->hv);
-    amplitude[CHANNEL_SUM] = same * gain.sum;
-    amplitude[CHANNEL_RIGHT] = same * gain.right;
-    amplitude[CHANNEL_DOWN] = same * gain.down;
-    amplitude[CHANNEL_CROSS] = other * gain.sum;
-}
-
-double making_null(const Making *m)
-{
-    static const double null_u[] = {3.8317, 5.1356, 6.3802}; /* first zero of the sum beam by the dish's taper */
-    return fmin(null_u[m->preset->antenna.taper] / antenna_u_per_sine(&m->preset->antenna), 1);
-}
+/* ---- where the window is, and the air ------------------------------------------------------------ */
 
 /* Range to the ground along the boresight; NAN: there is none. */
-static double range_ahead(const Making *m)
+static double range_ahead(const RadarShot *shot)
 {
     static _Thread_local Rays rays;
     static _Thread_local Hits hits;
@@ -178,168 +144,274 @@ static double range_ahead(const Making *m)
     rays.columns = 0;
     rays.far_m[0] = INFINITY;
     for (int k = 0; k < 3; k++) {
-        rays.o_enu[k][0] = m->scene->view->p_enu[k];
-        rays.d_enu[k][0] = m->ahead[k];
+        rays.o_enu[k][0] = shot->scene->view->p_enu[k];
+        rays.d_enu[k][0] = shot->ahead[k];
     }
-    visibility_first_hit(&hits, m->visibility, &rays, NULL, -1, m->scene->hidden, &counters);
+    visibility_first_hit(&hits, shot->visibility, &rays, NULL, -1, shot->scene->hidden, &counters);
     return hits.count > 0 && isfinite(hits.range_m[0]) ? hits.range_m[0] : NAN;
 }
 
-static void aim_window(Making *m)
+/* Sets what the window is about, and what is kept for positions of the beam before and after. */
+static void aim_window(RadarShot *shot)
 {
-    RadarFrame *f = m->frame;
-    f->reference_m = m->scene->reference_m;
-    if (!isfinite(f->reference_m)) f->reference_m = range_ahead(m);
+    RadarFrame *f = shot->frame;
+    f->reference_m = shot->scene->reference_m;
+    if (!isfinite(f->reference_m)) f->reference_m = range_ahead(shot);
     if (!isfinite(f->reference_m)) f->reference_m = no_reference_m;
     double v[3], end[3], ground_m = 0;
-    v3_sub(v, m->scene->reference_v_enu_mps, m->scene->v_enu_mps);
-    f->reference_rate_mps = v3_dot(v, m->ahead);
-    v3_add_scaled(end, m->scene->view->p_enu, f->reference_m, m->ahead);
-    if (m->scene->world->landscape)
-        ground_m = elevation_height(&m->scene->world->landscape->elevation, end[0], end[1], NULL);
-    m->base_m = isfinite(ground_m) ? ground_m : 0;
-    m->aim_m = f->reference_m;
-    m->reference_rate_mps = f->reference_rate_mps;
-    /* to be kept for positions of the beam before and after */
-    const ScanPlan *scan = &m->radar->scan;
-    const double    half_s = scan->positions / 2 * scan->interval_s;
-    m->scan_half_rad = scan->positions / 2 * scan->step_rad;
-    m->sweep_m = half_s * (v3_length(v) + v3_length(m->scene->v_enu_mps));
+    v3_sub(v, shot->scene->reference_v_enu_mps, shot->scene->v_enu_mps);
+    f->reference_rate_mps = v3_dot(v, shot->ahead);
+    v3_add_scaled(end, shot->scene->view->p_enu, f->reference_m, shot->ahead);
+    if (shot->scene->world->landscape)
+        ground_m = elevation_height(&shot->scene->world->landscape->elevation, end[0], end[1], NULL);
+    shot->base_m = isfinite(ground_m) ? ground_m : 0;
+    shot->aim_m = f->reference_m;
+    shot->reference_rate_mps = f->reference_rate_mps;
+    const SectorPlan *sector = &shot->radar->sector;
+    const double      half_s = sector->positions / 2 * sector->interval_s;
+    shot->sector_half_rad = sector->positions / 2 * sector->step_rad;
+    shot->sweep_m = half_s * (v3_length(v) + v3_length(shot->scene->v_enu_mps));
 }
 
-void making_reach(Making *m)
+/* Sets near_m and far_m about reference_m. */
+static void set_reach(RadarShot *shot)
 {
-    const double far_m = m->preset->far_m;
-    m->near_m = far_m > 0 ? 0 : fmax(m->reference_m - m->half_window_m, 0);
-    m->far_m = fmax(far_m, m->reference_m + m->half_window_m);
+    const double far_m = shot->preset->far_m;
+    shot->near_m = far_m > 0 ? 0 : fmax(shot->reference_m - shot->half_window_m, 0);
+    shot->far_m = fmax(far_m, shot->reference_m + shot->half_window_m);
 }
 
-/* The window, and what the receiver follows. */
-static void follow(Making *m)
+/* Sets the window, and what the receiver follows. */
+static void follow(RadarShot *shot)
 {
-    RadarFrame   *f = m->frame;
-    const double  row_s = 1 / m->preset->wave.repeat_hz;
-    const bool    fmcw = m->preset->wave.kind == WAVEFORM_FMCW;
-    const double *right = m->right, *down = m->down, *v = m->scene->v_enu_mps;
-    if (fmcw) f->reference_m = m->half_window_m;
-    m->reference_m = f->reference_m;
-    m->window_rate_mps = fmcw ? 0 : m->reference_rate_mps;
-    making_reach(m);
-    echo_unfollowed(m->radar->echoes, m->preset->wave.uncompensated ? 2 * m->reference_rate_mps * row_s : 0);
-    f->ground_rate_mps = -v3_dot(v, m->ahead);
+    RadarFrame   *f = shot->frame;
+    const double  row_s = 1 / shot->preset->wave.repeat_hz;
+    const bool    fmcw = shot->preset->wave.kind == WAVEFORM_FMCW;
+    const double *right = shot->right, *down = shot->down, *v = shot->scene->v_enu_mps;
+    if (fmcw) f->reference_m = shot->half_window_m;
+    shot->reference_m = f->reference_m;
+    shot->window_rate_mps = fmcw ? 0 : shot->reference_rate_mps;
+    set_reach(shot);
+    echo_unfollowed(shot->radar->echoes, shot->preset->wave.uncompensated ? 2 * shot->reference_rate_mps * row_s : 0);
+    f->ground_rate_mps = -v3_dot(v, shot->ahead);
     /* the ground's rates over the beam: within its width either way, and two cells of Doppler for the window */
-    f->notch_mps = hypot(v3_dot(v, right), v3_dot(v, down)) * antenna_width_rad(&m->preset->antenna) +
-                   2 * f->timing.blind_mps / m->preset->wave.pulses;
+    f->notch_mps = hypot(v3_dot(v, right), v3_dot(v, down)) * antenna_width_rad(&shot->preset->antenna) +
+                   2 * f->timing.blind_mps / shot->preset->wave.pulses;
 }
 
 /* Loss by the air over the reference range, taken as even along it. */
-static Status air_between(Making *m)
+static Status air_between(RadarShot *shot)
 {
-    const World  *world = m->scene->world;
-    const double *p = m->scene->view->p_enu;
+    const World  *world = shot->scene->world;
+    const double *p = shot->scene->view->p_enu;
     double        end[3];
     RadarLoss     loss;
     if (!world->atmosphere) return STATUS_OK;
-    const Status status = radar_air_of(&m->radar->air, world->atmosphere, m->scene->weather);
+    const Status status = radar_air_of(&shot->radar->air, world->atmosphere, shot->scene->weather);
     if (status != STATUS_OK) return status;
-    if (m->preset->wave.centre_hz <= 200e9) /* P.840's range */
-        m->radar->air.liquid[0] = (RadarLiquid){0, fog_top_m, fog_liquid_g_m3(m->scene->weather->visibility_m)};
-    v3_add_scaled(end, p, m->frame->reference_m, m->ahead);
-    const RadarPath path = {.a_m = clamp(p[2] - m->base_m, 0, 20000), .b_m = clamp(end[2] - m->base_m, 0, 20000),
-                            .range_m = fmin(m->frame->reference_m, 1e6), .f_ghz = 1e-9 * m->preset->wave.centre_hz,
-                            .tilt_rad = m->preset->transmits_h ? 0 : 0.5 * pi_rad};
-    radar_path_loss(&loss, &path, &m->radar->gases, &m->radar->air);
-    m->frame->air_db = radar_loss_db(&loss);
-    if (!isfinite(m->frame->air_db)) m->frame->air_db = 0;
-    m->air_np_m = m->frame->air_db * log(10) / 10 / m->frame->reference_m;
+    if (shot->preset->wave.centre_hz <= 200e9) /* P.840's range */
+        shot->radar->air.liquid[0] = (RadarLiquid){0, fog_top_m, fog_liquid_g_m3(shot->scene->weather->visibility_m)};
+    v3_add_scaled(end, p, shot->frame->reference_m, shot->ahead);
+    const RadarPath path = {.a_m = clamp(p[2] - shot->base_m, 0, 20000), .b_m = clamp(end[2] - shot->base_m, 0, 20000),
+                            .range_m = fmin(shot->frame->reference_m, 1e6),
+                            .f_ghz = 1e-9 * shot->preset->wave.centre_hz,
+                            .tilt_rad = shot->preset->transmits_h ? 0 : 0.5 * pi_rad};
+    radar_path_loss(&loss, &path, &shot->radar->gases, &shot->radar->air);
+    shot->frame->air_db = radar_loss_db(&loss);
+    if (!isfinite(shot->frame->air_db)) shot->frame->air_db = 0;
+    shot->air_np_m = shot->frame->air_db * log(10) / 10 / shot->frame->reference_m;
     return STATUS_OK;
+}
+
+/* ---- the echoes of a position of the beam ------------------------------------------------------------ */
+
+/* What one position receives of a frame's points.
+ *
+ * A position is a RadarShot with an axis of its own, an instant of its own (after_s, from the frame's time) and the
+ * antenna where it is then; points have moved by their own velocities. A path and its growth are those at the frame's
+ * time plus the change of the range of the point since: exact for what moves evenly. Entities are seen anew, as their
+ * aspect changes; so is rain. */
+
+enum { block = 1024 };
+
+void shot_position(RadarShot *out, const RadarShot *shot, double azimuth_rad, double after_s)
+{
+    const double c = cos(azimuth_rad), s = sin(azimuth_rad);
+    *out = *shot;
+    out->sector_half_rad = out->sweep_m = 0;
+    out->after_s = after_s;
+    out->reference_m = shot->reference_m + shot->window_rate_mps * after_s;
+    set_reach(out);
+    for (int k = 0; k < 3; k++) {
+        out->p_enu[k] = shot->p_enu[k] + shot->scene->v_enu_mps[k] * after_s;
+        out->right[k] = c * shot->right[k] - s * shot->ahead[k];
+        out->ahead[k] = c * shot->ahead[k] + s * shot->right[k];
+    }
+}
+
+/* The echo of a point in this position. False: the position leaves it out. */
+static bool echo_of(Echo *e, const RadarShot *beam, const RadarPoint *q)
+{
+    double p[3];
+    Sight  sight;
+    v3_add_scaled(p, q->p_enu, q->own ? 0 : beam->after_s, q->v_enu_mps);
+    shot_sight(&sight, beam, p, q->room_m);
+    if (!sight.within || shot_off_axis(beam, &sight) > q->widest) return false;
+    const ScatterMatrix s = {.hh = q->same, .vv = q->same, .hv = q->other, .vh = q->other};
+    shot_amplitudes(e->amplitude, beam, &sight, &s);
+    for (int k = 0; k < interval_channels; k++) e->amplitude[k] *= q->share;
+    e->path_m = q->path_m;
+    e->path_per_pulse_m = q->path_per_pulse_m;
+    if (beam->after_s == 0 || q->own) return true;
+    double at_frame[3];
+    v3_sub(at_frame, q->p_enu, beam->scene->view->p_enu);
+    const double was_m = v3_length(at_frame), rate_mps = shot_range_rate(beam, &sight, q->v_enu_mps);
+    v3_scale(at_frame, 1 / fmax(was_m, 1e-3), at_frame);
+    const double was_mps = v3_dot(at_frame, q->v_enu_mps) - v3_dot(at_frame, beam->scene->v_enu_mps);
+    e->path_m += 2 * ((sight.range_m - was_m) - beam->window_rate_mps * beam->after_s);
+    e->path_per_pulse_m += 2 * (rate_mps - was_mps) / beam->preset->wave.repeat_hz;
+    return true;
+}
+
+typedef struct BeamJob {
+    const RadarShot *beam;
+    int           first, end;
+    bool          sum_alone;
+    Echo         *echo;               /* those of block b from b * block on */
+    int           kept[beam_batch / block];
+} BeamJob;
+
+static void echo_block(void *user, int worker, int task)
+{
+    BeamJob  *job = user;
+    const int first = job->first + task * block, end = first + block < job->end ? first + block : job->end;
+    Echo     *e = job->echo + (size_t)task * block;
+    (void)worker;
+    int kept = 0;
+    for (int i = first; i < end; i++) {
+        if (!echo_of(&e[kept], job->beam, &job->beam->radar->points.point[i])) continue;
+        if (job->sum_alone)
+            for (int c = CHANNEL_SUM + 1; c < interval_channels; c++) e[kept].amplitude[c] = 0;
+        kept++;
+    }
+    job->kept[task] = kept;
+}
+
+Status shot_echoes(RadarShot *beam, bool sum_alone)
+{
+    SeekerRadar *r = beam->radar;
+    const int    lasting = r->points.count, from = beam->after_s == 0 ? 0 : r->target_points;
+    Status       status = shot_rain(beam);
+    if (status == STATUS_OK && beam->after_s != 0) status = shot_targets_anew(beam);
+    if (status != STATUS_OK || beam->missing > 0) return status;
+    for (int first = from; first < r->points.count; first += beam_batch) {
+        const int end = first + beam_batch < r->points.count ? first + beam_batch : r->points.count;
+        const int blocks = (end - first + block - 1) / block;
+        BeamJob   job = {.beam = beam, .first = first, .end = end, .sum_alone = sum_alone, .echo = r->batch};
+        if (beam->pool) pool_run(beam->pool, blocks, echo_block, &job);
+        else for (int b = 0; b < blocks; b++) echo_block(&job, 0, b);
+        int kept = 0; /* moved together: one call for all */
+        for (int b = 0; b < blocks; b++) {
+            if (kept != b * block)
+                memmove(r->batch + kept, r->batch + (size_t)b * block, (size_t)job.kept[b] * sizeof *r->batch);
+            kept += job.kept[b];
+        }
+        echo_add(r->echoes, r->batch, kept, beam->pool);
+    }
+    r->points.count = lasting;
+    return echo_status(r->echoes);
 }
 
 /* ---- moving targets --------------------------------------------------------------------------------- */
 
-static Status indicate_moving(Making *m, Detection *detection)
+/* Makes the profile behind the canceller, and says of each detection whether it moves against the ground. */
+static Status indicate_moving(RadarShot *shot, Detection *detection)
 {
-    RadarFrame     *f = m->frame;
-    const Waveform *wave = &m->preset->wave;
-    f->mti_w = arena_alloc(m->arena, (size_t)wave->samples, sizeof *f->mti_w);
+    RadarFrame     *f = shot->frame;
+    const Waveform *wave = &shot->preset->wave;
+    f->mti_w = arena_alloc(shot->arena, (size_t)wave->samples, sizeof *f->mti_w);
     if (!f->mti_w) return STATUS_NO_MEMORY;
-    mti_profile(f->mti_w, interval_pulses(m->radar->plan, CHANNEL_SUM), wave, m->preset->mti_rows,
+    detect_mti_profile(f->mti_w, interval_pulses(shot->radar->plan, CHANNEL_SUM), wave, shot->preset->mti_rows,
                 2 * (f->ground_rate_mps - f->reference_rate_mps) / wave->repeat_hz);
     for (int i = 0; i < f->detections; i++) {
         Detection   *d = &detection[i];
         const double along = sqrt(fmax(0, 1 - d->cos_right * d->cos_right - d->cos_down * d->cos_down));
-        const double ground_mps = along * f->ground_rate_mps - d->cos_right * v3_dot(m->scene->v_enu_mps, m->right) -
-                                  d->cos_down * v3_dot(m->scene->v_enu_mps, m->down);
-        d->moving = mti_moves(d->range_rate_mps, ground_mps, f->notch_mps, f->timing.blind_mps);
+        const double ground_mps = along * f->ground_rate_mps -
+                                  d->cos_right * v3_dot(shot->scene->v_enu_mps, shot->right) -
+                                  d->cos_down * v3_dot(shot->scene->v_enu_mps, shot->down);
+        d->moving = detect_moves(d->range_rate_mps, ground_mps, f->notch_mps, f->timing.blind_mps);
     }
     return STATUS_OK;
 }
 
 /* ---- one interval --------------------------------------------------------------------------------- */
 
-static Status process(Making *m, const Interval *interval)
+/* From the samples of an interval to its map, profiles and detections. */
+static Status process(RadarShot *shot, const Interval *interval)
 {
-    RadarFrame      *f = m->frame;
-    const RadarPreset *p = m->preset;
+    RadarFrame      *f = shot->frame;
+    const RadarPreset *p = shot->preset;
     const size_t     plane = (size_t)p->wave.pulses * (size_t)p->wave.samples, all = interval_channels * plane;
-    Detection       *detection = arena_alloc(m->arena, detections_most, sizeof *detection);
-    f->map.cell = arena_alloc(m->arena, all, sizeof *f->map.cell);
-    f->profile = arena_alloc(m->arena, 2 * (size_t)p->wave.samples, sizeof *f->profile);
-    f->profile_w = arena_alloc(m->arena, (size_t)p->wave.samples, sizeof *f->profile_w);
+    Detection       *detection = arena_alloc(shot->arena, detections_most, sizeof *detection);
+    f->map.cell = arena_alloc(shot->arena, all, sizeof *f->map.cell);
+    f->profile = arena_alloc(shot->arena, 2 * (size_t)p->wave.samples, sizeof *f->profile);
+    f->profile_w = arena_alloc(shot->arena, (size_t)p->wave.samples, sizeof *f->profile_w);
     if (!detection || !f->map.cell || !f->profile || !f->profile_w) return STATUS_NO_MEMORY;
-    interval_process(&f->map, m->radar->plan, interval, m->pool);
-    interval_profile(f->profile_w, m->radar->plan, CHANNEL_SUM);
-    interval_pulse(f->profile, m->radar->plan, CHANNEL_SUM, p->wave.pulses / 2);
-    interval_pulse(f->profile + p->wave.samples, m->radar->plan, CHANNEL_CROSS, p->wave.pulses / 2);
+    interval_process(&f->map, shot->radar->plan, interval, shot->pool);
+    interval_profile(f->profile_w, shot->radar->plan, CHANNEL_SUM);
+    interval_pulse(f->profile, shot->radar->plan, CHANNEL_SUM, p->wave.pulses / 2);
+    interval_pulse(f->profile + p->wave.samples, shot->radar->plan, CHANNEL_CROSS, p->wave.pulses / 2);
 
     const RadarLink   link = {p->power_w, 1, 1, p->antenna.wavelength_m, 1, p->loss};
     const DetectScale scale = {.range_m = f->reference_m, .range_rate_mps = f->reference_rate_mps,
-                               .unit_w = radar_received_w(&link, 1), .air_np_m = m->air_np_m};
+                               .unit_w = radar_received_w(&link, 1), .air_np_m = shot->air_np_m};
     /* guards as wide as a vehicle's own returns, 6 m, and the Doppler main lobe */
     const int        extent = (int)clamp(ceil(6 / f->map.metre_per_column), 2, p->wave.samples / 8);
     const CfarConfig cfar = {.pfa = p->pfa, .guard = {2, extent}, .training = {p->wave.pulses >= 32 ? 3 : 0, extent},
                              .wrap_rows = true};
-    f->detections_in_all = detect(detection, detections_most, &f->map, m->radar->plan, &cfar, &p->antenna, &scale);
+    f->detections_in_all = detect(detection, detections_most, &f->map, shot->radar->plan, &cfar, &p->antenna, &scale);
     if (f->detections_in_all < 0) return STATUS_NO_MEMORY;
     f->detections = f->detections_in_all < detections_most ? f->detections_in_all : detections_most;
     f->detection = detection;
-    return indicate_moving(m, detection);
+    return indicate_moving(shot, detection);
 }
 
-static Status make(Making *m)
+/* The order of work in a shot. */
+static Status make(RadarShot *shot)
 {
-    const RadarScene *scene = m->scene;
-    const Waveform   *wave = &m->preset->wave;
+    const RadarScene *scene = shot->scene;
+    const Waveform   *wave = &shot->preset->wave;
     Interval          interval = {.wave = *wave};
     Visibility       *visibility;
     Status status = visibility_create(&visibility, scene->world->tracer, scene->world->landscape, &scene->world->frame,
-                                      scene->snapshot, 0, m->arena);
+                                      scene->snapshot, 0, shot->arena);
     if (status != STATUS_OK) return status;
     visibility_materials(visibility, &scene->world->materials);
-    m->visibility = visibility;
-    m->radar->points.count = 0;
-    interval.sample = arena_alloc(m->arena, interval_channels * (size_t)wave->pulses * (size_t)wave->samples,
+    shot->visibility = visibility;
+    shot->radar->points.count = 0;
+    interval.sample = arena_alloc(shot->arena, interval_channels * (size_t)wave->pulses * (size_t)wave->samples,
                                   sizeof *interval.sample);
     if (!interval.sample) return STATUS_NO_MEMORY;
-    aim_window(m);
-    follow(m);
-    status = air_between(m);
-    if (status == STATUS_OK) status = making_volume_open(m);
-    if (status == STATUS_OK) status = making_targets(m);
-    if (m->missing > 0) return status;
-    if (status == STATUS_OK && m->radar->ground && scene->world->landscape) status = making_ground(m);
-    if (status == STATUS_OK) status = making_volume(m);
+    aim_window(shot);
+    follow(shot);
+    status = air_between(shot);
+    if (status == STATUS_OK) status = shot_volume_open(shot);
+    if (status == STATUS_OK) status = shot_targets(shot);
+    if (shot->missing > 0) return status;
+    if (status == STATUS_OK && shot->radar->ground && scene->world->landscape) status = shot_ground(shot);
+    if (status == STATUS_OK) status = shot_volume(shot);
     if (status == STATUS_OK) status = visibility_status(visibility);
     if (status != STATUS_OK) return status;
-    Making beam;
-    beam_at(&beam, m, 0, 0);
-    status = beam_echoes(&beam, false);
+    RadarShot beam;
+    shot_position(&beam, shot, 0, 0);
+    status = shot_echoes(&beam, false);
     if (status != STATUS_OK) return status;
-    echo_sum(interval.sample, m->radar->echoes);
-    if (wave->uncompensated) m->frame->reference_rate_mps = 0; /* it is in every echo */
-    receiver_apply(&m->frame->receiver, &interval, &m->preset->receiver, m->radar->seed, stream_noise, scene->number);
-    status = process(m, &interval);
-    return status == STATUS_OK && m->radar->scan_pulse ? making_scan(m, &interval) : status;
+    echo_sum(interval.sample, shot->radar->echoes);
+    if (wave->uncompensated) shot->frame->reference_rate_mps = 0; /* it is in every echo */
+    interval_receive(&shot->frame->receiver, &interval, &shot->preset->receiver, shot->radar->seed, stream_noise,
+                   scene->number);
+    status = process(shot, &interval);
+    return status == STATUS_OK && shot->radar->sector_pulse ? shot_sector(shot, &interval) : status;
 }
 
 Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool,
@@ -349,27 +421,25 @@ Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const Ra
     const RadarPreset *p = &radar->preset;
     RadarFrame       *frame = arena_alloc(arena, 1, sizeof *frame);
     if (!frame) return STATUS_NO_MEMORY;
-    Making m = {.radar = radar, .scene = scene, .preset = p, .frame = frame, .pool = pool, .arena = arena,
+    RadarShot shot = {.radar = radar, .scene = scene, .preset = p, .frame = frame, .pool = pool, .arena = arena,
                 .half_window_m = p->wave.samples * light_mps / (4 * p->wave.bandwidth_hz),
                 .reach = scene->reach > 0 ? scene->reach : 1};
-    m.widest = m.reach * 16 / antenna_u_per_sine(&p->antenna);
+    shot.widest = shot.reach * 16 / antenna_u_per_sine(&p->antenna);
     *frame = (RadarFrame){.preset = p, .aim_m = scene->reference_m, .number = scene->number};
     memcpy(frame->v_enu_mps, scene->v_enu_mps, sizeof frame->v_enu_mps);
     memcpy(frame->aim_v_enu_mps, scene->reference_v_enu_mps, sizeof frame->aim_v_enu_mps);
     waveform_timing(&frame->timing, &p->wave);
     const double *r = scene->view->r_enu_from_cam;
     for (int k = 0; k < 3; k++) {
-        m.p_enu[k] = scene->view->p_enu[k];
-        m.right[k] = r[3 * k];
-        m.down[k] = r[3 * k + 1];
-        m.ahead[k] = r[3 * k + 2];
+        shot.p_enu[k] = scene->view->p_enu[k];
+        shot.right[k] = r[3 * k];
+        shot.down[k] = r[3 * k + 1];
+        shot.ahead[k] = r[3 * k + 2];
     }
-    const Status status = make(&m);
-    if (status != STATUS_OK || m.missing > 0) echo_forget(radar->echoes);
+    const Status status = make(&shot);
+    if (status != STATUS_OK || shot.missing > 0) echo_forget(radar->echoes);
     frame->spent_s = wall_clock_s() - begun_s;
-    radar->left_out += m.missing > 0;
-    if (status == STATUS_OK) *out = m.missing > 0 ? NULL : frame;
+    radar->left_out += shot.missing > 0;
+    if (status == STATUS_OK) *out = shot.missing > 0 ? NULL : frame;
     return status;
 }
-
-SignatureCounters seeker_radar_counters(const SeekerRadar *radar) { return signatures_counters(radar->signatures); }

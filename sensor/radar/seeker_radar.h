@@ -5,27 +5,27 @@
  * the reference: the range to the aim, else to the ground along the boresight; of FMCW it begins at 0. Within beam and
  * window, and beyond it where echoes fold over (RadarPreset.far_m),
  *
- *     entities   by their scattering centres (render/radar), each with its own range rate from the motion of its part;
- *                as fewer echoes where the radar tells few of them apart (radar_merge.c)
- *     and the same by way of the ground near them, once and twice (render/radar/ground_bounce.h)
- *     ground     by scatterers fixed to it (render/radar/clutter.h), where relief and entities leave it in sight
- *     plants     by scatterers in their crowns (render/radar/foliage.h); what is behind or below is weakened, not hidden
- *     rain       by scatterers anew for each interval (render/radar/rain_scatter.h)
- *     chaff      likewise (render/radar/chaff.h); it weakens what is behind it
+ *     entities   by their scattering centres (centres.h), each with its own range rate from the motion of its part;
+ *                as fewer echoes where the radar tells few of them apart (shot_targets.c)
+ *     and the same by way of the ground near them, once and twice (ground_bounce.h)
+ *     ground     by scatterers fixed to it (clutter.h), where relief and entities leave it in sight
+ *     plants     by scatterers in their crowns (foliage.h); what is behind or below is weakened, not hidden
+ *     rain       by scatterers anew for each interval (volume_scatter.h)
+ *     chaff      likewise; it weakens what is behind it
  *
  * go through the radar equation, the antenna's pattern at their own direction, and the air (radar_path.h) into the
  * samples of four channels; then receiver and processing. Phases are those of double ranges. A beam that scans
- * (radar_scan.h) has further intervals before and after.
+ * (radar_frame.h) has further intervals before and after.
  *
  * Left out: entities farther off the axis than u = 16 (two-way pattern below -80 dB) and ground beyond the main
- * lobe's null (RadarScene.reach); what one entity mirrors to another; range rates that change within the interval; what FMCW's transmitter
- * leaks into its receiver; the internal motion of ground within the interval (it moves between intervals); diffraction
- * about what hides part of an entity: each scattering centre is in sight or not. */
+ * lobe's null (RadarScene.reach); what one entity mirrors to another; range rates that change within the interval;
+ * what FMCW's transmitter leaks into its receiver; the internal motion of ground within the interval (it moves
+ * between intervals); diffraction about what hides part of an entity: each scattering centre is in sight or not. */
 #ifndef SENSOR_RADAR_SEEKER_RADAR_H
 #define SENSOR_RADAR_SEEKER_RADAR_H
 
 #include "render/frame/world.h"
-#include "render/radar/signatures.h"
+#include "render/scattering/signatures/signatures.h"
 #include "render/scene/view.h"
 #include "sensor/radar/radar_frame.h"
 
@@ -38,8 +38,8 @@ typedef struct SeekerRadarConfig {
     bool        ground_bounce;   /* the ground mirrors entities */
     double      scan_rad;        /* sector that the beam scans, about the boresight; 0: it stares */
     double      scan_step;       /* between its positions, over the beamwidth */
-    double      warp_m;          /* unevenness of surfaces, rms (render/radar/warp.h) */
-    const char *given;           /* a list of given signatures (render/radar/given_list.h); empty: none */
+    double      warp_m;          /* unevenness of surfaces, rms (Warp of tubes.h) */
+    const char *given;           /* a list of given signatures (given_signature.h); empty: none */
     double      wind_mps;
     double      chaff_dipoles; /* resonant ones in a cloud of chaff; 0: chaff is not seen */
     uint64_t    seed;
@@ -76,6 +76,5 @@ SignaturesConfig seeker_radar_signatures(const RadarPreset *preset, double warp_
 /* *out in the arena. NULL: left out, as signatures are still being made in the background. */
 Status seeker_radar_measure(const RadarFrame **out, SeekerRadar *radar, const RadarScene *scene, Pool *pool,
                             Arena *arena);
-SignatureCounters seeker_radar_counters(const SeekerRadar *radar);
 
 #endif

@@ -1,18 +1,50 @@
-/* sensor/radar/seeker_radar_private.h: one interval in the making, shared by what adds echoes to it. */
+/* sensor/radar/seeker_radar_private.h: a seeker's radar (SeekerRadar), and one frame of it while it is measured
+ * (RadarShot): what the files of this folder share.
+ *
+ *     seeker_radar.c   what lasts; the order of work in a shot; the echoes of all points, the receiver, detections
+ *     shot_sight.c     the way from the antenna to a place, and what stands before it
+ *     shot_targets.c   points of entities
+ *     shot_ground.c    points of the ground, and of entities by way of it
+ *     shot_volume.c    points of rain, foliage and chaff, and what these weaken
+ *     shot_sector.c    further positions of a beam that scans, and their pictures */
 #ifndef SENSOR_RADAR_SEEKER_RADAR_PRIVATE_H
 #define SENSOR_RADAR_SEEKER_RADAR_PRIVATE_H
 
-#include "render/radar/centres.h"
-#include "render/radar/clutter_cache.h"
-#include "render/radar/foliage.h"
-#include "render/radar/given_list.h"
-#include "render/radar/ground_bounce.h"
-#include "render/radar/radar_path.h"
-#include "render/radar/signatures.h"
+#include "render/scattering/clutter/clutter.h"
+#include "render/scattering/clutter/foliage.h"
+#include "render/scattering/paths/ground_bounce.h"
+#include "render/scattering/paths/radar_path.h"
+#include "render/scattering/signatures/centres.h"
+#include "render/scattering/signatures/given_signature.h"
+#include "render/scattering/signatures/signatures.h"
 #include "sensor/radar/echo.h"
-#include "sensor/radar/radar_points.h"
 #include "sensor/radar/seeker_radar.h"
 #include "sensor/radar/signature_library.h"
+
+/* ---- points -------------------------------------------------------------------------------------- */
+
+/* A point echo of a frame. Those of ground and plants are made once for all positions of the beam, those of
+ * entities and rain anew for each. A position leaves out points that are farther off its axis than their own
+ * `widest` (entities: u = 16, ground: the main lobe's null) or beyond its range window; tests/sensor/test_scan.c:
+ * what that loses. */
+typedef struct RadarPoint {
+    double         p_enu[3], v_enu_mps[3];
+    double         path_m, path_per_pulse_m; /* as Echo's, at the frame's time */
+    double complex same, other;              /* scattered, m: received as transmitted, and in the other polarisation */
+    double         share;                    /* of the amplitude that is in sight */
+    double         widest, room_m;           /* counts so far off an axis (sine), and beyond the window */
+    bool           own;                      /* of one position, not the frame's: place and path are those at its instant */
+} RadarPoint;
+
+typedef struct RadarPoints {
+    int         count, capacity;
+    RadarPoint *point;
+} RadarPoints;
+
+/* Room for as many behind the last, not yet counted; NULL: no memory. */
+RadarPoint *radar_points_room(RadarPoints *points, int more);
+
+/* ---- the radar and a shot -------------------------------------------------------------------------- */
 
 enum { beam_batch = 1 << 16 }; /* echoes of a round */
 
@@ -41,13 +73,14 @@ struct SeekerRadar {
     IntervalPlan  *plan;
     RadarPoints    points;       /* of the frame at work */
     int            target_points;/* of them, of entities: the first */
-    Arena         *position;     /* what one position of a scan needs; NULL: it stares */
+    Arena         *position;     /* what one position of the sector needs; NULL: it stares */
     Echo          *batch;        /* [beam_batch] */
-    ScanPlan       scan;         /* positions 1: the beam stares */
-    double complex *scan_pulse;  /* [positions][pulses][samples]: compressed in range, sum channel; NULL: it stares */
+    SectorPlan     sector;       /* positions 1: the beam stares */
+    double complex *sector_pulse;/* [positions][pulses][samples]: compressed in range, sum channel; NULL: it stares */
 };
 
-typedef struct Making {
+/* One frame of the radar while it is measured; a position of a beam that scans has one of its own. */
+typedef struct RadarShot {
     SeekerRadar      *radar;
     const RadarScene *scene;
     const RadarPreset *preset;
@@ -60,7 +93,7 @@ typedef struct Making {
     double            reference_rate_mps;          /* of the aim: rates of echoes are against it */
     double            window_rate_mps;             /* at which the window's middle moves: that, or 0 */
     double            after_s;                     /* since the frame's time */
-    double            scan_half_rad;               /* the beam will turn so far to both sides */
+    double            sector_half_rad;               /* the beam will turn so far to both sides */
     double            sweep_m;                     /* and ranges will change by up to this */
     double            half_window_m;               /* of range */
     double            near_m, far_m;               /* ranges between which echoes can be in it, fold by fold */
@@ -73,7 +106,9 @@ typedef struct Making {
     double            base_m;                      /* height of the ground at the reference, ENU */
     Pool             *pool;
     Arena            *arena;
-} Making;
+} RadarShot;
+
+/* ---- shot_sight.c ---------------------------------------------------------------------------------- */
 
 /* From the antenna to a place: range, unit direction, cosines along right and down, whether it is ahead and its
  * echo within the window (grown by more_m), if by folding over. */
@@ -81,21 +116,35 @@ typedef struct Sight {
     double range_m, d_enu[3], cos_right, cos_down;
     bool   within;
 } Sight;
-void making_sight(Sight *out, const Making *making, const double p_enu[3], double more_m);
+void shot_sight(Sight *out, const RadarShot *shot, const double p_enu[3], double more_m);
 /* Sine of the angle off the beam's axis, off the nearest of its axes if it will turn. */
-double making_off_axis(const Making *making, const Sight *sight);
+double shot_off_axis(const RadarShot *shot, const Sight *sight);
 
 /* Range rate of a place that moves, relative to the antenna; and over the reference's as growth of the two-way path
  * a pulse. */
-double making_range_rate(const Making *making, const Sight *sight, const double v_enu_mps[3]);
+double shot_range_rate(const RadarShot *shot, const Sight *sight, const double v_enu_mps[3]);
 
 /* The range at which a profile has its echo: folded over, and coupled to its range rate. */
-double making_appears_m(const Making *making, const Sight *sight, double range_rate_mps);
+double shot_appears_m(const RadarShot *shot, const Sight *sight, double range_rate_mps);
 
-/* Its amplitudes in the four channels: what is scattered (m, received h or v along the antenna's right and up by
- * transmitted), at a range and direction, through the air, the foliage on the way (render/radar/foliage.h) and chaff. */
-void making_amplitudes(double complex amplitude[interval_channels], const Making *making, const Sight *sight,
+/* Amplitudes in the four channels of what is scattered (m, received h or v along the antenna's right and up by
+ * transmitted) at a range and direction, through the air, and the foliage and chaff on the way. */
+void shot_amplitudes(double complex amplitude[interval_channels], const RadarShot *shot, const Sight *sight,
                        const ScatterMatrix *s);
+
+/* Sine off the axis of the main lobe's null. */
+double shot_null(const RadarShot *shot);
+/* Where relief, a plant or an entity is met more than slack_m[i] before the place that sight[i] leads to from from_enu.
+ * own: snapshot index of an entity that is in nothing's way, -1: none. count: up to hits_capacity. */
+void shot_hidden(bool *hidden, const RadarShot *shot, const double from_enu[3], const Sight *sight,
+                 const double *slack_m, int count, int own);
+/* Which centres of an entity of the snapshot the antenna sees: seen[centres->count]. Centres share a sight line within
+ * cells of a 47th of their extent, of 0.05 m at least, so that the edge of a shadow is as fine as that; a line that
+ * meets the entity itself first is clear. Those of many mirrors stand for the middle of their path. */
+Status shot_sees_centres(bool *seen, const RadarShot *shot, int entity, const double p_enu[3],
+                         const double r_enu_from_body[9], const Centres *centres);
+
+/* ---- shot_targets.c -------------------------------------------------------------------------------- */
 
 /* An entity at work. */
 typedef struct Target {
@@ -108,53 +157,44 @@ typedef struct Target {
     double        *joint;
 } Target;
 /* Velocity of a point of a node, ENU: of the entity, its turning, and what spins and rolls on it. node -1: of none. */
-void making_target_velocity(double v_enu_mps[3], const Target *target, int node, const double p_body[3]);
-
-/* Makes fewer echoes of a target's, where the radar tells few of them apart; returns how many are left. x: their paths,
- * growth of the paths, cosines to the right and down; spins: those whose part does. */
-enum { merge_axes = 4 };
-int making_merge(RadarPoint *point, const double (*x)[merge_axes], const bool *spins, int count, const Making *making);
-
-/* Adds the echoes of an entity by way of the ground, whose field is direct without it (body bases), and their truth. With
- * signatures missing: asks for its own alone. */
-Status making_bounce(Making *making, const Target *target, const ScatterMatrix *direct, RadarTruth *truth);
-/* Which centres of an entity of the snapshot the antenna sees: seen[centres->count]. Centres share a sight line within
- * cells of a 47th of their extent, of 0.05 m at least, so that the edge of a shadow is as fine as that; a line that
- * meets the entity itself first is clear. Those of many mirrors stand for the middle of their path. */
-Status radar_sight_centres(bool *seen, const Making *making, int entity, const double p_enu[3],
-                           const double r_enu_from_body[9], const Centres *centres);
-/* Where relief, a plant or an entity is met more than slack_m[i] before the place that sight[i] leads to from from_enu.
- * own: snapshot index of an entity that is in nothing's way, -1: none. count: up to hits_capacity. */
-void making_hidden(bool *hidden, const Making *making, const double from_enu[3], const Sight *sight,
-                   const double *slack_m, int count, int own);
-/* Sets near_m and far_m about reference_m. */
-void making_reach(Making *making);
-/* Rectangle in plan about what the main lobe lights within the window. */
-void making_lit_rectangle(double low_m[2], double high_m[2], const Making *making);
-/* Sine off the axis of the main lobe's null. */
-double making_null(const Making *making);
-
+void shot_target_velocity(double v_enu_mps[3], const Target *target, int node, const double p_body[3]);
 /* Adds the echoes of entities to the radar's points, and their truth to the frame. */
-Status making_targets(Making *making);
-/* Those of entities in one position of a scan. */
-Status making_targets_anew(Making *beam);
-/* Adds those of the ground. */
-Status making_ground(Making *making);
-/* Before any echo: what weakens all of them on their way, foliage and chaff; its loss to a sight's place in nepers of
- * power, one way. */
-Status making_volume_open(Making *making);
-double making_volume_np(const Making *making, const Sight *sight);
-/* Adds the echoes of foliage and chaff to the radar's points. */
-Status making_volume(Making *making);
-/* Those of the rain in one position of the beam. */
-Status making_rain(Making *beam);
+Status shot_targets(RadarShot *shot);
+/* Adds those of entities in one position of the sector. */
+Status shot_targets_anew(RadarShot *beam);
 
-/* A position of the beam: turned about the antenna's down axis to the right, after_s from the frame's time. */
-void   beam_at(Making *out, const Making *making, double azimuth_rad, double after_s);
+/* ---- shot_ground.c --------------------------------------------------------------------------------- */
+
+/* Adds the echoes of the ground. */
+Status shot_ground(RadarShot *shot);
+/* Adds the echoes of an entity by way of the ground, whose field is direct without it (body bases), and their
+ * truth. With signatures missing it asks for its own alone. */
+Status shot_bounce(RadarShot *shot, const Target *target, const ScatterMatrix *direct, RadarTruth *truth);
+/* Rectangle in plan about what the main lobe lights within the window. */
+void   shot_lit_rectangle(double low_m[2], double high_m[2], const RadarShot *shot);
+
+/* ---- shot_volume.c --------------------------------------------------------------------------------- */
+
+/* Before any echo: finds the foliage and chaff that weaken all of them on their way. */
+Status shot_volume_open(RadarShot *shot);
+/* Their loss to a sight's place in nepers of power, one way. */
+double shot_volume_np(const RadarShot *shot, const Sight *sight);
+/* Adds the echoes of foliage and chaff to the radar's points. */
+Status shot_volume(RadarShot *shot);
+/* Adds those of the rain in one position of the beam. */
+Status shot_rain(RadarShot *beam);
+
+/* ---- seeker_radar.c -------------------------------------------------------------------------------- */
+
+/* Makes a position of the beam: turned about the antenna's down axis to the right, after_s from the frame's time. */
+void   shot_position(RadarShot *out, const RadarShot *shot, double azimuth_rad, double after_s);
 /* Adds the echoes of all points, and of the rain in this position, to the radar's grid; sum_alone: to its sum channel
  * only. In the order of the points, for any number of threads. */
-Status beam_echoes(Making *beam, bool sum_alone);
-/* All positions but the middle one, whose interval is given, measured anew; then the pictures of the frame. */
-Status making_scan(Making *making, Interval *middle);
+Status shot_echoes(RadarShot *beam, bool sum_alone);
+
+/* ---- shot_sector.c --------------------------------------------------------------------------------- */
+
+/* Measures all positions of the sector but the middle one, whose interval is given; then makes the pictures. */
+Status shot_sector(RadarShot *shot, Interval *middle);
 
 #endif

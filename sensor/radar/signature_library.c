@@ -1,4 +1,4 @@
-/* sensor/radar/signature_library.c: see signature_library.h. */
+/* sensor/radar/signature_library.c: reads and writes signatures by the hash of all that they follow from. */
 #include "sensor/radar/signature_library.h"
 #include "pitviper_output.h"
 
@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Raise with every change of render/radar that changes a bit of a signature. */
+/* Raise with every change of render/scattering that changes a bit of a signature. */
 enum { computation = 1 };
 
 enum { head_octets = 96, hash_octets = sha256_text_size - 1, most_centres = 1 << 22, models_known = 512 };

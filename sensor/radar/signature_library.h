@@ -14,7 +14,7 @@
 #ifndef SENSOR_RADAR_SIGNATURE_LIBRARY_H
 #define SENSOR_RADAR_SIGNATURE_LIBRARY_H
 
-#include "render/radar/signatures.h"
+#include "render/scattering/signatures/signatures.h"
 #include "sensor/settings/sha256.h"
 
 typedef struct SignatureLibrary SignatureLibrary;

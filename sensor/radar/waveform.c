@@ -1,7 +1,7 @@
-/* sensor/radar/waveform.c: see waveform.h. */
+/* sensor/radar/waveform.c: times, frequencies and limits of each kind of waveform. */
 #include "sensor/radar/waveform.h"
 
-#include "render/radar/scatter.h"
+#include "render/scattering/scatter.h"
 
 const char *const waveform_name[waveform_kinds] = {"lfm", "stepped", "pulse_doppler", "fmcw"};
 

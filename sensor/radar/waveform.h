@@ -49,12 +49,12 @@ double waveform_time_s(const Waveform *wave, int m, int n);
 double waveform_frequency_hz(const Waveform *wave, int m);
 /* Noise bandwidth of a sample, Hz: that of the signal to noise of a matched filter, P pulse / (k T F) a pulse. */
 double waveform_noise_hz(const Waveform *wave);
-/* Amplitude that is left of an echo by what its receiver misses of it: pulse_doppler, the share of the pulse that arrives
- * while nothing is transmitted; fmcw, the share of the sweep that overlaps its echo. 1 for others. A share that
- * arrives is as wide in range as the whole. */
+/* Amplitude that is left of an echo by what its receiver misses of it: pulse_doppler, the share of the pulse that
+ * arrives while nothing is transmitted; fmcw, the share of the sweep that overlaps its echo. 1 for others. A share
+ * that arrives is as wide in range as the whole. */
 double waveform_share(const Waveform *wave, double range_m);
-/* Range by which echoes fold over, m: c / (2 repeat) of lfm and pulse_doppler; INFINITY: those of earlier pulses are not
- * received. */
+/* Range by which echoes fold over, m: c / (2 repeat) of lfm and pulse_doppler; INFINITY: those of earlier pulses
+ * are not received. */
 double waveform_fold_m(const Waveform *wave);
 
 /* Where on the range window an echo appears, from its middle: off_m beyond the reference, with a range rate that the

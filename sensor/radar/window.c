@@ -1,4 +1,4 @@
-/* sensor/radar/window.c: see window.h. */
+/* sensor/radar/window.c: weights by their formulas, and figures of the response to a point. */
 #include "sensor/radar/window.h"
 
 #include "sensor/detector/transform.h"

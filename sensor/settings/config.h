@@ -28,7 +28,7 @@ typedef struct Config {
         double mount_x_m, mount_y_m, mount_z_m; /* NaN: the mount's own */
         double mount_yaw_deg, mount_pitch_deg, mount_roll_deg;
         char   preset[96];         /* none, or names of etc/sensors.csv, comma separated */
-        char   table[1024];        /* a sensor's sheet (sensor/detector/sheet.h), or a .csv of sensors; empty: none */
+        char   table[1024];        /* a sensor's sheet (sensor/detector/preset.h), or a .csv of sensors; empty: none */
         double lens_k1, lens_k2, lens_k3, lens_p1,
             lens_p2; /* of the image (render/scene/lens.h); NaN: of the preset */
         double lateral_r, lateral_b;

@@ -2,7 +2,7 @@
 #include "sensor/settings/sensors.h"
 
 #include "render/frame/render.h"
-#include "sensor/detector/sheet.h"
+#include "sensor/detector/preset.h"
 
 static void over(double *field, double setting, double unit)
 {
@@ -47,7 +47,7 @@ static Status add_sensor(Sensors *s, const Config *config, const char *name, uns
         if (opened != STATUS_OK) return opened;
         if (has) from = own;
     }
-    const Status status = name ? preset_read(&p, from, name) : sheet_read(&p, config->sensor.table);
+    const Status status = name ? preset_read(&p, from, name) : preset_read_sheet(&p, config->sensor.table);
     if (status == STATUS_BAD_VALUE && *config_where(config, key))
         log_error("config: %s%s: see the error above", config_where(config, key), key);
     if (status != STATUS_OK) return status;

@@ -4,7 +4,7 @@
 #include "render/heat/vehicle_heat.h"
 #include "dis/pdu/pdu.h"
 #include "render/frame/error_budget.h"
-#include "render/radar/signature.h"
+#include "render/scattering/signatures/signature.h"
 
 /* ---- the spread of errors over pixels, and what a displaced target does to those near it --------- */
 

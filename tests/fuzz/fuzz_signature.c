@@ -2,7 +2,7 @@
  * is accepted gives finite centres. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "render/radar/centres.h"
+#include "render/scattering/signatures/centres.h"
 #include "sensor/radar/signature_library.h"
 
 #include <stdlib.h>

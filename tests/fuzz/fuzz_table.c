@@ -10,11 +10,11 @@
 #include "render/heat/kept_heat.h"
 #include "render/heat/part_table.h"
 #include "render/materials/materials.h"
-#include "render/radar/gas_attenuation.h"
-#include "render/radar/given_signature.h"
-#include "render/radar/clutter_table.h"
-#include "render/radar/ground_table.h"
-#include "sensor/detector/sheet.h"
+#include "render/scattering/paths/attenuation.h"
+#include "render/scattering/signatures/given_signature.h"
+#include "render/scattering/clutter/clutter_table.h"
+#include "render/scattering/paths/ground_bounce.h"
+#include "sensor/detector/preset.h"
 #include "sensor/radar/radar_preset.h"
 
 #include <stdlib.h>
@@ -99,7 +99,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     (void)channels_check(path);
     SensorPreset sheet;
-    if (sheet_read(&sheet, path) == STATUS_OK) {
+    if (preset_read_sheet(&sheet, path) == STATUS_OK) {
         /* what the detector's chain builds on */
         if (!(sheet.width_px >= 8 && sheet.width_px <= 8192 && sheet.height_px >= 8 && sheet.height_px <= 8192))
             abort();

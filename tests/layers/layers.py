@@ -222,7 +222,7 @@ def twins():
         sensor/node/loop.c render/parts/parts_private.h sensor/node/loop.c loop.h
         dis/pdu/pdu.c tests/check.h                         entities/models/model.c <GeographicLib/Geocentric.hpp>
         sensor/truth/truth.c <jansson.h>                terrain/earth/geoid.c <gdal.h>
-        sensor/detector/scan.c <fftw3.h>                entities/import/sidecar.c <assimp/scene.h>
+        sensor/detector/line_scan.c <fftw3.h>                entities/import/sidecar.c <assimp/scene.h>
         entities/import/sidecar.c <yaml.h>"""):
         one(True, path, header)
     for path, header in re.findall(r'(\S+) (\S+)', """

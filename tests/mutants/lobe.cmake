@@ -1,4 +1,4 @@
 # The radar's lobe is 1.4 times as wide.
-set(source render/radar/radar_image.c)
+set(source render/scattering/radar_image.c)
 set(from [=[0.5 * lobe_rad * lobe_rad, 0.5e-18]=])
 set(to [=[lobe_rad * lobe_rad, 0.5e-18]=])

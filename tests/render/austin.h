@@ -6,7 +6,7 @@
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 
-#include "render/radar/total_field.h"
+#include "render/scattering/field/total_field.h"
 
 #include <zlib.h>
 

@@ -3,7 +3,7 @@
 #define TESTS_RENDER_HAND_MESH_H
 
 #include "tests/check.h"
-#include "render/radar/wedges.h"
+#include "render/scattering/field/wedges.h"
 
 enum { most_vertices = 20000, most_triangles = 10000 };
 

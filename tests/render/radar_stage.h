@@ -5,8 +5,8 @@
 
 #include "tests/check.h"
 
-#include "render/radar/field.h"
-#include "render/radar/shapes.h"
+#include "render/scattering/field/total_field.h"
+#include "render/scattering/field/radar_model.h"
 
 typedef struct RadarStage {
     Model        model;
@@ -26,7 +26,7 @@ static inline void stage_target(RadarStage *s, double frequency_hz)
 static inline void stage_open(RadarStage *s, const char *shape, double frequency_hz)
 {
     *s = (RadarStage){0};
-    if (shape_build(&s->model, shape, radar_sag_m(frequency_hz)) != STATUS_OK) fail_msg("%s does not build", shape);
+    if (radar_shape_build(&s->model, shape, radar_sag_m(frequency_hz)) != STATUS_OK) fail_msg("%s does not build", shape);
     stage_target(s, frequency_hz);
 }
 

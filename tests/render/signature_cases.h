@@ -5,10 +5,10 @@
 
 #include "tests/check.h"
 
-#include "render/radar/field.h"
-#include "render/radar/radar_model.h"
-#include "render/radar/signature_error.h"
-#include "render/radar/signatures.h"
+#include "render/scattering/field/total_field.h"
+#include "render/scattering/field/radar_model.h"
+#include "render/scattering/signatures/centres.h"
+#include "render/scattering/signatures/signatures.h"
 
 enum { looks = 10 };
 

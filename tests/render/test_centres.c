@@ -2,8 +2,8 @@
  * elsewhere in the bin. labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/centres.h"
-#include "render/radar/field.h"
+#include "render/scattering/signatures/centres.h"
+#include "render/scattering/field/total_field.h"
 
 enum { hits = 20000, frequencies = 33 };
 

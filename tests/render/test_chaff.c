@@ -1,8 +1,8 @@
-/* Dipoles one by one, in all directions, against the figures of chaff.h; bunches of them, and the cloud's column.
+/* Dipoles one by one, in all directions, against the figures of volume_scatter.h; bunches of them, and the cloud's column.
  * labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/chaff.h"
+#include "render/scattering/clutter/volume_scatter.h"
 
 /* Of half-wave dipoles of a sinusoidal current, of one wavelength^2: by quadrature over their directions. Everything
  * follows from the radiated field F / sin and the reciprocity of transmitting and receiving. */

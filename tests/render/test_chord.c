@@ -2,8 +2,8 @@
  * labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/shapes.h"
-#include "render/radar/target.h"
+#include "render/scattering/field/radar_model.h"
+#include "render/scattering/field/radar_target.h"
 
 static void a_sphere_says_its_chord(void **state)
 {
@@ -13,7 +13,7 @@ static void a_sphere_says_its_chord(void **state)
         Model        model;
         RadarTarget *target;
         double       farthest_m = 0;
-        CHECK(shape_build(&model, "sphere:0.5", sag_m[i]) == STATUS_OK);
+        CHECK(radar_shape_build(&model, "sphere:0.5", sag_m[i]) == STATUS_OK);
         CHECK(radar_target_create(&target, &model, NULL, NULL) == STATUS_OK);
         for (int t = 0; t < model.triangle_count; t++)
             for (int c = 0; c < 3; c++) {
@@ -35,7 +35,7 @@ static void flat_faces_have_none(void **state)
     (void)state;
     Model        model;
     RadarTarget *target;
-    CHECK(shape_build(&model, "trihedral:0.4", 1e-3) == STATUS_OK);
+    CHECK(radar_shape_build(&model, "trihedral:0.4", 1e-3) == STATUS_OK);
     CHECK(radar_target_create(&target, &model, NULL, NULL) == STATUS_OK);
     CHECK(target->chord_m == 0 && target->chord_rms_m == 0);
     radar_target_destroy(target);

@@ -2,7 +2,7 @@
  * what does not depend on order or level. Seeds are fixed; each bound is 4 standard errors of the exact
  * distribution, or the 1 % point of Kolmogorov and Smirnov. labels: physics */
 #include "tests/check.h"
-#include "render/radar/clutter.h"
+#include "render/scattering/clutter/clutter.h"
 
 static const double ku_hz = 16e9, ka_hz = 35e9, c_mps = 299792458.0;
 static ClutterTable table;

@@ -1,7 +1,7 @@
 /* Ground clutter in a spotlight image: a phase history of scatterers and a point, by distances alone, focused by plain
  * backprojection. The image must read sigma0 back, show a shadow as dark, and focus the point. labels: physics */
 #include "tests/check.h"
-#include "render/radar/clutter.h"
+#include "render/scattering/clutter/clutter.h"
 
 static const double c_mps = 299792458.0, carrier_hz = 16e9, psi = 0.5, range_m = 2000, cell_m = 0.5;
 

@@ -1,6 +1,6 @@
 /* Integrals along edges against quadrature; plates against integral-equation results (Austin RCS Benchmark Suite). */
 #include "tests/render/hand_mesh.h"
-#include "render/radar/edge_pairs.h"
+#include "render/scattering/field/edge_field.h"
 
 static const double pi = 3.14159265358979323846, c_mps = 299792458;
 
@@ -35,8 +35,8 @@ static void test_integral(void **state)
         const ScatterAntenna t = antenna(88 + 4 * uniform(i, 1), 360 * uniform(i, 2), r_m);
         const ScatterAntenna r = i % 3 ? t : antenna(91, 360 * uniform(i, 3), r_m * 1.5);
         const EdgeConfig config = {.k_per_m = k, .sample_m = 0.05, .clear_m = 1e-4};
-        if (wedge_angle(&w.frame, t.u) > w.frame.exterior_pi * pi - 0.1 ||
-            wedge_angle(&w.frame, r.u) > w.frame.exterior_pi * pi - 0.1 || wedge_angle(&w.frame, r.u) < 0.1)
+        if (edge_angle(&w.frame, t.u) > w.frame.exterior_pi * pi - 0.1 ||
+            edge_angle(&w.frame, r.u) > w.frame.exterior_pi * pi - 0.1 || edge_angle(&w.frame, r.u) < 0.1)
             continue;
         ScatterMatrix got = {0};
         edge_field(&got, &w, 1, &t, &r, &config);
@@ -59,7 +59,7 @@ static void test_integral(void **state)
                     v3_normalize(across[a][q], across[a][q]);
                 }
             }
-            wedge_fringe(d, &w.frame, u[0], across[0], u[1], across[1]);
+            edge_fringe(d, &w.frame, u[0], across[0], u[1], across[1]);
             const double complex wave = spread * cexp(-I * k * path_m) * 2 / points;
             for (int e = 0; e < 4; e++) want[e] += d[e / 2][e % 2] * wave;
             for (int e = 0; e < 4; e++) most = fmax(most, fabs(d[e / 2][e % 2]) * 2);

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 #include "tests/render/hand_plants.h"
 
-#include "render/radar/foliage.h"
+#include "render/scattering/clutter/foliage.h"
 
 enum { plants = 3000, side = 5 }; /* squares of the woods */
 

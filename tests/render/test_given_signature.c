@@ -2,8 +2,8 @@
  * lies between rows, how far a table is known, lists of entities, and what is refused. labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/given_list.h"
-#include "render/radar/total_field.h"
+#include "render/scattering/signatures/given_signature.h"
+#include "render/scattering/field/total_field.h"
 #include "tests/render/radar_stage.h"
 
 #include <sys/stat.h>

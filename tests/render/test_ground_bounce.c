@@ -3,7 +3,7 @@
 #include "tests/render/radar_stage.h"
 
 #include "entities/catalog/catalog.h"
-#include "render/radar/ground_bounce.h"
+#include "render/scattering/paths/ground_bounce.h"
 
 #include <unistd.h>
 
@@ -384,7 +384,7 @@ static void a_sphere_above_a_mirror(void **state)
     mie(one, 0.01, 1, 0);
     CHECK_NEAR(cabs(one[0]) / (1.5e-6), 1, 1e-3);
     s = (RadarStage){0};
-    CHECK(shape_build(&s.model, "sphere:0.3", 1e-5) ==
+    CHECK(radar_shape_build(&s.model, "sphere:0.3", 1e-5) ==
           STATUS_OK); /* finer: facets lie within the sphere by 0.1 rad otherwise */
     stage_target(&s, x_hz);
     for (int i = 0; i < 6; i++) {

@@ -4,8 +4,8 @@
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 
-#include "render/radar/radar_model.h"
-#include "render/radar/total_field.h"
+#include "render/scattering/field/radar_model.h"
+#include "render/scattering/field/total_field.h"
 
 #include <limits.h>
 

@@ -147,7 +147,7 @@ static void dihedral_turns_one_polarisation(void **state)
 
     /* rolled by 45 degrees about the line of sight */
     s = (RadarStage){0};
-    CHECK(shape_build(&s.model, "dihedral:0.3x0.3", 1e-4) == STATUS_OK);
+    CHECK(radar_shape_build(&s.model, "dihedral:0.3x0.3", 1e-4) == STATUS_OK);
     for (int v = 0; v < s.model.vertex_count; v++) {
         double *p = s.model.vertex[v], y = p[1], z = p[2], c = sqrt(0.5);
         float  *n = s.model.normal[v], ny = n[1], nz = n[2];

@@ -2,7 +2,7 @@
  * that is air or metal, and the roughness factor. labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/fresnel.h"
+#include "render/scattering/radar_surfaces.h"
 
 static double worst(double complex got, double complex want, double so_far) { return fmax(so_far, cabs(got - want)); }
 

@@ -5,7 +5,7 @@
  * square faces 2 a b min(sin, cos); square trihedral on its axis sqrt(3) a^2. labels: physics */
 #include "tests/check.h"
 #include "render/parts/parts.h"
-#include "render/radar/radar_image.h"
+#include "render/scattering/radar_image.h"
 
 static const double edge_m = 2, range_m = 1500, lobe_rad = 0.05;
 

@@ -2,7 +2,7 @@
  * and broken tables refused with file and line. labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/radar_materials.h"
+#include "render/scattering/radar_surfaces.h"
 
 static const char head[] = "name,kind,f_ghz,eps_re,eps_im,thick_mm,rough_mm,source\n"
                            "metal_default,metal,10,1,0,0,0.03,estimate\n"

@@ -3,11 +3,8 @@
  * equation by hand. labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/cloud_attenuation.h"
-#include "render/radar/gas_attenuation.h"
-#include "render/radar/radar_equation.h"
-#include "render/radar/radar_path.h"
-#include "render/radar/rain_attenuation.h"
+#include "render/scattering/paths/attenuation.h"
+#include "render/scattering/paths/radar_path.h"
 
 static GasLines lines;
 static Atmosphere *us1976;

@@ -4,8 +4,8 @@
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 
-#include "render/radar/total_field.h"
-#include "render/radar/warp.h"
+#include "render/scattering/field/total_field.h"
+#include "render/scattering/field/tubes.h"
 
 static const double x_hz = 10e9, w_hz = 94e9;
 
@@ -221,8 +221,8 @@ static void a_curved_mirror_spreads_the_field(void **state)
     RadarStage   s = {0};
     const double up[3] = {0, 0, -h_m / 2};
     double       half[2];
-    CHECK(shape_build(&cylinder, "cylinder:0.3x0.4", 1e-5) == STATUS_OK &&
-          shape_build(&plate, "plate:3x3", 1) == STATUS_OK);
+    CHECK(radar_shape_build(&cylinder, "cylinder:0.3x0.4", 1e-5) == STATUS_OK &&
+          radar_shape_build(&plate, "plate:3x3", 1) == STATUS_OK);
     turn_plate_flat(&plate);
     join(&s.model, &plate, &cylinder, up);
     stage_target(&s, 3e10);
@@ -325,14 +325,14 @@ static void warp_is_smooth_and_of_its_height(void **state)
     for (int i = 0; i < 4000; i++) {
         const double step = 1e-5;
         double       p[3], h, g[3], b[9];
-        warp_make(&w, 0.002, 0.4, 11, i % 40);
+        tubes_warp_make(&w, 0.002, 0.4, 11, i % 40);
         for (int c = 0; c < 3; c++) p[c] = hand_uniform(-3, 3);
-        warp_at(&h, g, b, &w, p);
+        tubes_warp_at(&h, g, b, &w, p);
         square += h * h / 4000;
         for (int c = 0; c < 3; c++) {
             double q[3] = {p[0], p[1], p[2]}, h2, g2[3], b2[9];
             q[c] += step;
-            warp_at(&h2, g2, b2, &w, q);
+            tubes_warp_at(&h2, g2, b2, &w, q);
             worst = fmax(worst, fabs((h2 - h) / step - g[c] - 0.5 * step * b[4 * c]));
             for (int d = 0; d < 3; d++) worst = fmax(worst, fabs((g2[d] - g[d]) / step - b[3 * d + c]) * 0.01);
         }
@@ -447,9 +447,9 @@ static void bad_looks_are_refused(void **state)
     a = antenna_at(0, 0, INFINITY);
     s.config.frequency_hz = 1e15;
     CHECK(tubes_trace(&s.hits, s.target, &a, &a, &s.config, s.pool) == STATUS_UNSUPPORTED);
-    CHECK(shape_build(&s.model, "sphere:1e9", 0.01) == STATUS_BAD_VALUE);
-    CHECK(shape_build(&s.model, "plate:1", 0.01) == STATUS_BAD_VALUE);
-    CHECK(shape_build(&s.model, "cube:1", 0.01) == STATUS_BAD_VALUE);
+    CHECK(radar_shape_build(&s.model, "sphere:1e9", 0.01) == STATUS_BAD_VALUE);
+    CHECK(radar_shape_build(&s.model, "plate:1", 0.01) == STATUS_BAD_VALUE);
+    CHECK(radar_shape_build(&s.model, "cube:1", 0.01) == STATUS_BAD_VALUE);
     log_set_sink(NULL, NULL);
     stage_close(&s);
 }

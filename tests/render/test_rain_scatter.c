@@ -2,11 +2,9 @@
  * Palmer's closed form, and P.838's loss. labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/cloud_attenuation.h"
-#include "render/radar/mie_sphere.h"
-#include "render/radar/rain_attenuation.h"
-#include "render/radar/rain_scatter.h"
-#include "render/radar/scatter.h"
+#include "render/scattering/paths/attenuation.h"
+#include "render/scattering/clutter/volume_scatter.h"
+#include "render/scattering/scatter.h"
 
 static double db(double ratio) { return 10 * log10(ratio); }
 

@@ -4,8 +4,8 @@
 
 #include <time.h>
 
-#include "render/radar/field.h"
-#include "render/radar/signatures.h"
+#include "render/scattering/field/total_field.h"
+#include "render/scattering/signatures/signatures.h"
 
 static const double frequency_hz = 5e9, aspect_rad = 0.3 * rad_per_deg;
 

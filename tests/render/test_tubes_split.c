@@ -3,7 +3,7 @@
 #include "tests/render/hand_models.h"
 #include "tests/render/radar_stage.h"
 
-#include "render/radar/radar_model.h"
+#include "render/scattering/field/radar_model.h"
 
 static double power(double complex s) { return creal(s) * creal(s) + cimag(s) * cimag(s); }
 

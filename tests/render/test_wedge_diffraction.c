@@ -6,7 +6,7 @@
  * / x: q^v / v, with q = sqrt(p^2 + 1) - p. The sums are geometric series; for -1 < m < 1 they stand for their limit
  * without losses. labels: physics */
 #include "tests/check.h"
-#include "render/radar/wedge_diffraction.h"
+#include "render/scattering/field/edge_field.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -43,10 +43,10 @@ static void fringe(double out[2][2], const WedgeFrame *w, const double u_t[3], c
     double t[2][3], r[2][3];
     soft_hard(t, u_t);
     soft_hard_out(r, u_r);
-    wedge_fringe(out, w, u_t, t, u_r, r);
+    edge_fringe(out, w, u_t, t, u_r, r);
 }
 
-/* Keller's coefficients in the units of wedge_fringe: soft, hard. */
+/* Keller's coefficients in the units of edge_fringe: soft, hard. */
 static void keller(double out[2], double n, double f, double from)
 {
     const double c = cos(pi / n), common = sin(pi / n) / (2 * pi * n);
@@ -175,7 +175,7 @@ static void test_off_cone(void **state)
                 }
             }
             if (!clear) continue;
-            wedge_fringe(got, &wedge, u_t, t, u_r, r);
+            edge_fringe(got, &wedge, u_t, t, u_r, r);
             for (int q = 0; q < 2; q++)
                 for (int p = 0; p < 2; p++) worst[steep] = fmax(worst[steep], cabs(got[q][p] - sum[q][p]));
             checked[steep]++;
@@ -318,9 +318,9 @@ static void test_finite(void **state)
             }
         for (int i = 0; i < count; i++)
             for (int j = 0; j < count; j++) {
-                wedge_fringe(got, &wedge, u[i], t[i], u[j], t[j]);
+                edge_fringe(got, &wedge, u[i], t[i], u[j], t[j]);
                 for (int k = 0; k < 4; k++) {
-                    CHECK(fabs(got[k / 2][k % 2]) <= wedge_fringe_limit);
+                    CHECK(fabs(got[k / 2][k % 2]) <= edge_fringe_limit);
                     if (i == j) worst = fmax(worst, fabs(got[k / 2][k % 2]));
                 }
             }

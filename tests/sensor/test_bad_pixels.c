@@ -1,7 +1,7 @@
 /* Faulty pixels by their statistics, shown and patched by hand. */
 #include "tests/check.h"
 
-#include "sensor/detector/bad_pixels.h"
+#include "sensor/detector/array_noise.h"
 
 enum { width = 720, height = 486, planes = 8 };
 static uint8_t  map[width * height];
@@ -41,7 +41,7 @@ static void kinds_show_as_they_are(void **state)
     map[5] = PIXEL_DEAD, map[6] = PIXEL_HOT, map[7] = PIXEL_BLINKING;
     for (int frame = 0; frame < 8000; frame++) {
         for (int i = 0; i < 10; i++) count[i] = 1000;
-        bad_pixels_insert(count, map, 10, 1, 16383, 1, 0, frame);
+        bad_pixels_insert(count, map, 10, 1, 16383, &(NoiseDraw){1, 0, frame});
         CHECK(count[5] == 0 && count[6] == 16383 && count[4] == 1000 && (count[7] == 1000 || count[7] == 16383));
         on += count[7] == 16383;
         if (was >= 0 && was != count[7]) {

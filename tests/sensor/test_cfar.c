@@ -2,7 +2,15 @@
  * targets that are found. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/radar/cfar.h"
+#include "sensor/radar/detect.h"
+
+/* Probability that cell averaging detects a target whose power is exponential with mean snr times that of the noise, in
+ * one look (Swerling 1). */
+static double detection_probability(int training, double pfa, double snr)
+{
+    const double a = detect_cfar_multiplier(training, pfa);
+    return exp(-training * log1p(a / (training * (1 + snr))));
+}
 
 /* data/radar/signal/ca_cfar_alpha.csv. */
 static void multipliers_are_those_of_the_table(void **state)
@@ -11,11 +19,12 @@ static void multipliers_are_those_of_the_table(void **state)
     static const double want[][3] = {{8, 1e-2, 6.22623528031},  {8, 1e-6, 36.9873060152},  {16, 1e-4, 12.4524705606},
                                      {32, 1e-3, 7.71000834406}, {64, 1e-6, 15.4200166881}, {64, 1e-2, 4.77490101256}};
     for (size_t i = 0; i < sizeof want / sizeof *want; i++)
-        CHECK_NEAR(cfar_multiplier((int)want[i][0], want[i][1]) / want[i][2], 1, 1e-11);
-    CHECK(isnan(cfar_multiplier(0, 1e-3)) && isnan(cfar_multiplier(8, 0)) && isnan(cfar_multiplier(8, NAN)));
+        CHECK_NEAR(detect_cfar_multiplier((int)want[i][0], want[i][1]) / want[i][2], 1, 1e-11);
+    CHECK(isnan(detect_cfar_multiplier(0, 1e-3)) && isnan(detect_cfar_multiplier(8, 0)) &&
+          isnan(detect_cfar_multiplier(8, NAN)));
     /* no target: what is detected are false alarms; many cells: the exponential law itself */
-    CHECK_NEAR(cfar_detection(16, 1e-4, 0) / 1e-4, 1, 1e-12);
-    CHECK_NEAR(cfar_detection(100000, 1e-6, 31) / pow(1e-6, 1 / 32.0), 1, 1e-3);
+    CHECK_NEAR(detection_probability(16, 1e-4, 0) / 1e-4, 1, 1e-12);
+    CHECK_NEAR(detection_probability(100000, 1e-6, 31) / pow(1e-6, 1 / 32.0), 1, 1e-3);
 }
 
 /* Rohling's product as he gives it, and the greatest of one cell: a = 1 / pfa - 1. */
@@ -25,13 +34,13 @@ static void ordered_multipliers_solve_their_product(void **state)
     for (int n = 4; n <= 64; n *= 2)
         for (double pfa = 1e-2; pfa > 1e-9; pfa *= 0.1) {
             const int    rank = 3 * n / 4;
-            const double a = cfar_ordered_multiplier(n, rank, pfa);
+            const double a = detect_ordered_multiplier(n, rank, pfa);
             double       product = 1;
             for (int i = 0; i < rank; i++) product *= (n - i) / (n - i + a);
             CHECK_NEAR(product / pfa, 1, 1e-10);
         }
-    CHECK_NEAR(cfar_ordered_multiplier(1, 1, 1e-3), 999, 1e-8);
-    CHECK(isnan(cfar_ordered_multiplier(8, 9, 1e-3)));
+    CHECK_NEAR(detect_ordered_multiplier(1, 1, 1e-3), 999, 1e-8);
+    CHECK(isnan(detect_ordered_multiplier(8, 9, 1e-3)));
 }
 
 enum { rows = 64, columns = 512, planes = 40 };
@@ -48,7 +57,7 @@ static void rate_in_noise(double ordered)
     int            found = 0;
     for (int k = 0; k < planes; k++) {
         for (int i = 0; i < rows * columns; i++) power[i] = -5 * log(random_uniform(7, 0, (uint32_t)k, (uint64_t)i));
-        found += cfar_detect(hit, 1000, &config, power, rows, columns);
+        found += detect_cfar(hit, 1000, &config, power, rows, columns);
     }
     const double want = pfa * rows * columns * planes; /* 1311; counting alone scatters by 36 */
     CHECK(found > 0.9 * want && found < 1.1 * want);
@@ -71,18 +80,18 @@ static void targets_are_found_where_they_are(void **state)
     power[0 * columns + 100] = 400;  /* at the edge of Doppler: its training cells are on both sides */
     power[40 * columns + 511] = 300; /* at the edge of range */
     power[20 * columns + 7] = power[20 * columns + 8] = 500; /* twins: one hit, the first */
-    CHECK(cfar_detect(hit, 8, &config, power, rows, columns) == 3);
+    CHECK(detect_cfar(hit, 8, &config, power, rows, columns) == 3);
     CHECK(hit[0].row == 0 && hit[0].column == 100 && hit[1].row == 20 && hit[1].column == 7);
     CHECK(hit[2].row == 40 && hit[2].column == 511);
     CHECK_NEAR(hit[0].floor, 2.2, 0.05);
     CHECK(hit[1].power == 500);
-    CHECK(cfar_detect(hit, 1, &config, power, rows, columns) == 3); /* how many there are */
+    CHECK(detect_cfar(hit, 1, &config, power, rows, columns) == 3); /* how many there are */
 
     CfarConfig bad = config;
     bad.pfa = 0;
-    CHECK(cfar_detect(hit, 8, &bad, power, rows, columns) == -1);
+    CHECK(detect_cfar(hit, 8, &bad, power, rows, columns) == -1);
     bad = config, bad.training[0] = 40;
-    CHECK(cfar_detect(hit, 8, &bad, power, rows, columns) == -1); /* wider than the plane goes round */
+    CHECK(detect_cfar(hit, 8, &bad, power, rows, columns) == -1); /* wider than the plane goes round */
 }
 
 int main(void)

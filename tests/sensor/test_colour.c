@@ -6,8 +6,7 @@
 
 #include "render/light/optical.h"
 #include "sensor/detector/chain.h"
-#include "sensor/detector/colour.h"
-#include "sensor/detector/quantise.h"
+#include "sensor/detector/display_values.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/publish/images/image_file.h"
 

@@ -2,8 +2,8 @@
  * labels: physics */
 #include "tests/check.h"
 
-#include "sensor/detector/noise3d.h"
-#include "sensor/detector/quantise.h"
+#include "sensor/detector/array_noise.h"
+#include "sensor/detector/display_values.h"
 
 enum { pixels = 96 * 64, frames = 40 };
 
@@ -26,7 +26,7 @@ static void noise_has_the_sigma_asked_for(void **state)
         static float before[pixels];
         for (uint32_t frame = 0; frame < frames; frame++) {
             memset(plane, 0, sizeof plane);
-            detector_noise(noisy, plane, 0, pixels, sigmas[k], 7, 3, frame);
+            detector_noise(noisy, plane, 0, pixels, sigmas[k], &(NoiseDraw){7, 3, frame});
             for (int i = 0; i < pixels; i++) {
                 const double x = noisy[i] / sigmas[k];
                 sum += x;
@@ -52,26 +52,26 @@ static void noise_is_a_function_of_its_counters(void **state)
     for (int i = 0; i < pixels; i++) plane[i] = (float)i * 0.01f;
     plane[5] = NAN;
     plane[6] = INFINITY;
-    detector_noise(noisy, plane, 0, pixels, 0.5, 1, 2, 3);
+    detector_noise(noisy, plane, 0, pixels, 0.5, &(NoiseDraw){1, 2, 3});
     assert_memory_equal(&noisy[5], &plane[5], 2 * sizeof(float));
 
     static float pieces[pixels];
     memcpy(pieces, plane, sizeof pieces);
     for (size_t first = 0; first < pixels; first += 777) {
         const size_t count = pixels - first < 777 ? pixels - first : 777;
-        detector_noise(pieces + first, pieces + first, first, count, 0.5, 1, 2, 3);
+        detector_noise(pieces + first, pieces + first, first, count, 0.5, &(NoiseDraw){1, 2, 3});
     }
     assert_memory_equal(pieces, noisy, sizeof noisy);
 
     const uint32_t others[3][3] = {{2, 2, 3}, {1, 3, 3}, {1, 2, 4}};
     for (int k = 0; k < 3; k++) {
         int same = 0;
-        detector_noise(pieces, plane, 0, pixels, 0.5, others[k][0], others[k][1], others[k][2]);
+        detector_noise(pieces, plane, 0, pixels, 0.5, &(NoiseDraw){others[k][0], others[k][1], others[k][2]});
         for (int i = 0; i < pixels; i++) same += pieces[i] == noisy[i];
         CHECK(same < pixels / 1000);
     }
 
-    detector_noise(pieces, plane, 0, pixels, 0, 1, 2, 3); /* no noise: the plane itself */
+    detector_noise(pieces, plane, 0, pixels, 0, &(NoiseDraw){1, 2, 3}); /* no noise: the plane itself */
     assert_memory_equal(pieces, plane, sizeof plane);
 }
 

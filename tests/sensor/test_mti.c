@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "sensor/radar/echo.h"
-#include "sensor/radar/mti.h"
+#include "sensor/radar/detect.h"
 
 enum { samples = 128, pulses = 256, all = samples * pulses, echoes = 12000 };
 static const double   light = 299792458.0;
@@ -27,7 +27,7 @@ static void powers(double out[4], double clutter_path_m)
     interval_compress(plan, &interval, 1, NULL);
     for (int rows = 1; rows <= mti_rows_most; rows++) {
         if (rows == 1) interval_profile(profile, plan, CHANNEL_SUM);
-        else mti_profile(profile, interval_pulses(plan, CHANNEL_SUM), &wave, rows, clutter_path_m);
+        else detect_mti_profile(profile, interval_pulses(plan, CHANNEL_SUM), &wave, rows, clutter_path_m);
         out[rows] = 0;
         for (int m = 0; m < samples; m++) out[rows] += profile[m] / samples;
     }
@@ -78,12 +78,12 @@ static void targets_pass_but_for_blind_speeds(void **state)
     for (int i = -40; i <= 40; i++) {
         const double rate = 45.42309967 * i, x = pi_rad * i / 20, path_m = 2 * rate / wave.repeat_hz,
                      s2 = sin(x) * sin(x);
-        CHECK_NEAR(mti_gain(&wave, 2, path_m), 2 * s2, 1e-6);
-        CHECK_NEAR(mti_gain(&wave, 3, path_m), 8 * s2 * s2 / 3, 1e-6);
-        CHECK(mti_moves(rate + 11, 11, 20, 908.4619939) == (i % 20 != 0));
+        CHECK_NEAR(detect_mti_gain(&wave, 2, path_m), 2 * s2, 1e-6);
+        CHECK_NEAR(detect_mti_gain(&wave, 3, path_m), 8 * s2 * s2 / 3, 1e-6);
+        CHECK(detect_moves(rate + 11, 11, 20, 908.4619939) == (i % 20 != 0));
     }
-    CHECK(!mti_moves(30, 11, 20, 908.46) && mti_moves(32, 11, 20, 908.46) &&
-          !mti_moves(11 - 908.46 + 19, 11, 20, 908.46));
+    CHECK(!detect_moves(30, 11, 20, 908.46) && detect_moves(32, 11, 20, 908.46) &&
+          !detect_moves(11 - 908.46 + 19, 11, 20, 908.46));
     /* of a target alone, through the samples */
     EchoGrid *grid;
     double    got[4];
@@ -92,7 +92,7 @@ static void targets_pass_but_for_blind_speeds(void **state)
     echo_sum(sample, grid);
     powers(got, 2 * 20 / wave.repeat_hz);
     for (int rows = 2; rows <= 3; rows++)
-        CHECK_NEAR(got[rows] / got[1] / mti_gain(&wave, rows, 2 * 130 / wave.repeat_hz), 1,
+        CHECK_NEAR(got[rows] / got[1] / detect_mti_gain(&wave, rows, 2 * 130 / wave.repeat_hz), 1,
                    1e-4); /* a moving echo's gridding */
     echo_grid_destroy(grid);
 }

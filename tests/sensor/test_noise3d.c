@@ -2,7 +2,7 @@
  * axes it lacks. labels: physics */
 #include "tests/check.h"
 
-#include "sensor/detector/noise3d.h"
+#include "sensor/detector/array_noise.h"
 
 enum { frames = 100, rows = 120, columns = 160 };
 static float  cube[(size_t)frames * rows * columns], plane[rows * columns];
@@ -16,7 +16,7 @@ static void make_cube(const Noise3d *noise, uint64_t seed)
     for (int k = 0; k < frames; k++) {
         float *at = cube + (size_t)k * rows * columns;
         memcpy(at, fixed, sizeof fixed);
-        noise3d_add_moving(at, columns, rows, noise, seed, 5, k, scratch);
+        noise3d_add_moving(at, columns, rows, noise, &(NoiseDraw){seed, 5, k}, scratch);
     }
 }
 
@@ -75,7 +75,7 @@ static void components_stand_still_where_they_should(void **state)
     const Noise3d noise = {{1, 0.3, 0.2, 0.4, 0.15, 0.25, 0.35}};
     memset(plane, 0, sizeof plane);
     noise3d_add_fixed(plane, columns, rows, &noise, 9, 1);
-    noise3d_add_moving(plane, columns, rows, &noise, 9, 1, 4, scratch);
+    noise3d_add_moving(plane, columns, rows, &noise, &(NoiseDraw){9, 1, 4}, scratch);
     for (int r = 0; r < rows; r += 7)
         for (int c = 0; c < columns; c += 3)
             CHECK_NEAR(plane[r * columns + c], noise3d_at(&noise, 9, 1, 4, r, c), 1e-6);

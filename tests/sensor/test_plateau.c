@@ -1,7 +1,7 @@
 /* tests/sensor/test_plateau.c: plateau equalisation and levels with fires: against closed forms of uniform and normal
  * populations, interpolation by search, and the time constant.
  * labels: physics */
-#include "sensor/detector/plateau.h"
+#include "sensor/detector/level.h"
 #include "tests/check.h"
 
 enum { pixels = 120000 };

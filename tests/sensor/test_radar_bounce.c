@@ -2,7 +2,7 @@
  * works out itself, what the ground mirrors, and the same bits for threads. labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/ground_table.h"
+#include "render/scattering/paths/ground_bounce.h"
 #include "sensor/radar/seeker_radar.h"
 
 static double away_m = 900; /* of the truck, north */

@@ -2,10 +2,10 @@
  * equation, places, speeds and directions of points, images of I/Q errors, noise of a converter. labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/radar_equation.h"
+#include "render/scattering/paths/radar_path.h"
 #include "sensor/radar/detect.h"
 #include "sensor/radar/echo.h"
-#include "sensor/radar/receiver.h"
+#include "sensor/radar/interval.h"
 
 /* 94 GHz, 0.3 m of range, 64 pulses. */
 static const Waveform wave = {
@@ -67,7 +67,7 @@ static void signal_to_noise_is_the_radar_equations(void **state)
     ReceiverReport report;
     double         floor_w = 0;
     memset(sample, 0, sizeof sample);
-    receiver_apply(&report, &interval, &receiver, 5, 0, 0);
+    interval_receive(&report, &interval, &receiver, 5, 0, 0);
     RangeDoppler map = process(&interval, "rect", "rect");
     for (int i = 0; i < cells; i++) floor_w += power_of(map.cell[i]) / cells;
     /* 16384 cells of exponential power: their mean scatters by 0.8 % */
@@ -101,7 +101,7 @@ static void points_are_measured(void **state)
     ReceiverReport    report;
     Detection         got[16];
     add_points(&interval, point, 4);
-    receiver_apply(&report, &interval, &receiver, 5, 0, 0);
+    interval_receive(&report, &interval, &receiver, 5, 0, 0);
     const RangeDoppler map = process(&interval, "hann", "hann");
     CHECK(detect(got, 16, &map, plan, &cfar, &dish, &scale) == 4);
     int seen = 0;
@@ -136,7 +136,7 @@ static void iq_errors_make_an_image(void **state)
     Interval       interval = {.wave = wave, .sample = sample};
     ReceiverReport report;
     add_points(&interval, &point, 1);
-    receiver_apply(&report, &interval, &receiver, 5, 0, 0);
+    interval_receive(&report, &interval, &receiver, 5, 0, 0);
     const RangeDoppler map = process(&interval, "rect", "rect");
     const double complex *row = map.cell + pulses / 2 * samples + samples / 2;
     CHECK_NEAR(10 * log10(power_of(row[-16]) / power_of(row[16])), 20 * log10(hypot(0.02, 0.015) / 2), 0.2);
@@ -154,7 +154,7 @@ static void converter_and_oscillator_add_their_noise(void **state)
     static double complex before[cells];
     add_points(&interval, &point, 1);
     memcpy(before, sample, sizeof before);
-    receiver_apply(&report, &interval, &receiver, 5, 0, 0);
+    interval_receive(&report, &interval, &receiver, 5, 0, 0);
     double error = 0;
     for (int i = 0; i < cells; i++) error += power_of(sample[i] - before[i]) / cells;
     const double counts = 1 / report.counts_per_sqrt_w;
@@ -167,7 +167,7 @@ static void converter_and_oscillator_add_their_noise(void **state)
     for (uint32_t k = 0; k < 40; k++) {
         add_points(&interval, &(Point){.rcs_m2 = 1e4}, 1);
         const double amplitude = cabs(sample[0]);
-        receiver_apply(&report, &interval, &receiver, 5, 0, k);
+        interval_receive(&report, &interval, &receiver, 5, 0, k);
         const RangeDoppler map = process(&interval, "rect", "rect");
         mean += power_of(map.cell[pulses / 2 * samples + samples / 2] / amplitude) / 40;
     }

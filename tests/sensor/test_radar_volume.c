@@ -5,11 +5,10 @@
 
 #include "sensor/radar/seeker_radar.h"
 
-#include "render/radar/clutter_table.h"
-#include "render/radar/cloud_attenuation.h"
-#include "render/radar/mie_sphere.h"
-#include "render/radar/radar_equation.h"
-#include "render/radar/rain_attenuation.h"
+#include "render/scattering/clutter/clutter_table.h"
+#include "render/scattering/paths/attenuation.h"
+#include "render/scattering/clutter/volume_scatter.h"
+#include "render/scattering/paths/radar_path.h"
 
 static const double reference_m = 900;
 

@@ -2,9 +2,9 @@
  * against a beam that stares. The same bits: test_scan_bits.c. labels: physics */
 #include "tests/sensor/scan_stage.h"
 
-#include "render/radar/radar_equation.h"
+#include "render/scattering/paths/radar_path.h"
 
-static double line[scan_azimuths_most]; /* power over azimuth */
+static double line[sector_azimuths_most]; /* power over azimuth */
 
 static void a_point_has_its_azimuth_and_the_beam_its_width(void **state)
 {
@@ -17,7 +17,7 @@ static void a_point_has_its_azimuth_and_the_beam_its_width(void **state)
     const RadarScene  scene = scene_of(0, &weather);
     arena_reset(stage.arena);
     const RadarFrame *frame = measure(radar, &scene, stage.pool);
-    const RadarScan  *s = frame->scan;
+    const RadarSector  *s = frame->scan;
     CHECK(s && s->plan.positions % 2 == 1);
     over_range(line, s->power_w, s->plan.positions, s->columns);
     const int    peak = peak_of(line, s->plan.positions);
@@ -46,12 +46,12 @@ static void what_moves_is_met_where_it_is_then(void **state)
     const RadarScene  scene = scene_of(speed, &weather);
     arena_reset(stage.arena);
     const RadarFrame *frame = measure(radar, &scene, stage.pool);
-    const RadarScan  *s = frame->scan;
+    const RadarSector  *s = frame->scan;
     over_range(line, s->power_w, s->plan.positions, s->columns);
     const int    peak = peak_of(line, s->plan.positions);
     const double found = (vertex_of(line, peak) - s->plan.positions / 2) * s->plan.step_rad;
     /* on paper: two-way pattern over range to the fourth, at each position */
-    double paper[scan_positions_most] = {0}, range_then_m[scan_positions_most];
+    double paper[sector_positions_most] = {0}, range_then_m[sector_positions_most];
     for (int i = 0; i < s->plan.positions; i++) {
         const double from_middle = i - s->plan.positions / 2, t_s = from_middle * s->plan.interval_s;
         const double x = range_m * cos(azimuth) + (v[0] - speed) * t_s, y = range_m * sin(azimuth) - v[1] * t_s;
@@ -132,7 +132,7 @@ static void a_position_is_a_beam_that_stares_there(void **state)
     memcpy(stage.view.r_enu_from_cam, r, sizeof r);
     scene.reference_m = eye_m / 0.2;
     arena_reset(stage.arena);
-    const RadarScan *s = measure(radar, &scene, stage.pool)->scan;
+    const RadarSector *s = measure(radar, &scene, stage.pool)->scan;
     for (int i = 0; i < s->plan.positions; i += s->plan.positions / 2) {
         const double azimuth = (i - s->plan.positions / 2) * s->plan.step_rad, c = cos(azimuth), n = sin(azimuth);
         for (int k = 0; k < 3; k++) {
@@ -157,14 +157,14 @@ static void too_fine_a_scan_is_refused(void **state)
 {
     (void)state;
     RadarPreset preset;
-    ScanPlan    plan;
+    SectorPlan    plan;
     char        path[4096];
     CHECK(etc_path(path, sizeof path, "radars.csv") && radar_preset_read(&preset, path, "search_ku") == STATUS_OK);
-    CHECK(scan_plan(&plan, &preset, 160 * rad_per_deg, 0.05) == STATUS_BAD_VALUE);
-    CHECK(scan_plan(&plan, &preset, 160 * rad_per_deg, 0.5) == STATUS_OK && plan.positions % 2 == 1);
+    CHECK(radar_sector_plan(&plan, &preset, 160 * rad_per_deg, 0.05) == STATUS_BAD_VALUE);
+    CHECK(radar_sector_plan(&plan, &preset, 160 * rad_per_deg, 0.5) == STATUS_OK && plan.positions % 2 == 1);
     CHECK((plan.positions - 1) * plan.step_rad >= 160 * rad_per_deg);
     CHECK((plan.positions - 3) * plan.step_rad < 160 * rad_per_deg);
-    CHECK(scan_plan(&plan, &preset, 0, 0.5) == STATUS_OK && plan.positions == 1);
+    CHECK(radar_sector_plan(&plan, &preset, 0, 0.5) == STATUS_OK && plan.positions == 1);
 }
 
 /* What a position leaves out: two-way power of ground beyond the null, over all, for ground lit evenly; and of one

@@ -32,7 +32,7 @@ static void the_same_bits(void **state)
         arena_reset(stage.arena);
         const RadarFrame *three = measure(radar, &scene, stage.pool), *one = measure(radar, &scene, NULL);
         const RadarFrame *still_one = measure(stares, &scene, stage.pool);
-        const RadarScan  *a = three->scan, *b = one->scan;
+        const RadarSector  *a = three->scan, *b = one->scan;
         const size_t map = interval_channels * (size_t)one->map.rows * (size_t)one->map.columns * sizeof *one->map.cell;
         const size_t pixels = (size_t)a->width * (size_t)a->height;
         CHECK(memcmp(three->map.cell, one->map.cell, map) == 0);

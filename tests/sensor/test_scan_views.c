@@ -2,7 +2,7 @@
  * that the test knows. labels: physics */
 #include "tests/sensor/scan_stage.h"
 
-static double line[scan_azimuths_most]; /* power over azimuth */
+static double line[sector_azimuths_most]; /* power over azimuth */
 
 static const double speed_mps = 200, off_rad = 14 * rad_per_deg;
 
@@ -33,7 +33,7 @@ static void doppler_sharpens_as_on_paper(void **state)
     RadarScene        scene = scene_of(speed_mps, &weather);
     arena_reset(stage.arena);
     const RadarFrame *frame = measure(radar, &scene, stage.pool);
-    const RadarScan  *s = frame->scan;
+    const RadarSector  *s = frame->scan;
     const double      first = -(s->plan.positions / 2) * s->plan.step_rad, paper = on_paper_rad(frame);
     const double      bins = window_width(frame);
     over_range(line, s->sharp_w, s->azimuths, s->columns);
@@ -107,7 +107,7 @@ static void pixels_have_the_value_of_their_range_and_azimuth(void **state)
             stage.range_m[sky + x] = INFINITY;
         }
         arena_reset(stage.arena);
-        const RadarScan *s = measure(radar, &scene, stage.pool)->scan;
+        const RadarSector *s = measure(radar, &scene, stage.pool)->scan;
         CHECK(s->width == columns_px && s->height == rows_px);
         const int    middle = (rows_px / 2) * columns_px;
         const double want = 0.5 * columns_px + 500 * tan(off_rad) - 0.5; /* index of the pixel whose centre is there */
@@ -139,18 +139,18 @@ static void between_positions_the_beam_is_nearly_a_gaussian(void **state)
     static const double still[3] = {0, 0, 0};
     const Weather       weather = weather_default();
     SeekerRadar        *radar = open_radar("search_ku", 32, 0.5, false);
-    ScanPlan            plan;
+    SectorPlan            plan;
     RadarPreset         preset;
     char                path[4096];
     CHECK(etc_path(path, sizeof path, "radars.csv") && radar_preset_read(&preset, path, "search_ku") == STATUS_OK);
-    CHECK(scan_plan(&plan, &preset, 32 * rad_per_deg, 0.5) == STATUS_OK);
+    CHECK(radar_sector_plan(&plan, &preset, 32 * rad_per_deg, 0.5) == STATUS_OK);
     const double azimuth = 3.2 * plan.step_rad, want = 0.5 * columns_px + 500 * tan(azimuth) - 0.5;
     place_sphere(0, azimuth, still);
     RadarScene scene = scene_of(0, &weather);
     for (int i = 0; i < rows_px * columns_px; i++) stage.range_m[i] = (float)(range_m - radius_m);
     scene.range_m = stage.range_m;
     arena_reset(stage.arena);
-    const RadarScan *s = measure(radar, &scene, stage.pool)->scan;
+    const RadarSector *s = measure(radar, &scene, stage.pool)->scan;
     double           real[columns_px];
     for (int x = 0; x < columns_px; x++) real[x] = isnan(s->view_w[x]) ? 0 : s->view_w[x];
     const double error_rad = (vertex_of(real, peak_of(real, columns_px)) - want) / 500 * pow(cos(azimuth), 2);

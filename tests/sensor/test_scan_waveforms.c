@@ -2,7 +2,7 @@
  * a still antenna and from one that flies. labels: physics */
 #include "tests/sensor/scan_stage.h"
 
-static double line[scan_azimuths_most]; /* power over azimuth */
+static double line[sector_azimuths_most]; /* power over azimuth */
 
 static const double near_m = 600; /* within the window of fmcw_94 */
 
@@ -29,13 +29,13 @@ static void find_sphere(const char *preset, double sector_deg, double azimuth, d
     scene.range_m = stage.range_m;
     arena_reset(stage.arena);
     const RadarFrame *frame = measure(radar, &scene, stage.pool);
-    const RadarScan  *s = frame->scan;
+    const RadarSector  *s = frame->scan;
     CHECK(s && s->plan.positions > 8);
     over_range(line, s->power_w, s->plan.positions, s->columns);
     const int    peak = peak_of(line, s->plan.positions);
     const double found = (vertex_of(line, peak) - s->plan.positions / 2) * s->plan.step_rad;
     /* on paper: two-way pattern over range to the fourth, at each position */
-    double paper[scan_positions_most] = {0}, there_m[scan_positions_most];
+    double paper[sector_positions_most] = {0}, there_m[sector_positions_most];
     for (int i = 0; i < s->plan.positions; i++) {
         const double from_middle = i - s->plan.positions / 2, gone_m = speed * from_middle * s->plan.interval_s;
         const double x = near_m * cos(azimuth) - gone_m, y = near_m * sin(azimuth);

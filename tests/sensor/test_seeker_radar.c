@@ -4,8 +4,8 @@
 
 #include "sensor/radar/seeker_radar.h"
 
-#include "render/radar/clutter_table.h"
-#include "render/radar/radar_equation.h"
+#include "render/scattering/clutter/clutter_table.h"
+#include "render/scattering/paths/radar_path.h"
 
 static double      height_m = 250, aim_m = 900, reference_m = 900; /* of the axis; of the window */
 static const char *preset = "seeker_35", *own_table = NULL;

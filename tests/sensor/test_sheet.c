@@ -2,7 +2,7 @@
  * value and range. */
 #include "tests/check.h"
 
-#include "sensor/detector/sheet.h"
+#include "sensor/detector/preset.h"
 
 #include <stdio.h>
 
@@ -24,7 +24,7 @@ static Status read_text(SensorPreset *out, const char *text)
     char path[text_file_size];
     text_file(path, text);
     log_set_sink(check_listen, NULL);
-    const Status status = sheet_read(out, path);
+    const Status status = preset_read_sheet(out, path);
     log_set_sink(NULL, NULL);
     remove(path);
     return status;
@@ -121,7 +121,7 @@ static void what_is_wrong_is_named(void **state)
     }
     SensorPreset p;
     log_set_sink(check_listen, NULL);
-    assert_int_equal(sheet_read(&p, "/nonexistent/sheet"), STATUS_IO);
+    assert_int_equal(preset_read_sheet(&p, "/nonexistent/sheet"), STATUS_IO);
     log_set_sink(NULL, NULL);
 }
 
@@ -131,7 +131,7 @@ static void the_example_is_good(void **state)
     char         path[512];
     SensorPreset p;
     CHECK(etc_path(path, sizeof path, "sensors/example_flir2.sheet"));
-    assert_int_equal(sheet_read(&p, path), STATUS_OK);
+    assert_int_equal(preset_read_sheet(&p, path), STATUS_OK);
     CHECK(p.tdi == 4 && p.height_px == 480);
 }
 

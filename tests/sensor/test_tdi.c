@@ -7,7 +7,7 @@
 #include "sensor/detector/chain.h"
 
 enum { width = 160, height = 120, pixels = width * height, frames = 40 };
-static float        plane[pixels], turned[pixels], by_lines[pixels], by_columns[pixels], line[width + scan_taps];
+static float        plane[pixels], turned[pixels], by_lines[pixels], by_columns[pixels], line[width + line_scan_taps];
 static const double still[2] = {0, 0};
 
 static SensorPreset preset_of(const char *name)
@@ -42,10 +42,10 @@ static void columns_are_lines_turned_over(void **state)
         for (int c = 0; c < width; c++) turned[c * height + r] = plane[r * width + c];
     for (int n = 0; n < 6; n++) {
         const double *rate = rates[n % 3], exchanged[2] = {rate[1], rate[0]};
-        const Scan lines = {.line_s = 1e-4, .active = active[n / 3]},
+        const LineScan lines = {.line_s = 1e-4, .active = active[n / 3]},
                    columns = {.line_s = 1e-4, .active = active[n / 3], .by_columns = true};
-        scan_resample(by_lines, turned, height, width, &lines, exchanged, line);
-        scan_resample(by_columns, plane, width, height, &columns, rate, line);
+        line_scan_resample(by_lines, turned, height, width, &lines, exchanged, line);
+        line_scan_resample(by_columns, plane, width, height, &columns, rate, line);
         for (int r = 0; r < height; r++)
             for (int c = 0; c < width; c++) CHECK(by_columns[r * width + c] == by_lines[c * height + r]);
     }
@@ -60,10 +60,10 @@ static void each_column_has_its_own_time(void **state)
     CHECK(p.scan.by_columns && p.tdi == 4);
     const double rate_px_s[2] = {0, 800};
     for (int i = 0; i < pixels; i++) plane[i] = (float)(10 + 0.05 * (i / width));
-    scan_resample(by_columns, plane, width, height, &p.scan, rate_px_s, line);
+    line_scan_resample(by_columns, plane, width, height, &p.scan, rate_px_s, line);
     for (int c = 0; c < width; c++) {
         const double t_s = p.scan.line_s * (c + 0.5 - 0.5 * width);
-        CHECK_NEAR(scan_time_s(&p.scan, width, height, c + 0.5, 3), t_s, 1e-15);
+        CHECK_NEAR(line_scan_time_s(&p.scan, width, height, c + 0.5, 3), t_s, 1e-15);
         /* 16 taps place a slope within 0.005 px, the phases within 1/512 */
         CHECK_NEAR((by_columns[60 * width + c] - 10) / 0.05, 60 - rate_px_s[1] * t_s, 0.005 + 1.0 / 512);
     }

@@ -2,7 +2,7 @@
  * signal to noise, of each row of etc/radars.csv that has one, against closed forms worked out here. labels: physics */
 #include "tests/check.h"
 
-#include "render/radar/radar_equation.h"
+#include "render/scattering/paths/radar_path.h"
 #include "sensor/radar/echo.h"
 #include "sensor/radar/radar_preset.h"
 
@@ -267,7 +267,7 @@ static void signal_to_noise_is_the_radar_equations(void **state)
         const double       range_m = 1200, rcs_m2 = 10, wave_m = c_mps / p->wave.centre_hz;
         const double gain = 0.75 * pow(pi_rad * p->antenna.diameter_m / wave_m, 2); /* of a dish tapered to 0.75 */
         ReceiverReport     report;
-        receiver_apply(&report, &chain.interval, &receiver, 5, 0, 0);
+        interval_receive(&report, &chain.interval, &receiver, 5, 0, 0);
         interval_process(&chain.map, chain.plan, &chain.interval, NULL);
         double floor_w = 0;
         for (size_t i = 0; i < interval_channels * plane; i++)
@@ -302,7 +302,7 @@ static void phase_noise_is_of_each_pulse(void **state)
         open_chain(&chain, of_kind[kind], "rect", 0, false);
         const int samples = chain.preset.wave.samples, rows = chain.preset.wave.pulses;
         (void)map_of(&chain, 0, 0);
-        receiver_apply(&report, &chain.interval, &receiver, 9, 0, 0);
+        interval_receive(&report, &chain.interval, &receiver, 9, 0, 0);
         interval_process(&chain.map, chain.plan, &chain.interval, NULL);
         double column = 0, others = 0;
         for (int y = 0; y < rows; y++)

@@ -2,8 +2,8 @@
  * edges, mirrors of a path. */
 #include "sensor/bench/render/rows.h"
 
-#include "render/radar/field.h"
-#include "render/radar/radar_model.h"
+#include "render/scattering/field/total_field.h"
+#include "render/scattering/field/radar_model.h"
 #include "sensor/bench/render/precision_radar.h"
 #include "sensor/bench/turn.h"
 
@@ -87,7 +87,7 @@ static Status knob_tubes(Bench *bench, const RadarModel *model, Pool *pool)
     bench_progress(bench, "ray tubes");
     for (int k = 0; k < count; k++) set[k] = tank_set(model, pool, more[k], quick);
     return knob(bench, set, &fine, name, count, 1,
-                &(BenchTunable){"ray tubes a wavelength", "render/radar/tubes.h", quick ? quick_look : tank_look, "%",
+                &(BenchTunable){"ray tubes a wavelength", "render/scattering/field/tubes.h", quick ? quick_look : tank_look, "%",
                                 "field, rms of the looks; 6 tubes or more", 18});
 }
 
@@ -111,7 +111,7 @@ static Status knob_splits(Bench *bench, const RadarModel *model, Pool *pool)
         set[k].tubes.seed = 0;
     }
     return knob(bench, set, &fine, name, count, 2,
-                &(BenchTunable){"divisions of ray tubes at edges", "render/radar/tubes.h",
+                &(BenchTunable){"divisions of ray tubes at edges", "render/scattering/field/tubes.h",
                                 quick ? "a look at a jeep at 10 GHz" : "a look at a tank at 10 GHz", "%",
                                 "field, rms of the looks; another grid, one division more", 12});
 }
@@ -129,7 +129,7 @@ static Status knob_mirrors(Bench *bench, const RadarModel *model, Pool *pool)
         set[k].tubes.bounces = mirrors[k];
     }
     return knob(bench, set, &fine, name, tank_settings, 3,
-                &(BenchTunable){"mirrors of a ray tube", "render/radar/tubes.h", quick ? quick_look : tank_look, "%",
+                &(BenchTunable){"mirrors of a ray tube", "render/scattering/field/tubes.h", quick ? quick_look : tank_look, "%",
                                 "field, rms of the looks; 40 mirrors", 13});
 }
 

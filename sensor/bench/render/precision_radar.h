@@ -2,7 +2,7 @@
 #ifndef SENSOR_BENCH_RENDER_PRECISION_RADAR_H
 #define SENSOR_BENCH_RENDER_PRECISION_RADAR_H
 
-#include "render/radar/target.h"
+#include "render/scattering/field/radar_target.h"
 #include "sensor/bench/bench.h"
 
 /* Root of the power of the difference over the power, over so many frequencies or looks, co-polarised, %. */

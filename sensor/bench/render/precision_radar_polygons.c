@@ -2,8 +2,8 @@
  * of a look against its error. Plates and boxes against their formulas; others against tubes divided to the finest. */
 #include "sensor/bench/render/precision_radar.h"
 
-#include "render/radar/radar_model.h"
-#include "render/radar/total_field.h"
+#include "render/scattering/field/radar_model.h"
+#include "render/scattering/field/total_field.h"
 
 #include <limits.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * from scattering centres: what each saves, and how wrong it is. */
 #include "sensor/bench/render/precision_radar.h"
 
-#include "render/radar/centres.h"
+#include "render/scattering/signatures/centres.h"
 
 static const double full_hz = 10e9, quick_hz = 4e9, band_hz = 500e6, bin_deg = 0.3;
 enum { frequencies = 32 };

@@ -2,8 +2,8 @@
  * triangles without area, wavelengths from decimetres to tenths of a millimetre, antennas in the target. */
 #include "sensor/bench/render/stability.h"
 
-#include "render/radar/shapes.h"
-#include "render/radar/total_field.h"
+#include "render/scattering/field/radar_model.h"
+#include "render/scattering/field/total_field.h"
 
 typedef struct Stand {
     Model        model;
@@ -14,7 +14,7 @@ typedef struct Stand {
 static bool stand_open(Stand *s, const char *shape, double sag_m)
 {
     *s = (Stand){0};
-    return shape_build(&s->model, shape, sag_m) == STATUS_OK &&
+    return radar_shape_build(&s->model, shape, sag_m) == STATUS_OK &&
            radar_target_create(&s->target, &s->model, NULL, "avx2") == STATUS_OK;
 }
 

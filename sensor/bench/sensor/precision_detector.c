@@ -4,7 +4,7 @@
 #include "render/materials/planck.h"
 #include "sensor/detector/blur.h"
 #include "sensor/detector/photons.h"
-#include "sensor/detector/quantise.h"
+#include "sensor/detector/display_values.h"
 
 #include <stdlib.h>
 
@@ -255,7 +255,7 @@ static void convert(void *user)
         config.bits = c->bits;
         detector_display(c->out, c->in, blur_px, &config, (DetectorLevel){c->low, c->high});
     } else {
-        quantise_counts(c->out, c->in, blur_px, (c->high - c->low) / ((1 << c->bits) - 1),
+        detector_counts(c->out, c->in, blur_px, (c->high - c->low) / ((1 << c->bits) - 1),
                         (uint16_t)((1 << c->bits) - 1));
     }
     bench_keep(c->out);
@@ -369,7 +369,7 @@ static void knob_curve(Bench *bench)
         point[k] = (BenchSetting){.setting = name[k], .error = worst, .is_default = k == 2,
                                 .bytes = k == 2 ? 4098 * 4 : intervals[k] > 0 ? intervals[k] * 4.0 : 0};
     }
-    bench_tunable(bench, &(BenchTunable){"display's curve", "sensor/detector/quantise.c", "a pixel", "8-bit steps",
+    bench_tunable(bench, &(BenchTunable){"display's curve", "sensor/detector/display_values.c", "a pixel", "8-bit steps",
                                    "largest, IEC 61966-2-1", 0.03}, work, point, settings);
 }
 

@@ -242,7 +242,7 @@ static Status knob_bounces(Precision *p)
         render_mirrors(&set[k]);
         point[k] = (BenchSetting){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = more[k] == 0};
     }
-    bench_tunable(p->bench, &(BenchTunable){"mirrors of a radar path", "render/radar/radar_image.h",
+    bench_tunable(p->bench, &(BenchTunable){"mirrors of a radar path", "render/scattering/radar_image.h",
                                       "a radar picture of 96 x 64, 2 x 2 rays",
                                       "%", "power of pictures, rms; 12 mirrors", 0.1}, work, point, settings);
     return p->status;

@@ -1,5 +1,5 @@
 /* sensor/bench/sensor/precision_radar_seeker.c: what a seeker's radar saves, and loses, where a target has fewer echoes
- * than scattering centres (sensor/radar/radar_merge.c), and where echoes far off the axis are left out. */
+ * than scattering centres (sensor/radar/shot_targets.c), and where echoes far off the axis are left out. */
 #include "sensor/bench/sensor/precision.h"
 
 #include "sensor/bench/sensor/radar_update.h"
@@ -60,9 +60,9 @@ static Status compare(Bench *bench, TrialScene *scene, SeekerRadar *radar, Arena
             .setting = name[k], .error = k ? apart(way[1].frame, way[0].frame) : 0, .is_default = k == 1};
     }
     const BenchTunable tunable[2] = {
-        {"echoes of targets hardly resolved", "sensor/radar/radar_merge.c",
+        {"echoes of targets hardly resolved", "sensor/radar/shot_targets.c",
          "search_ku, twelve tanks 4 km away, no ground", "%", "map of four channels, of each centre's own", 2},
-        {"ground off a radar's axis", "sensor/radar/radar_ground.c", "seeker_35, open ground 2.5 km away", "%",
+        {"ground off a radar's axis", "sensor/radar/shot_ground.c", "seeker_35, open ground 2.5 km away", "%",
          "map of four channels, of ground 2.5 times as far off the axis", 5}};
     bench_tunable(bench, &tunable[ground], work, point, settings);
     return STATUS_OK;

@@ -5,7 +5,7 @@
 #include "sensor/bench/render/stability.h"
 #include "render/materials/planck.h"
 #include "sensor/detector/chain.h"
-#include "sensor/detector/quantise.h"
+#include "sensor/detector/display_values.h"
 
 #include <stdlib.h>
 #include <xmmintrin.h>

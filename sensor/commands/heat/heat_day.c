@@ -6,7 +6,7 @@
 #include "render/materials/planck.h"
 #include "render/scene/upright.h"
 #include "sensor/detector/level.h"
-#include "sensor/detector/quantise.h"
+#include "sensor/detector/display_values.h"
 #include "sensor/publish/images/image_file.h"
 #include "sensor/publish/images/picture_text.h"
 

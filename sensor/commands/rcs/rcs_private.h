@@ -3,9 +3,9 @@
 #ifndef SENSOR_COMMANDS_RCS_RCS_PRIVATE_H
 #define SENSOR_COMMANDS_RCS_RCS_PRIVATE_H
 
-#include "render/radar/given_signature.h"
-#include "render/radar/radar_model.h"
-#include "render/radar/total_field.h"
+#include "render/scattering/signatures/given_signature.h"
+#include "render/scattering/field/radar_model.h"
+#include "render/scattering/field/total_field.h"
 
 enum { rcs_most_frequencies = 64, rcs_most_looks = 36001, rcs_most_joints = 32 };
 

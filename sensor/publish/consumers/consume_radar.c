@@ -154,7 +154,7 @@ static Status write_exr(const char *stem, const char *ending, const Frame *f, co
                         double first_rad, double step_rad)
 {
     const RadarFrame *r = f->radar;
-    const RadarScan  *s = r->scan;
+    const RadarSector  *s = r->scan;
     char              path[frame_path_size], date[32];
     const bool        polar = step_rad > 0;
     /* those of range and azimuth last: pixels have neither */
@@ -175,7 +175,7 @@ static Status write_exr(const char *stem, const char *ending, const Frame *f, co
 
 static Status write_real_beam(const char *stem, const Frame *f, bool png)
 {
-    const RadarScan *s = f->radar->scan;
+    const RadarSector *s = f->radar->scan;
     const int        width = s->plan.positions, height = s->columns;
     float           *power = as_image(s->power_w, width, height);
     if (!power) return STATUS_NO_MEMORY;
@@ -190,7 +190,7 @@ static Status write_real_beam(const char *stem, const Frame *f, bool png)
 
 static Status write_sharpened(const char *stem, const Frame *f, bool png)
 {
-    const RadarScan *s = f->radar->scan;
+    const RadarSector *s = f->radar->scan;
     const int        width = s->azimuths, height = s->columns;
     const size_t     cells = (size_t)width * (size_t)height;
     float           *power = as_image(s->sharp_w, width, height), *resolution = malloc(2 * cells * sizeof *resolution);
@@ -218,7 +218,7 @@ static Status write_sharpened(const char *stem, const Frame *f, bool png)
 
 static Status write_pixels(const char *stem, const Frame *f, bool png)
 {
-    const RadarScan *s = f->radar->scan;
+    const RadarSector *s = f->radar->scan;
     if (s->width == 0) return STATUS_OK;
     const Plane plane[] = {{"scan", PLANE_F32, s->width, s->height, s->view_w},
                            {"dbs", PLANE_F32, s->width, s->height, s->view_sharp_w}};
@@ -234,7 +234,7 @@ static Status write_pixels(const char *stem, const Frame *f, bool png)
 static void put_azimuths(FILE *file, const void *user)
 {
     const RadarFrame *r = user;
-    const RadarScan  *s = r->scan;
+    const RadarSector  *s = r->scan;
     fprintf(file, "# %s; time_s from the frame's; resolution_m across, at half power, at %.1f m; sharpened 0: the real "
                   "beam's\naz_deg,time_s,resolution_m,sharpened\n", r->preset->name, r->reference_m);
     for (int a = 0; a < s->azimuths; a++) {

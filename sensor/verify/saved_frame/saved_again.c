@@ -111,7 +111,7 @@ int saved_differences(const SavedFrame *file, const SavedMade *made, bool said)
 /* SHA-256 of the map; with a scan, of the map and both its images over range and azimuth. */
 static Status hash_of(char out[sha256_text_size], const RadarFrame *r)
 {
-    const RadarScan *s = r->scan;
+    const RadarSector *s = r->scan;
     if (!s) return radar_map_sha256(out, r);
     const int   rows = interval_channels * r->map.rows;
     const Plane plane[] = {{"range_doppler", PLANE_F64, 2 * r->map.columns, rows, r->map.cell},

@@ -1,0 +1,155 @@
+/* sensor/detector/display_values.c: quantisation to raw counts and to display values; display colours. */
+#include "sensor/detector/display_values.h"
+
+void detector_counts(uint16_t *out, const float *in, size_t count, double step, uint16_t full)
+{
+    const double per = 1 / step;
+    for (size_t i = 0; i < count; i++) {
+        const double x = in[i] * per + 0.5; /* a comparison with NaN is false: it falls to 0 */
+        out[i] = x >= 1 ? x < full ? (uint16_t)x : full : 0;
+    }
+}
+
+/* ---- display ------------------------------------------------------------------------------ */
+
+/* Linear light 0 .. 1 -> sRGB code value 0 .. 1, IEC 61966-2-1. */
+static double srgb_encode(double linear)
+{
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+/* The curve as a table of 4096 intervals, linear between: within 1.2e-4 of the curve, a thirtieth of an 8-bit
+ * step; monotone, since the curve is. */
+enum { curve_intervals = 4096 };
+
+/* Gain, level and curve of one display, folded: code = curve(in * scale + shift) * full. */
+typedef struct Display {
+    double scale, shift, full;
+    bool   gamma;
+    float  curve[curve_intervals + 2];
+} Display;
+
+static void display_prepare(Display *d, const DetectorConfig *config, DetectorLevel level)
+{
+    const double span = level.high - level.low, middle = 0.5 * (level.low + level.high);
+    d->scale = config->gain / span;
+    d->shift = 0.5 - middle * d->scale + config->offset;
+    d->full = config->bits == 16 ? 65535 : 255;
+    d->gamma = config->display_gamma;
+    for (int i = 0; d->gamma && i <= curve_intervals; i++)
+        d->curve[i] = (float)srgb_encode((double)i / curve_intervals);
+    d->curve[curve_intervals + 1] = 1; /* so that the end needs no branch */
+}
+
+/* x: of full scale. */
+static inline double display_code(const Display *d, double x)
+{
+    /* written so that NaN falls to 0 at the first comparison */
+    x = x > 0 ? x : 0;
+    x = x < 1 ? x : 1;
+    if (d->gamma) {
+        const double at = x * curve_intervals;
+        const int    i = (int)at;
+        x = d->curve[i] + (at - i) * ((double)d->curve[i + 1] - d->curve[i]);
+    }
+    return x * d->full + 0.5;
+}
+
+static inline void display_write(void *out, size_t at, const Display *d, double x)
+{
+    if (d->full > 255)
+        ((uint16_t *)out)[at] = (uint16_t)display_code(d, x);
+    else
+        ((uint8_t *)out)[at] = (uint8_t)display_code(d, x);
+}
+
+void detector_display(void *out, const float *in, size_t count, const DetectorConfig *config, DetectorLevel level)
+{
+    Display d;
+    display_prepare(&d, config, level);
+    for (size_t i = 0; i < count; i++) display_write(out, i, &d, in[i] * d.scale + d.shift);
+}
+
+void detector_display_rgb(void *out, const float *const in[3], size_t count, const DetectorConfig *config,
+                          DetectorLevel level)
+{
+    Display d;
+    display_prepare(&d, config, level);
+    for (size_t i = 0; i < count; i++) {
+        const double mean = ((double)in[0][i] + in[1][i] + in[2][i]) / 3, lit = mean * d.scale + d.shift;
+        const double shown = lit > 0 ? lit : 0;
+        const bool   has_hue = mean > 0 && mean < INFINITY;
+        /* beyond full scale: the brightest channel to full scale, the others with it */
+        const float  brighter = in[0][i] > in[1][i] ? in[0][i] : in[1][i];
+        const double most = (brighter > in[2][i] ? brighter : in[2][i]) / mean;
+        const double kept = has_hue && shown * most > 1 ? 1 / most : shown;
+        for (size_t c = 0; c < 3; c++)
+            display_write(out, 3 * i + c, &d, has_hue ? kept * (in[c][i] / mean) : in[c][i] * d.scale + d.shift);
+    }
+}
+
+void detector_display_db(void *out, const float *power, size_t count, double dynamic_range_db, int bits)
+{
+    float brightest = 0;
+    for (size_t i = 0; i < count; i++)
+        if (isfinite(power[i]) && power[i] > brightest) brightest = power[i];
+
+    /* brightest 0: all black, and the division below is not used */
+    const double full = bits == 16 ? 65535 : 255;
+    const double per_max = brightest > 0 ? 1.0 / brightest : 0;
+    const double least = brightest * pow(10, -0.1 * dynamic_range_db);
+    for (size_t i = 0; i < count; i++) {
+        double x = 0;
+        if (isinf(power[i]) && power[i] > 0)
+            x = 1;
+        else if (power[i] > least && power[i] > 0) /* false for NaN; spares the logarithm of the dark ones */
+            x = clamp(1 + 10 * log10(power[i] * per_max) / dynamic_range_db, 0, 1);
+        if (bits == 16)
+            ((uint16_t *)out)[i] = (uint16_t)(x * full + 0.5);
+        else
+            ((uint8_t *)out)[i] = (uint8_t)(x * full + 0.5);
+    }
+}
+
+/* ---- colours: white balance and the matrix from three rectangular bands to linear sRGB ---------- */
+
+static const double matrix[3][3] = {
+    {1.0174, 0.1380, -0.1554}, {-0.1259, 1.1569, -0.0310}, {-0.0079, -0.1236, 1.1315}};
+
+static const double luminance[3] = {0.2126, 0.7152, 0.0722}; /* of the primaries, ITU-R BT.709 */
+
+void display_colour(DisplayColour *out, const double white[3], double zero, double full)
+{
+    *out = (DisplayColour){.zero = zero, .gain = {1, 1, 1}, .white = 0, .most = full};
+    const double mean = (white[0] + white[1] + white[2]) / 3;
+    if (!(white[0] > 0 && white[1] > 0 && white[2] > 0 && mean < INFINITY)) return;
+    out->white = mean;
+    out->most  = INFINITY;
+    for (int c = 0; c < 3; c++) {
+        out->gain[c] = mean / white[c];
+        out->most    = fmin(out->most, out->gain[c] * full);
+    }
+}
+
+/* No call to a library in the loop over pixels, as fmin is one. */
+static inline double least_of(double a, double b) { return a < b ? a : b; }
+
+void display_colour_apply(float *const out[3], const float *const in[3], size_t count, const DisplayColour *colour)
+{
+    for (size_t i = 0; i < count; i++) {
+        const double seen[3] = {in[0][i], in[1][i], in[2][i]};
+        double       balanced[3], rgb[3];
+        if (!isfinite(seen[0] + seen[1] + seen[2])) {
+            for (int c = 0; c < 3; c++) out[c][i] = (float)seen[c];
+            continue;
+        }
+        for (int c = 0; c < 3; c++) balanced[c] = least_of((seen[c] - colour->zero) * colour->gain[c], colour->most);
+        for (int c = 0; c < 3; c++)
+            rgb[c] = matrix[c][0] * balanced[0] + matrix[c][1] * balanced[1] + matrix[c][2] * balanced[2];
+        const double grey  = luminance[0] * rgb[0] + luminance[1] * rgb[1] + luminance[2] * rgb[2];
+        const double least = least_of(least_of(rgb[0], rgb[1]), rgb[2]);
+        const double share = grey > 0 && least < 0 ? grey / (grey - least) : 1;
+        for (int c = 0; c < 3; c++)
+            out[c][i] = (float)(colour->zero + (share < 1 ? grey + share * (rgb[c] - grey) : rgb[c]));
+    }
+}

@@ -1,0 +1,56 @@
+/* sensor/detector/display_values.h: electrons to raw counts, values to display values, and bands to display colours.
+ *
+ * Pure functions on planes, no allocation. NaN and -inf give 0, +inf full scale. */
+#ifndef SENSOR_DETECTOR_DISPLAY_VALUES_H
+#define SENSOR_DETECTOR_DISPLAY_VALUES_H
+
+#include "sensor/detector/level.h"
+
+/* The converter: value / step, rounded to nearest, 0 .. full. */
+void detector_counts(uint16_t *out, const float *in, size_t count, double step, uint16_t full);
+
+/* Quantisation to config->bits: monotone, saturating, rounding to nearest. out: uint8_t or uint16_t [count]. */
+void detector_display(void *out, const float *in, size_t count, const DetectorConfig *config, DetectorLevel level);
+/* Three planes to RGB interleaved. The level is that of their mean; the colour ratios of a pixel are preserved (a
+ * black level subtracted per channel would colour haze), also beyond full scale. out: uint8_t or uint16_t [3 *
+ * count]. */
+void detector_display_rgb(void *out, const float *const in[3], size_t count, const DetectorConfig *config,
+                          DetectorLevel level);
+
+/* Radar: decibels below the brightest finite pixel. 0 dB is full scale, -dynamic_range_db and below is 0, as
+ * is any pixel <= 0 or NaN. Power in, linear; bits 8 or 16. */
+static const double detector_radar_range_db = 60;
+void detector_display_db(void *out, const float *power, size_t count, double dynamic_range_db, int bits);
+
+/* ---- colours ------------------------------------------------------------------------------------ */
+
+/* Three visible bands to display colours: white balance and a matrix.
+ *
+ * The bands are rectangles, 0.6-0.7, 0.5-0.6 and 0.4-0.5 um; unlike the responses of an eye or a camera. White balance
+ * divides each band by the radiance of white horizontal ground under the present sun and sky, so that it is white at
+ * any elevation of the sun; a matrix then converts to linear sRGB (IEC 61966-2-1, white point D65). For display images
+ * only: radiance in files and raw counts are not changed.
+ *
+ * The matrix minimises the sum of the squared CIEDE2000 differences of 24 colours, with rows that add up to 1 (white
+ * stays white). Reflectances: ColorChecker, N. Ohta 1997, from the colour-science package 0.4.7, 400-700 nm by
+ * 10 nm; observer CIE 1931, 2 degrees; illuminant D65, integrated over the bands by the trapezoidal rule. Residual:
+ * CIEDE2000 3.0 on average over the 24, 7.2 at most (white balance alone: 4.4, 9.8); over grass, loam, paint and
+ * similar spectra not used in the fit, 1.5 and 3.6 (2.3, 4.1): tests/sensor/test_colour.c. Three rectangular bands
+ * resolve no more: a peak within a band is lost, and a green paint of hue 145 degrees is displayed at 134. */
+typedef struct DisplayColour {
+    double zero;         /* value of zero light: 0 for radiance, the dark level for counts */
+    double gain[3];      /* R G B; preserves the mean of the three whites */
+    double white;        /* that mean, above zero: value of a white surface in all three channels */
+    double most;         /* after gain: value at which the first channel saturates; INFINITY: none */
+} DisplayColour;
+
+/* white: value of each channel R G B above zero, in its unit; unless all are positive, gains are 1.
+ * full: value at which a channel saturates, above zero; INFINITY: none. */
+void display_colour(DisplayColour *out, const double white[3], double zero, double full);
+
+/* Linear sRGB in the unit of the planes, at the same zero. Out-of-gamut colours, with a negative component, are
+ * desaturated towards the grey of their luminance, preserving hue. A channel beyond `most` is set to it. A pixel
+ * with a value that is not finite is unchanged. May be in place. */
+void display_colour_apply(float *const out[3], const float *const in[3], size_t count, const DisplayColour *colour);
+
+#endif

@@ -1,0 +1,460 @@
+/* sensor/radar/shot_targets.c: the echoes of entities: their scattering centres, each with the motion of its part,
+ * as fewer echoes where the radar tells few of them apart. */
+#include "sensor/radar/seeker_radar_private.h"
+#include "render/scattering/paths/radar_path.h"
+
+/* ---- fewer echoes of a target than it has scattering centres ------------------------------------------ */
+
+/* A target that is far, small or met by little bandwidth needs fewer.
+ *
+ * Its points are shared out to the nodes of a grid over what tells them apart: delay, range rate, and the two
+ * angles of the antenna's pattern; linearly, each with the phase of its own path at the middle of band and
+ * interval. Nodes are so close that a phase changes by 0.4 rad from one to the next at the ends of band and
+ * interval, and u of the pattern (antenna.h) by 0.25: an error of up to 2 % of a point's amplitude (an eighth of
+ * the square) along each axis, 0.6 % rms over the band. An axis along which they part by less than 0.1 rad in all
+ * has one node (up to 5 %): a target that nothing resolves is one echo. Where nodes are not far fewer than points,
+ * and on parts that spin or roll, points stay. bench precision has the time it saves, and its error. */
+enum { axes = 4, worth = 2 };
+static const double step_rad[axes] = {0.4, 0.4, 0.25, 0.25}, together_rad = 0.1;
+
+typedef struct Axis {
+    double low, high, scale;    /* rad of phase, or u, over its unit */
+    int    nodes;
+} Axis;
+
+/* Lays the grid over the points' spans. False: it would need too many nodes. */
+static bool grid_over(Axis axis[axes], size_t *nodes, int count)
+{
+    *nodes = 1;
+    for (int a = 0; a < axes; a++) {
+        const double span = axis[a].scale * (axis[a].high - axis[a].low);
+        axis[a].nodes = span <= together_rad ? 1 : span < 1e6 ? 1 + (int)ceil(span / step_rad[a]) : 1000000;
+        *nodes *= (size_t)axis[a].nodes;
+        if (*nodes > (size_t)count / worth) return false;
+    }
+    return true;
+}
+
+static double node_at(const Axis *axis, int i)
+{
+    return axis->nodes == 1 ? 0.5 * (axis->low + axis->high)
+                            : axis->low + (axis->high - axis->low) * i / (axis->nodes - 1);
+}
+
+/* A node with nothing on it yet: like a point of the target, at the node's place. */
+static RadarPoint node_of(const Axis axis[axes], size_t number, const RadarPoint *like, const RadarShot *shot)
+{
+    int        at[axes];
+    RadarPoint out = *like;
+    double     along[3];
+    for (int a = 0; a < axes; a++) at[a] = (int)(number % (size_t)axis[a].nodes), number /= (size_t)axis[a].nodes;
+    out.path_m = node_at(&axis[0], at[0]);
+    out.path_per_pulse_m = node_at(&axis[1], at[1]);
+    const double right = node_at(&axis[2], at[2]), down = node_at(&axis[3], at[3]);
+    v3_scale(along, sqrt(fmax(1 - right * right - down * down, 0)), shot->ahead);
+    v3_add_scaled(along, along, right, shot->right);
+    v3_add_scaled(along, along, down, shot->down);
+    v3_add_scaled(out.p_enu, shot->p_enu, shot->reference_m + 0.5 * out.path_m, along);
+    out.same = out.other = 0;
+    return out;
+}
+
+static double lost_on_the_way(const RadarShot *shot, const RadarPoint *p)
+{
+    Sight to;
+    if (!shot->radar->foliage && shot->chaff_count == 0) return 0;
+    shot_sight(&to, shot, p->p_enu, 0);
+    return shot_volume_np(shot, &to);
+}
+
+/* Adds a point to the nodes about it. */
+static void share_out(RadarPoint *node, const double *lost_np, const Axis axis[axes], const RadarShot *shot,
+                      const RadarPoint *p, const double x[axes])
+{
+    const double   k = 2 * pi_rad * shot->preset->wave.centre_hz / light_mps, own_np = lost_on_the_way(shot, p);
+    double         weight[axes][2];
+    double complex turn[2] = {0};
+    size_t         first = 0, stride[axes], next = 1;
+    for (int a = 0; a < axes; a++) {
+        const int    last = axis[a].nodes - 1;
+        const double at = last > 0 ? clamp((x[a] - axis[a].low) / (axis[a].high - axis[a].low), 0, 1) * last : 0;
+        const int    low = at < last ? (int)at : last - (last > 0);
+        weight[a][1] = last > 0 ? at - low : 0;
+        weight[a][0] = 1 - weight[a][1];
+        stride[a] = next;
+        first += (size_t)low * next;
+        next *= (size_t)axis[a].nodes;
+        for (int side = 0; side < 2 && a == 0; side++) {
+            const double phase = -k * (p->path_m - node_at(&axis[a], low + side));
+            turn[side] = CMPLX(cos(phase), sin(phase));
+        }
+    }
+    for (int corner = 0; corner < 1 << axes; corner++) {
+        double   size = 1;
+        size_t   i = first;
+        for (int a = 0; a < axes; a++) {
+            size *= weight[a][corner >> a & 1];
+            i += (corner >> a & 1 && axis[a].nodes > 1) ? stride[a] : 0;
+        }
+        if (size == 0) continue;
+        if (lost_np[i] != own_np) size *= exp(lost_np[i] - own_np);
+        const double re = size * creal(turn[corner & 1]), im = size * cimag(turn[corner & 1]);
+        node[i].same += CMPLX(creal(p->same) * re - cimag(p->same) * im, creal(p->same) * im + cimag(p->same) * re);
+        node[i].other +=
+            CMPLX(creal(p->other) * re - cimag(p->other) * im, creal(p->other) * im + cimag(p->other) * re);
+    }
+}
+
+/* Makes fewer echoes of a target's, where the radar tells few of them apart; returns how many are left. x: their paths,
+ * growth of the paths, cosines to the right and down; spins: those whose part does. */
+static int merge_points(RadarPoint *point, const double (*x)[axes], const bool *spins, int count, const RadarShot *shot)
+{
+    const Waveform *wave = &shot->preset->wave;
+    const double    k = 2 * pi_rad * wave->centre_hz / light_mps;
+    const double    reach = antenna_u_per_sine(&shot->preset->antenna);
+    const double    scale[axes] = {pi_rad * wave->bandwidth_hz / light_mps, 0.5 * k * wave->pulses, reach, reach};
+    Axis            axis[axes];
+    size_t          nodes;
+    int             still = 0;
+    for (int a = 0; a < axes; a++) axis[a] = (Axis){INFINITY, -INFINITY, scale[a], 1};
+    for (int i = 0; i < count; i++) {
+        if (spins[i]) continue;
+        still++;
+        for (int a = 0; a < axes; a++) {
+            if (x[i][a] < axis[a].low) axis[a].low = x[i][a];
+            if (x[i][a] > axis[a].high) axis[a].high = x[i][a];
+        }
+    }
+    if (still < 2 || !grid_over(axis, &nodes, still)) return count;
+    RadarPoint *node = arena_alloc(shot->arena, nodes, sizeof *node);
+    double     *lost_np = arena_alloc(shot->arena, nodes, sizeof *lost_np);
+    if (!node || !lost_np) return count; /* no less right */
+    for (size_t i = 0; i < nodes; i++) {
+        node[i] = node_of(axis, i, &point[0], shot);
+        lost_np[i] = lost_on_the_way(shot, &node[i]);
+    }
+    for (int i = 0; i < count; i++)
+        if (!spins[i]) share_out(node, lost_np, axis, shot, &point[i], x[i]);
+    int kept = 0;
+    /* first those that spin: nodes are fewer than the points that leave room for them */
+    for (int i = 0; i < count; i++)
+        if (spins[i]) point[kept++] = point[i];
+    for (size_t i = 0; i < nodes; i++)
+        if (node[i].same != 0 || node[i].other != 0) point[kept++] = node[i];
+    return kept;
+}
+
+/* ---- polarisation and motion ---------------------------------------------------------------------- */
+
+static void basis_of(double h_enu[3], double v_enu[3], const Target *t)
+{
+    double h[3], v[3];
+    scatter_basis(h, v, t->antenna.u);
+    m3_mul_v3(h_enu, t->r_enu_from_body, h);
+    m3_mul_v3(v_enu, t->r_enu_from_body, v);
+}
+
+/* Rate at which a node turns by itself, rad/s: it rolls, or spins. */
+static double spin_of(const Target *t, int node, double forward_mps)
+{
+    const ModelNode *of = &t->of->node[node];
+    return of->roll_radius_m > 0          ? forward_mps / of->roll_radius_m
+           : t->entity->drives.engine > 0 ? of->spin_rps_moving
+                                          : 0;
+}
+
+/* Whether a node, or one that it is on, turns by itself. */
+static bool spins(const Target *t, int node, double forward_mps)
+{
+    for (int n = node; n >= 0; n = t->of->node[n].parent)
+        if (spin_of(t, n, forward_mps) != 0) return true;
+    return false;
+}
+
+void shot_target_velocity(double v_enu[3], const Target *t, int node, const double p_body[3])
+{
+    const SnapshotEntity *e = t->entity;
+    double                v_body[3], turned[3];
+    v3_cross(v_body, e->w_body_rps, p_body);
+    m3_tmul_v3(turned, t->r_enu_from_body, t->v_enu_mps); /* body */
+    for (int n = node; n >= 0; n = t->of->node[n].parent) {
+        const double rate = spin_of(t, n, turned[0]);
+        if (rate == 0) continue;
+        double axis[3], lever[3], more[3];
+        m3_mul_v3(axis, t->pose[n].r_body_from_node, t->of->node[n].axis);
+        v3_scale(axis, rate, axis);
+        v3_sub(lever, p_body, t->pose[n].p_body);
+        v3_cross(more, axis, lever);
+        v3_add(v_body, v_body, more);
+    }
+    m3_mul_v3(turned, t->r_enu_from_body, v_body);
+    v3_add(v_enu, t->v_enu_mps, turned);
+}
+
+/* ---- one entity ------------------------------------------------------------------------------------- */
+
+/* A centre as the antenna sees it, turned to its axes. */
+typedef struct CentreView {
+    double complex same, other;  /* received as transmitted, and in the other polarisation */
+    double complex wave;         /* exp(-j k path) */
+    double         hh_m2, vv_m2;
+} CentreView;
+
+/* Keeps a scatterer if it is among the strongest, which are in order. */
+static void note_strongest(RadarTruth *truth, const RadarScatterer *of)
+{
+    int at = truth->strongest_count;
+    while (at > 0 && of->hh_m2 + of->vv_m2 > truth->strongest[at - 1].hh_m2 + truth->strongest[at - 1].vv_m2) at--;
+    if (at == radar_strongest || !(of->hh_m2 + of->vv_m2 > 0)) return;
+    if (truth->strongest_count < radar_strongest) truth->strongest_count++;
+    memmove(&truth->strongest[at + 1], &truth->strongest[at], (size_t)(truth->strongest_count - 1 - at) * sizeof *of);
+    truth->strongest[at] = *of;
+}
+
+static void add_turned(ScatterMatrix *sum, const ScatterMatrix *s, double complex turn)
+{
+    sum->hh += s->hh * turn, sum->hv += s->hv * turn, sum->vh += s->vh * turn, sum->vv += s->vv * turn;
+}
+
+/* power: of the centres, HH and VV together, as cross section. */
+static void add_error(RadarTruth *truth, const Centres *centres, const double complex field[3], double power_m2)
+{
+    SignatureError error;
+    signature_error(&error, centres);
+    for (int p = 0; p < 3; p++)
+        truth->rcs_error_db[p] =
+            truth->given ? NAN : signature_error_db(field[p], p == 2 ? error.cross_m2 : error.same_m2);
+    truth->map_error = truth->given ? NAN : 8 * pi_rad * error.same_m2 / power_m2 + signature_cells_error();
+}
+
+/* The centres of one entity, in blocks. */
+typedef struct CentreJob {
+    const RadarShot     *shot;
+    const Target        *target;
+    const Sight         *sight;        /* of the target's origin */
+    const ScatterCentre *centre;       /* [count] */
+    CentreView          *view;         /* [count] */
+    const int           *shown;        /* [points]: the centres in sight */
+    RadarPoint          *point;        /* [points] */
+    bool                *spins;        /* [points] */
+    double             (*x)[axes];
+    double               h_enu[3], v_enu[3];
+    int                  count, points;
+} CentreJob;
+
+/* field: of the target, in the body's bases. */
+static void add_truth(RadarTruth *truth, ScatterMatrix *field, const CentreJob *job, const bool *seen)
+{
+    const RadarShot  *shot = job->shot;
+    const Centres    *centres = &shot->radar->centres;
+    const CentreView *view = job->view;
+    ScatterMatrix in_sight = {0};
+    double        power = 0, seen_power = 0;
+    *field = (ScatterMatrix){0};
+    for (int i = 0; i < centres->count; i++) {
+        const ScatterCentre *c = &centres->centre[i];
+        add_turned(field, &c->s, view[i].wave);
+        if (seen[i]) add_turned(&in_sight, &c->s, view[i].wave);
+        const RadarScatterer one = {view[i].hh_m2, view[i].vv_m2, {c->p[0], c->p[1], c->p[2]},
+                                    c->bounce,     c->part,       seen[i]};
+        power += one.hh_m2 + one.vv_m2;
+        if (seen[i]) seen_power += one.hh_m2 + one.vv_m2;
+        note_strongest(truth, &one);
+    }
+    ScatterMatrix whole = *field;
+    scatter_turn(&whole, job->h_enu, job->v_enu, shot->right);
+    scatter_turn(&in_sight, job->h_enu, job->v_enu, shot->right);
+    const double complex of[3] = {whole.hh, whole.vv, whole.hv};
+    for (int p = 0; p < 3; p++) truth->rcs_m2[p] = 4 * pi_rad * scatter_power(of[p]);
+    truth->centres = centres->count;
+    add_error(truth, centres, of, power);
+    truth->visible = power > 0 ? seen_power / power : 0;
+
+    const RadarPreset *preset = shot->preset;
+    double complex     amplitude[interval_channels];
+    shot_amplitudes(amplitude, shot, job->sight, &in_sight);
+    truth->snr = scatter_power(amplitude[CHANNEL_SUM]) /
+                 (interval_receiver_noise_w(&preset->receiver, &preset->wave) *
+                  interval_noise_share(shot->radar->plan));
+    truth->range_rate_mps = shot_range_rate(shot, job->sight, job->target->v_enu_mps);
+    truth->appears_m = shot_appears_m(shot, job->sight, truth->range_rate_mps);
+}
+
+/* *found false: its signature is still to be made. */
+static Status find_centres(bool *found, RadarShot *shot, Target *t, RadarTruth *truth)
+{
+    SeekerRadar          *r = shot->radar;
+    const double          centre_hz = shot->preset->wave.centre_hz;
+    const GivenSignature *given = given_list_find(r->given, t->entity->id, t->of->name);
+    const SignatureLook   direct = signature_look(&t->antenna);
+    const Signature      *signature;
+    *found = true;
+    truth->given = given && given_signature_knows(given, &t->antenna, centre_hz);
+    if (truth->given) return given_signature_centres(&r->centres, given, &t->antenna, centre_hz);
+    const Status status =
+        signatures_find(&signature, r->signatures, t->model, t->joint, snapshot_damage(t->entity), &direct, shot->pool);
+    if (status != STATUS_OK) return status;
+    *found = signature != NULL;
+    t->pose = signatures_pose(r->signatures);
+    return signature ? centres_make(&r->centres, signature, &t->antenna, &t->antenna, shot->pool) : STATUS_OK;
+}
+
+enum { block_centres = 512 };
+
+static void view_block(void *user, int worker, int task)
+{
+    const CentreJob *job = user;
+    const RadarShot    *shot = job->shot;
+    const double     k = 2 * pi_rad / shot->preset->antenna.wavelength_m;
+    const int        end = (task + 1) * block_centres < job->count ? (task + 1) * block_centres : job->count;
+    (void)worker;
+    for (int i = task * block_centres; i < end; i++) {
+        const ScatterCentre *c = &job->centre[i];
+        ScatterMatrix        s = c->s;
+        scatter_turn(&s, job->h_enu, job->v_enu, shot->right);
+        job->view[i] = (CentreView){shot->preset->transmits_h ? s.hh : s.vv, shot->preset->transmits_h ? s.vh : s.hv,
+                                    CMPLX(cos(k * c->path_m), -sin(k * c->path_m)), 4 * pi_rad * scatter_power(s.hh),
+                                    4 * pi_rad * scatter_power(s.vv)};
+    }
+}
+
+static void point_block(void *user, int worker, int task)
+{
+    const CentreJob *job = user;
+    const RadarShot    *shot = job->shot;
+    const Target    *t = job->target;
+    const double     pulse_s = 1 / shot->preset->wave.repeat_hz, room_m = 2 * t->of->radius_m;
+    double           ahead_mps[3];
+    m3_tmul_v3(ahead_mps, t->r_enu_from_body, t->v_enu_mps);
+    const int        end = (task + 1) * block_centres < job->points ? (task + 1) * block_centres : job->points;
+    (void)worker;
+    for (int i = task * block_centres; i < end; i++) {
+        const ScatterCentre *c = &job->centre[job->shown[i]];
+        RadarPoint          *q = &job->point[i];
+        Sight                to;
+        m3_mul_v3(q->p_enu, t->r_enu_from_body, c->p);
+        v3_add(q->p_enu, q->p_enu, t->p_enu);
+        shot_sight(&to, shot, q->p_enu, 0);
+        const int node = c->part < 0 ? -1 : t->of->part[c->part].node;
+        shot_target_velocity(q->v_enu_mps, t, node, c->p);
+        job->spins[i] = spins(t, node, ahead_mps[0]);
+        q->same = job->view[job->shown[i]].same;
+        q->other = job->view[job->shown[i]].other;
+        q->share = 1;
+        q->path_m = 2 * (job->sight->range_m - shot->reference_m) + c->path_m;
+        q->path_per_pulse_m = 2 * (shot_range_rate(shot, &to, q->v_enu_mps) - shot->reference_rate_mps) * pulse_s;
+        q->widest = shot->widest + room_m / job->sight->range_m;
+        q->room_m = room_m;
+        q->own = shot->after_s != 0;
+        memcpy(job->x[i], (double[axes]){q->path_m, q->path_per_pulse_m, to.cos_right, to.cos_down},
+               sizeof job->x[i]);
+    }
+}
+
+static void in_blocks(CentreJob *job, int count, void (*block)(void *user, int worker, int task))
+{
+    const int blocks = (count + block_centres - 1) / block_centres;
+    if (job->shot->pool) pool_run(job->shot->pool, blocks, block, job);
+    else for (int b = 0; b < blocks; b++) block(job, 0, b);
+}
+
+static Status add_target(RadarShot *shot, Target *t, const Sight *sight, RadarTruth *truth)
+{
+    SeekerRadar  *r = shot->radar;
+    ScatterMatrix field;
+    bool          found;
+    radar_antenna(&t->antenna, shot->p_enu, t->p_enu, t->r_enu_from_body);
+    *truth = (RadarTruth){.entity = t->index, .range_m = sight->range_m, .cos_right = sight->cos_right,
+                          .cos_down = sight->cos_down};
+    Status status = find_centres(&found, shot, t, truth);
+    if (status != STATUS_OK) return status;
+    if (!found) shot->missing++;
+    if (shot->missing > 0)
+        return truth->given ? STATUS_OK : shot_bounce(shot, t, NULL, truth); /* the rest is asked for alone */
+    const size_t n = (size_t)r->centres.count + 1;
+    bool        *seen = arena_alloc(shot->arena, n, sizeof *seen);
+    int         *shown = arena_alloc(shot->arena, n, sizeof *shown);
+    CentreJob job = {.shot = shot,
+                     .target = t,
+                     .sight = sight,
+                     .centre = r->centres.centre,
+                     .count = r->centres.count,
+                     .view = arena_alloc(shot->arena, n, sizeof *job.view),
+                     .shown = shown,
+                     .point = radar_points_room(&r->points, (int)n),
+                     .spins = arena_alloc(shot->arena, n, sizeof *job.spins),
+                     .x = arena_alloc(shot->arena, n, sizeof *job.x)};
+    if (!seen || !shown || !job.view || !job.point || !job.spins || !job.x) return STATUS_NO_MEMORY;
+    status = shot_sees_centres(seen, shot, t->index, t->p_enu, t->r_enu_from_body, &r->centres);
+    if (status != STATUS_OK) return status;
+    basis_of(job.h_enu, job.v_enu, t);
+    in_blocks(&job, job.count, view_block);
+    add_truth(truth, &field, &job, seen);
+    for (int i = 0; i < job.count; i++)
+        if (seen[i]) shown[job.points++] = i;
+    in_blocks(&job, job.points, point_block);
+    r->points.count += shot->scene->apart ? job.points : merge_points(job.point, job.x, job.spins, job.points, shot);
+    return truth->given || !(truth->visible > 0) ? STATUS_OK : shot_bounce(shot, t, &field, truth);
+}
+
+/* False: it cannot be seen by this radar. */
+static Status take_target(bool *taken, RadarShot *shot, Target *t, Sight *sight)
+{
+    const SnapshotEntity *e = t->entity;
+    const LocalFrame     *frame = &shot->scene->world->frame;
+    Origin                origin;
+    *taken = false;
+    if (t->index == shot->scene->hidden) return STATUS_OK;
+    const Model *shown = catalog_model(shot->scene->world->catalog, e->model);
+    if (!catalog_has_shape(shot->scene->world->catalog, e->model)) return STATUS_OK;
+    enu_from_ecef(t->p_enu, frame, e->p_ecef);
+    m3_tmul_v3(t->v_enu_mps, frame->r_ecef_from_enu, e->v_ecef_mps);
+    v3_add_scaled(t->p_enu, t->p_enu, shot->after_s, t->v_enu_mps);
+    shot_sight(sight, shot, t->p_enu, shown->radius_m);
+    const double sine = shot_off_axis(shot, sight), room = shown->radius_m / fmax(sight->range_m, 1);
+    if (!sight->within || sine > shot->widest + room || sight->range_m < 2 * shown->radius_m) return STATUS_OK;
+    t->model = catalog_find(shot->radar->catalog, e->type, &origin, NULL);
+    t->of = catalog_model(shot->radar->catalog, t->model);
+    m3_tmul(t->r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
+    NodePose *pose = arena_alloc(shot->arena, (size_t)t->of->node_count + 1, sizeof *pose);
+    t->joint = arena_alloc(shot->arena, (size_t)t->of->node_count + 1, sizeof *t->joint);
+    if (!pose || !t->joint) return STATUS_NO_MEMORY;
+    snapshot_pose(pose, t->joint, shot->scene->snapshot, t->index, t->of);
+    if (shot->scene->joint)
+        memcpy(t->joint, shot->scene->joint + e->first_node, (size_t)t->of->node_count * sizeof *t->joint);
+    *taken = true;
+    return STATUS_OK;
+}
+
+static Status each_target(RadarShot *shot, RadarTruth **truth, int *count)
+{
+    const Snapshot *snapshot = shot->scene->snapshot;
+    Status          status = STATUS_OK;
+    *truth = arena_alloc(shot->arena, (size_t)snapshot->count + 1, sizeof **truth);
+    *count = 0;
+    if (!*truth) return STATUS_NO_MEMORY;
+    for (int i = 0; i < snapshot->count && status == STATUS_OK; i++) {
+        Target t = {.entity = &snapshot->entity[i], .index = i};
+        Sight  sight;
+        bool   taken;
+        status = take_target(&taken, shot, &t, &sight);
+        if (status == STATUS_OK && taken) status = add_target(shot, &t, &sight, &(*truth)[(*count)++]);
+    }
+    return status;
+}
+
+Status shot_targets(RadarShot *shot)
+{
+    RadarTruth  *truth;
+    const Status status = each_target(shot, &truth, &shot->frame->targets);
+    shot->frame->target = truth;
+    shot->frame->echoes = shot->radar->target_points = shot->radar->points.count;
+    return status;
+}
+
+Status shot_targets_anew(RadarShot *beam)
+{
+    RadarTruth *truth;
+    int         count;
+    return each_target(beam, &truth, &count);
+}
