@@ -131,7 +131,7 @@ static void add_noise(float *const memory[3], const FrameDisplay *d, const Displ
     band_radiance(in, of->picture, band);
     for (int c = 0; c < d->planes; c++)
         detector_noise(memory[c] + first, in[c] + first, first, count, d->detector.noise_sigma,
-                       (uint64_t)of->config->seed, (uint32_t)(3 * band + c), (uint32_t)of->frame);
+                       &(NoiseDraw){(uint64_t)of->config->seed, (uint32_t)(3 * band + c), (int)of->frame});
 }
 
 /* The input of a display of a band, before its level: counts, or radiance with noise, in memory already; of R G B
