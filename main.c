@@ -1,9 +1,9 @@
-/* main.c: the table of commands, their common options, and `probe` and `help`. */
+/* main.c: the table of commands, and `probe`, `bench` and `help`. */
 #include "entities/probe.h"
 #include "render/probe.h"
 #include "sensor/commands/commands.h"
-#include "sensor/bench/sensor/suites.h"
 #include "sensor/node/run/stop.h"
+#include "sensor/commands/program.h"
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
 #include "sensor/verify/regress/regress.h"
@@ -12,12 +12,10 @@
 #include "terrain/probe.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <poll.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---- the probes of all folders ---------------------------------------------------------------------- */
@@ -92,7 +90,34 @@ static int probe_command(int argc, char **argv)
     return command_line_wrong("probe", "no such %s: %s%s", argv[1][0] == '-' ? "option" : "probe", argv[1], word_hint(&meant));
 }
 
-static int run_bench(int argc, char **argv) { return bench_command(argc, argv, bench_next_suite); }
+/* ---- the benches ------------------------------------------------------------------------------------ */
+
+/* Another program, pitviper-bench: the one beside this, else the first on PATH, takes this one's place. */
+static int run_bench(int argc, char **argv)
+{
+    static char   name[] = "pitviper-bench", quiet[] = "--quiet", verbose[] = "--verbose";
+    char          path[PATH_MAX + sizeof name];
+    const ssize_t length = readlink("/proc/self/exe", path, PATH_MAX);
+    char        **words = calloc((size_t)argc + 2, sizeof *words);
+    int           count = 0;
+    if (!words) return 1;
+    path[length > 0 ? length : 0] = 0;
+    char *slash = strrchr(path, '/');
+    words[count++] = name;
+    if (log_is_quiet()) words[count++] = quiet;
+    else if (log_is_verbose()) words[count++] = verbose;
+    for (int i = 1; i < argc; i++) words[count++] = argv[i];
+    if (slash) {
+        strcpy(slash + 1, name);
+        execv(path, words);
+    }
+    execvp(name, words);
+    const int reason = errno;
+    free(words);
+    log_error("bench: cannot run pitviper-bench, neither beside pitviper nor on PATH: %s; build it (cmake --build FOLDER "
+              "--target pitviper-bench) or install it beside pitviper", strerror(reason));
+    return 1;
+}
 
 /* ---- the commands ----------------------------------------------------------------------------- */
 
@@ -117,91 +142,22 @@ static const struct Command {
     {"rcs", rcs_command, "a target's radar cross section over aspect: table, polar plot and a radar image", true, false},
     {"terrain", terrain_command, "make a terrain store from elevation, land cover and photographs; describe one", true, false},
     {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false, true},
-    {"bench", run_bench, "benchmark this build on this machine: times with their errors", true, false},
+    {"bench", run_bench, "benchmark this build on this machine: times with their errors", false, false},
 };
 enum { command_count = sizeof commands / sizeof commands[0] };
-
-static const char common_help[] =
-    "  -q, --quiet        only errors, warnings and requested output: no choices, progress, notices or summary\n"
-    "  -v, --verbose      also the tables, settings and models read, and where the time goes\n"
-    "  -h, --help         print the help of the command\n"
-    "  -V, --version      print the version\n";
 
 static void usage(FILE *to)
 {
     fputs("pitviper " PITVIPER_VERSION ": multispectral sensor simulation on DIS networks\n\n"
           "usage: pitviper COMMAND ...; `pitviper COMMAND --help` lists its options\n\n", to);
     for (int i = 0; i < command_count; i++) fprintf(to, "  %-10s %s\n", commands[i].name, commands[i].help);
-    fprintf(to, "\nEvery command takes, before or after its name:\n\n%s", common_help);
+    fprintf(to, "\nEvery command takes, before or after its name:\n\n%s", program_common_help);
     fputs("\nevery field of every product, with Python to read it: `pitviper help TOPIC`; topics:\n", to);
     reference_list(to);
     fputs("\nall topics as Markdown: `pitviper help --markdown`\n", to);
 }
 
-/* ---- streams, environment, command line ---------------------------------------------------------------- */
-
-/* If standard input, output or error is closed (`>&-`), the next file opened would get its descriptor and messages
- * would be written into recordings. /dev/null takes their place; read-only, so that printing fails and is reported. */
-static void fill_closed(void)
-{
-    int fd;
-    while ((fd = open("/dev/null", O_RDONLY)) >= 0 && fd <= STDERR_FILENO) {}
-    if (fd > STDERR_FILENO) close(fd);
-}
-
-static bool environment_good(const struct Command *command, int argc, char **argv)
-{
-    const char *etc = getenv("PITVIPER_ETC");
-    struct stat there;
-    bool        reads = command->reads_tables;
-    for (int i = 1; i < argc; i++) reads &= strcmp(argv[i], "--default") != 0 && strcmp(argv[i], "--keys") != 0;
-    if (!etc || (stat(etc, &there) == 0 && S_ISDIR(there.st_mode))) return !reads || etc_is_complete();
-    log_error("PITVIPER_ETC: there is no folder '%s'; unset it, or name the one that holds catalog.csv", etc);
-    return false;
-}
-
-/* Whether standard output is a pipe that its reader has left. */
-static bool reader_has_gone(void)
-{
-    struct pollfd out = {.fd = STDOUT_FILENO};
-    return poll(&out, 1, 0) == 1 && out.revents & POLLERR;
-}
-
-/* Exit code 1 when the output could not be written; a reader that has left before the end is no failure. */
-static int printed(int code)
-{
-    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
-    if (reader_has_gone()) return code;
-    if (code == 0) log_error("cannot write the output: %s", errno ? strerror(errno) : "it is closed");
-    return code ? code : 1;
-}
-
-/* Removes -q and -v before any `--` from the command line. False, logged, when both are given. */
-static bool take_verbosity(int *argc, char **argv)
-{
-    bool quiet = false, verbose = false, open = true;
-    int  kept = 1;
-    for (int i = 1; i < *argc; i++) {
-        const bool q = open && (strcmp(argv[i], "-q") == 0 || strcmp(argv[i], "--quiet") == 0);
-        const bool v = open && (strcmp(argv[i], "-v") == 0 || strcmp(argv[i], "--verbose") == 0);
-        open &= strcmp(argv[i], "--") != 0;
-        quiet |= q, verbose |= v;
-        if (!q && !v) argv[kept++] = argv[i];
-    }
-    argv[*argc = kept] = NULL;
-    if (quiet && verbose) log_error("--quiet and --verbose exclude each other; leave one out");
-    else if (quiet) log_set_level(LOG_WARN);
-    else if (verbose) log_set_level(LOG_DETAIL);
-    return !(quiet && verbose);
-}
-
-/* Whether an option is anywhere before `--`. */
-static bool asks_for(const char *name, const char *letter, int argc, char **argv)
-{
-    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
-        if (strcmp(argv[i], name) == 0 || strcmp(argv[i], letter) == 0) return true;
-    return false;
-}
+/* ---- the command line -------------------------------------------------------------------------- */
 
 static int unknown(const char *what, const char *typed, bool topics_too)
 {
@@ -226,17 +182,17 @@ static int run_named(int argc, char **argv)
     char called[64];
     for (int i = 0; i < command_count; i++) {
         if (strcmp(argv[0], commands[i].name) != 0) continue;
-        const bool help = asks_for("--help", "-h", argc, argv);
-        if (asks_for("--version", "-V", argc, argv)) {
+        const bool help = program_asks_for("--help", "-h", argc, argv);
+        if (program_asks_for("--version", "-V", argc, argv)) {
             puts("pitviper " PITVIPER_VERSION);
             return 0;
         }
-        if (!help && !environment_good(&commands[i], argc, argv)) return 1;
+        if (!help && !program_tables_there(commands[i].reads_tables, argc, argv)) return 1;
         snprintf(called, sizeof called, "pitviper %s", argv[0]);
         if (!commands[i].only_prints) stop_outlive_readers();
         argv[0] = called; /* program name in getopt's messages */
         const int code = commands[i].run(argc, argv);
-        if (help && code == 0) printf("\n%s", common_help);
+        if (help && code == 0) printf("\n%s", program_common_help);
         return code;
     }
     return unknown(argv[0][0] == '-' ? "option" : "command", argv[0], false);
@@ -262,21 +218,21 @@ static int help_command(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    fill_closed();
+    program_fill_closed();
     thread_flush_denormals(); /* so that a probe computes as a frame does */
-    if (!take_verbosity(&argc, argv)) return 2;
+    if (!program_take_verbosity(&argc, argv)) return 2;
     if (argc < 2) {
         log_error("no command is given; `pitviper --help` lists them, `pitviper replay LOG` renders a recording");
         return 2;
     }
-    if (argc > 2 && strcmp(argv[1], "help") == 0) return printed(help_command(argc - 2, argv + 2));
+    if (argc > 2 && strcmp(argv[1], "help") == 0) return program_printed(help_command(argc - 2, argv + 2));
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
         usage(stdout);
-        return printed(0);
+        return program_printed(0);
     }
     if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
         puts("pitviper " PITVIPER_VERSION);
-        return printed(0);
+        return program_printed(0);
     }
-    return printed(run_named(argc - 1, argv + 1));
+    return program_printed(run_named(argc - 1, argv + 1));
 }

@@ -64,8 +64,6 @@ def allowed(path, header):
     room = room_of(path)
     if header in BASE_HEADERS or header.startswith('tests/') or room == 'base' and header.startswith('pitviper'):
         return True  # only tests have reason to include tests/, see below
-    if header.startswith('sensor/bench/'):  # the workshop is no part of the product
-        return path.startswith(('sensor/bench/', 'tests/')) or path == 'main.c'
     return header.startswith(room + '/') and room in ROOMS or any(fnmatch.fnmatch(header, h) for h in MAY[room])
 
 
@@ -78,7 +76,7 @@ def check_rooms(tree):
         for kind, header in includes(text):
             if kind == '<':
                 places = [place for library, place in LIBRARIES if fnmatch.fnmatch(header, library)]
-                judge = path.startswith(('tests/', 'sensor/bench/'))  # those that test a library's results may ask it
+                judge = path.startswith('tests/')  # those that test a library's results may ask it
                 if places and not judge and not any(fnmatch.fnmatch(path, place) for place in places):
                     yield f'{path}: <{header}> belongs to {" and ".join(places)} alone'
             elif header.startswith('tests/') and not path.startswith('tests/'):
@@ -86,7 +84,7 @@ def check_rooms(tree):
             elif not allowed(path, header):
                 yield f'{path}: {room_of(path)} may not include {header}'
             elif (header.endswith('_private.h') and os.path.dirname(header) != os.path.dirname(path)
-                  and not path.startswith('sensor/bench/')):
+                  and not path.startswith(('tests/bench/', 'tests/scenes/'))):
                 yield f'{path}: {header} is private to {os.path.dirname(header)}/'
 
 
@@ -212,9 +210,9 @@ def twins():
         plant(bad, **{path: header})
 
     for path, header in re.findall(r'(\S+) (\S+)', """
-        pitviper_log.c dis/pdu/pdu.h                        pitviper_log.c sensor/bench/bench_private.h
-        dis/pdu/pdu.c sensor/bench/bench_private.h          sensor/commands/run_command.c sensor/bench/sensor/quality.h
-        sensor/publish/files/html_page.c sensor/bench/bench.h      dis/pdu/pdu.c terrain/earth/geodesy.h
+        pitviper_log.c dis/pdu/pdu.h                        pitviper_log.c tests/bench/bench_private.h
+        dis/pdu/pdu.c tests/bench/bench_private.h          sensor/commands/run_command.c tests/bench/suites.h
+        sensor/publish/files/html_page.c tests/bench/bench.h      dis/pdu/pdu.c terrain/earth/geodesy.h
         dis/pdu/pdu.c entities/models/model.h               terrain/earth/sun.c dis/pdu/pdu.h
         entities/models/model.c render/frame/render.h   render/frame/render.c entities/table/entity_table.h
         render/frame/render.c dis/pdu/decode.h        render/frame/render.c sensor/detector/detector.h
@@ -226,7 +224,7 @@ def twins():
         entities/import/sidecar.c <yaml.h>"""):
         one(True, path, header)
     for path, header in re.findall(r'(\S+) (\S+)', """
-        sensor/bench/run.c sensor/bench/bench_private.h sensor/bench/render/precision_air.c render/air/air_private.h
+        tests/bench/bench_command.c tests/bench/bench_private.h tests/bench/render/precision_air.c render/air/air_private.h
         dis/pdu/pdu.c pitviper.h                            dis/pdu/pdu.c dis/pdu/reader_private.h
         render/air/air.c pitviper_simd.h                entities/table/entity_table.c dis/pdu/decode.h
         render/frame/render.c entities/table/snapshot.h sensor/node/loop.c dis/capture/log.h
@@ -277,19 +275,20 @@ def tests_of(path):
     stem = name.split('.')[0]
     if path.startswith('tests/'):
         part = path.split('/')[1]
-        if stem.startswith('test_') and part in ROOMS + ('base', 'system', 'layers', 'fuzz'):
+        if stem.startswith('test_') and name != 'test_rows.sh' and part in ROOMS + ('base', 'bench', 'system', 'layers', 'fuzz'):
             return [('system' if name.endswith('.sh') else part) + '/' + stem + '$']
         if part in ROOMS + ('base', 'fuzz', 'system'):
             return [part + '/']
         return {'mutants': ['system/test_mutants'], 'regress': ['system/test_regress', 'system/test_mutants'],
-                'layers': [], 'tools': ['system/'], 'alloc': ['system/test_alloc']}.get(part, ['.'])
+                'layers': [], 'tools': ['system/'], 'bench': ['bench/', 'system/test_(bench|figures|quality)'],
+                'scenes': ['bench/', 'sensor/', 'system/'], 'alloc': ['system/test_alloc']}.get(part, ['.'])
     if folder.startswith('.') or path.startswith('.') or name == 'LICENSE' or path in ('etc/test', 'etc/setup', 'etc/bits'):
         return []
     if name.endswith(('.md', '.svg', '.jpg', '.png')):
         return ['system/test_(adding|figures|reference|man|help)']
     room = room_of(path)
     if room in ROOMS:
-        return [r + '/' for r in rooms_above(room)] + ['fuzz/', 'system/']
+        return [r + '/' for r in rooms_above(room)] + ['bench/', 'fuzz/', 'system/']
     return ['.']  # the base, the program, tables, how all is built
 
 
@@ -315,7 +314,8 @@ def changed_twins():
     for paths, good, bad in (
             (['dis/pdu/pdu.c'], 'dis/test_pdu entities/test_survey sensor/test_truth system/test_live fuzz/fuzz_pdu', 'terrain/test_sun base/test_log'),
             (['render/air/air.c'], 'render/test_air sensor/test_truth', 'dis/test_pdu entities/test_survey terrain/test_sun'),
-            (['sensor/commands/run_command.c'], 'sensor/test_truth system/test_live', 'render/test_air'),
+            (['sensor/commands/run_command.c'], 'sensor/test_truth system/test_live bench/network', 'render/test_air'),
+            (['tests/bench/render/precision_air.c'], 'bench/precision_render bench/test_bench', 'render/test_air'),
             (['tests/dis/test_pdu.c'], 'dis/test_pdu system/test_layers', 'dis/test_data dis/test_pdu_more system/test_live'),
             (['tests/system/test_live.sh'], 'system/test_live', 'system/test_live_network dis/test_pdu'),
             (['pitviper.h'], 'base/test_log dis/test_pdu system/test_live', ''), (['etc/materials.csv'], 'render/test_air', ''),

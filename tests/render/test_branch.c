@@ -1,6 +1,6 @@
 /* Trunks over a day: the three parts by sides against finite volumes over rings and sides, with every side's own balance; and
  * the film of a cylinder against its table. labels: physics */
-#include "tests/render/heat_day.h"
+#include "tests/scenes/paper_day.h"
 
 enum { rings = 12, sides = 24 };
 

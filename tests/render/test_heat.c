@@ -1,6 +1,6 @@
 /* The ground's heat over a day: tables against columns run by themselves, shade of hours past against columns shaded in
  * those hours, and what everyone knows of slopes, snow, water and nights. labels: physics */
-#include "tests/render/heat_day.h"
+#include "tests/scenes/paper_day.h"
 
 static GroundKinds kinds;
 static Arena      *arena;

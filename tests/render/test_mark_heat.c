@@ -1,7 +1,7 @@
 /* Heat of what stood and drove: the ground beside and under a box that stood four hours, against conduction in two
  * dimensions by finite volumes, sunlit by a box of its own; trails against a pulse of heat; burnt ground; bounds.
  * labels: physics */
-#include "tests/render/heat_day.h"
+#include "tests/scenes/paper_day.h"
 
 #include "render/heat/jet_path.h"
 #include "render/heat/mark_heat.h"

@@ -1,6 +1,6 @@
 /* What of vehicles is seen between trees: the default frame against 12 x 12 rays in every pixel, which know neither grids nor
  * edges; one ray a pixel is told from it. labels: deep */
-#include "sensor/bench/sensor/woods_stand.h"
+#include "tests/scenes/woods_stand.h"
 #include "sensor/quality/trial.h"
 #include "sensor/settings/config.h"
 #include "terrain/landscape/quick_landscape.h"

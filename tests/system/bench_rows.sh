@@ -1,5 +1,5 @@
 # What the tests of bench check of every run; source it after common.sh.
-# ends_whole CSV: the run in $code and $tmp/stdout ended well, and its file is whole
+# ends_whole CSV LEAST: the run in $code and $tmp/stdout ended well, and its file is whole, of so many lines at least
 ends_whole() {
     local key
     check "it ends well" [ $code = 0 ]
@@ -13,7 +13,7 @@ ends_whole() {
     # the rows without comments and quoted texts
     sed -e '/^#/d' -e 's/"[^"]*"//g' "$1" >"$tmp/bare.csv"
     check "every row has as many columns as the header" \
-        awk -F, 'NR == 1 { n = NF } NF != n { print; exit 1 } END { exit NR < 10 }' "$tmp/bare.csv"
+        awk -F, -v least="$2" 'NR == 1 { n = NF } NF != n { print; exit 1 } END { exit NR < least }' "$tmp/bare.csv"
     # what a version or a machine does not have is named, and has none
     check "every row has a figure: a time, a rate, a ratio or an error" \
         awk -F, 'NR > 1 && !($3 > 0 || $6 > 0 || $8 > 0 || $10 != "") { print; exit 1 }' \

@@ -1,6 +1,6 @@
 """A vehicle's network of thermal nodes as Pitviper solves it against SciPy's Radau.
 
-    network_judge.py FILE.csv       of tests/tools/network_vehicle.c
+    network_judge.py FILE.csv       of tests/tools/plate_vehicle.c
 
 Prints, to be read by test_network_judge.sh:
     node WORST_K MOVED_K            over the nodes, at the end; how far they moved, at most

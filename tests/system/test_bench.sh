@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # pitviper bench by its quickest suite: the table, the page, two runs side by side, and what is refused. No time is judged.
-# The rows of all suites, and their limits: test_bench_deep.sh.
+# The rows of the other suites, and their limits: tests/bench/test_rows.sh.
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/bench_rows.sh"
 judges python3
 
 unset PITVIPER_DATA
 run bench dis --quick --threads 1 --csv "$tmp/dis.csv" --report "$tmp/dis.html"
-ends_whole "$tmp/dis.csv"
+ends_whole "$tmp/dis.csv" 10
 check "some rows have a limit" [ "$(grep -c "^dis,.*,yes," "$tmp/dis.csv")" -ge 2 ]
 check "a chapter of the page" grep -q '<h2 id="dis">' "$tmp/dis.html"
 for what in "Entity State: decode" "Entity State: encode" "Fire: decode" "Detonation: encode" bundles "capture: read" \
@@ -42,6 +42,21 @@ head -c 3000 /dev/urandom >"$tmp/noise.csv"
 run bench compare "$tmp/dis.csv" "$tmp/noise.csv"
 check "noise is refused" [ $code = 1 ]
 
+# ---- the program that is run: the one beside, else that of PATH, else none
+mkdir "$tmp/alone"
+cp "$pitviper" "$tmp/alone/"
+"$tmp/alone/pitviper" bench compare "$tmp/dis.csv" "$tmp/dis.csv" >"$tmp/stdout" 2>"$tmp/stderr"
+check "pitviper alone: exit code 1" [ $? = 1 ]
+check "what is missing is said, and what to do" complained 'cannot run pitviper-bench.*beside pitviper nor on PATH.*install it'
+PATH=$(realpath "$build"):$PATH "$tmp/alone/pitviper" bench compare "$tmp/dis.csv" "$tmp/dis.csv" >"$tmp/stdout" 2>"$tmp/stderr"
+check "that of PATH will do" [ $? = 0 ]
+check "and says the same" grep -q 'rows in both' "$tmp/stdout"
+run bench --version
+check "its version is pitviper's" [ "$(cat "$tmp/stdout")" = "$("$pitviper" --version)" ]
+run bench dis/dis --quick --threads 1
+check "one room's rows of a suite" eval 'grep -q "Fire: decode" "$tmp/stdout" && not grep -q "table of" "$tmp/stdout"'
+check "are all of that run" [ $code = 0 ]
+
 refused() { # refused SAID ARGUMENTS...: a usage error, and said, before any work
     local named=$1; shift
     run bench "$@"
@@ -52,5 +67,6 @@ refused 'no such option: --size' dis --quick --size 17x9
 refused "threads: '0' is not" dis --quick --threads 0
 refused 'option --threads needs an argument' dis --quick --threads
 refused "no such bench: nix" nix
+refused "no such bench: dis/terrain" dis/terrain
 
 finish

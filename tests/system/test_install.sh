@@ -6,7 +6,7 @@ real=$(realpath "$build")
 needs "$build/pitviper.1 (target manual; not in sanitized builds)" test -f "$build/pitviper.1"
 judges man
 cmake --install "$build" --prefix "$tmp/prefix" >"$tmp/said" 2>&1 || fail "cmake --install: $(tail -n 1 "$tmp/said")"
-for file in bin/pitviper lib/pitviper/pitviper-images.so lib/pitviper/pitviper-rasters share/man/man1/pitviper.1 share/pitviper/catalog.csv share/pitviper/ADDING.md \
+for file in bin/pitviper bin/pitviper-bench lib/pitviper/pitviper-images.so lib/pitviper/pitviper-rasters share/man/man1/pitviper.1 share/pitviper/catalog.csv share/pitviper/ADDING.md \
             include/pitviper_memory.h share/pitviper/examples/read_memory.c share/pitviper/examples/read_memory.py \
             share/pitviper/README.md share/pitviper/LICENSE share/pitviper/scenarios/demo.yaml share/pitviper/atmosphere/us1976/visibilities.csv; do
     check "installed: $file" [ -f "$tmp/prefix/$file" ]

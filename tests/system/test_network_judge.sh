@@ -3,7 +3,7 @@
 . "$(dirname "$0")/common.sh"
 
 judges python3.scipy
-"$build/tests/network_vehicle" >"$tmp/vehicle.csv" || fail "Pitviper's own temperatures"
+"$build/tests/plate_vehicle" >"$tmp/vehicle.csv" || fail "Pitviper's own temperatures"
 python3 tests/system/network_judge.py "$tmp/vehicle.csv" >"$tmp/judge.txt" 2>&1
 check "the judge ends well" [ $? = 0 ]
 cat "$tmp/judge.txt"

@@ -5,7 +5,7 @@
  * Under `valgrind --tool=callgrind --instr-atstart=no` the count of each frame is dumped under its name; set-up and first
  * frames are not counted. Standard output is CSV, a frame a line, with the frame's own counters; lines with # say what the
  * count depends on, --about prints these alone. */
-#include "sensor/bench/sensor/woods_stand.h"
+#include "tests/scenes/woods_stand.h"
 #include "sensor/quality/trial.h"
 #include "sensor/settings/config.h"
 #include "terrain/landscape/quick_landscape.h"

@@ -1,0 +1,113 @@
+#!/usr/bin/env bash
+# bash tests/bench/test_rows.sh BUILD SUITE[/ROOM]: the rows of a suite of `pitviper bench`, or of one room's part of it, quickly:
+# they are there and whole, and every error that has a limit keeps it. No time is judged. tests/CMakeLists.txt lists the
+# groups. What the command says, compares and refuses: tests/system/test_bench.sh.
+group=$2
+. tests/system/common.sh
+. tests/system/bench_rows.sh
+judges python3
+
+unset PITVIPER_DATA
+suite=${group%/*}
+run bench "$group" --quick --threads 2 --csv "$tmp/rows.csv" --report "$tmp/rows.html"
+ends_whole "$tmp/rows.csv" 3
+check "a chapter of the page" grep -q "<h2 id=\"$suite\">" "$tmp/rows.html"
+check "the page is HTML" python3 tests/system/bench_page.py "$tmp/rows.html" 3
+
+some_have_limits() { check "some rows have a limit" [ "$(grep -c "^$suite,.*,yes," "$tmp/rows.csv")" -ge 2 ]; }
+# rows WHAT ...: there is one of each
+rows() {
+    local what
+    for what in "$@"; do check "a row: $what" grep -q "^$suite,.*$what" "$tmp/rows.csv"; done
+}
+# tunables NAME ...: every approximation has one default, whose error is what is stated, and other settings
+tunables() {
+    local name
+    for name in "$@"; do
+        check "one default of: $name" [ "$(grep -cE "^precision,\"?$name: .*,yes,.*,(\* )?default$" "$tmp/rows.csv")" = 1 ]
+        check "other settings of: $name" \
+            [ "$(grep -E "^precision,\"?$name: .*,(\*|)$" "$tmp/rows.csv" | grep -vc "settings better")" -ge 1 ]
+        rows "$name: settings better than the default"
+    done
+}
+
+case $group in
+speed)
+    some_have_limits
+    rows "ground: " "ground: pyramid" "40 m up: frame" "100 m up: frame" "300 m up: frame" "1000 m up: frame" \
+        "rays alone" "one ray a pixel" "1 thread: snapshot" "1 thread: air" "1 thread: visibility" "1 thread: sun rays" \
+        "1 thread: shading" "small targets" "pass over edges" "truth of targets" "hash of the planes" "256 x 256" \
+        "close target: one ray a pixel" "adaptive edges" "1 thread: frame" "optical alone, one ray" "radar alone" \
+        "files of a frame" "heat of the ground: spin-up" "heat of the ground: a step" "heat of the ground: shadows of a day" \
+        "heat of the ground: a hit, with shadows" "heat of the ground: a hit, without" "heat of the ground: 100 m up.*as the air" \
+        "heat of the ground: 100 m up.*no shadows" "heat of the ground: 100 m up.*with shadows" "heat of a vehicle: a step" \
+        "heat of the vehicles: the longest" "heat of the vehicles: the mean" "100 m up: default quality.*,yes," \
+        "set-up: ground" "set-up: catalog" "set-up: places of plants" "set-up: plants grown" "set-up: ground warmed up" \
+        "set-up: twenty tanks" "set-up: all" "sweep: a variant" "memory: posts" "memory: arena" "memory: resident"
+    run bench speed --quick --size 17
+    check "a size that is none is refused" [ $code = 1 ]
+    check "and said" complained "size: '17' is not"
+    run bench speed --quick --ground 1x1 --model "$tmp/none.obj"
+    check "a model that is not there is refused" [ $code = 1 ]
+    check "and said, too" complained "none.obj" ;;
+skip)
+    rows "outside a block" "by their sphere" "parts missed" "behind the part that was met" "below a block" "walked together" \
+        "sun rays miss" "stops the sun" "too low to stop" "nothing behind" "beside a small target" "first rays" "smoke" \
+        "all of them" "bands nobody asked for" "planes nobody asked for" ;;
+network)
+    some_have_limits
+    rows "IPv4: datagrams" "IPv4: bundles" "IPv4: arrival to taken" "IPv4: most" recorder "live node: ready" \
+        "live node: reports heard" "live node: arrival to pose" "live node: frame time to published" "live node: memory" ;;
+crowd) ;;
+precision/terrain)
+    tunables "Earth to local frame" "latitude. longitude. height" "geoid between posts" "the sun's place" "powers of two" \
+        "spacing of invented ground" "reach of the finest level" "height of a post" "detail: weakest octave" \
+        "posts of terrain from files" ;;
+precision/entities)
+    tunables "dead reckoning" ;;
+precision/render)
+    tunables "radiance of a black body" "temperature of a radiance" "light on the ground" "smoke along a ray" \
+        "air before a pixel. visible" "air before a pixel. thermal" "radiance of the sky" "light of the sky on a plane" \
+        "range to the ground" "range to a part" "steps of the ground's heat" "elements of the ground's heat" \
+        "slopes of the ground's heat" "steps of a vehicle's heat" "patches of a vehicle" "cells of past shade" \
+        "ray tubes a wavelength" "mirrors of a ray tube"
+    for when in morning noon afternoon; do
+        for kind in grass bare_soil road sand; do
+            for then in "in it" afterwards; do rows "shade of the $when, $then, $kind: colder by.*,yes,"; done
+        done
+    done
+    rows "shade of past hours: ground that was never shaded" ;;
+precision/sensor)
+    tunables "plants simplified" "rays a pixel among plants" "reach of low plants" "light between leaves" "rays a pixel" \
+        "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
+        "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "a small target's place" "electrons of a radiance" \
+        "display" "converter" "display's curve" ;;
+stability/dis)
+    rows "time stamp to seconds" "exercise clock unwrapped" "denormals, infinities" ;;
+stability/terrain)
+    rows "latitude, longitude, height to ECEF" "ENU axes: jump" "1000 km away" "origins anywhere" "sun over leap seconds" \
+        "geoid: a pole" "ground: cliffs" "ground of files: voids" ;;
+stability/entities)
+    rows "dead reckoning, nine algorithms" "turn to turn" "psi, theta, phi" "turrets at any angle" "Entity State: each float" \
+        "Detonation: each float" "scenario: each key" "effects.csv" "probes: each column" "built-in models" "1e6 to 1" \
+        "model files: needles" ;;
+stability/render)
+    rows "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" "light: Planck" "light: smoke" "sun: " \
+        "picture: a block" "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "plants: leaves edge-on" \
+        "plants: skimmed tops" "plants: trees at the origin and 200 km" "plants: a million trees" "heat: 1 K to 2000 K" \
+        "heat: the same: energy" "heat: polar day and night" "heat: 1950 and 2090" "heat: seven threads" \
+        "heat: back and forth in time" "network: 1 K to 2000 K" "network: the same: temperatures" ;;
+stability/sensor)
+    rows "detector: " "display: " "threads: " ;;
+woods)
+    for view in "100 m up, 5 degrees down" "300 m up, 10 degrees down" "300 m up, 8 down, 6 wide" "1000 m up, 20 degrees down"; do
+        rows "$view: one ray a pixel, full detail.*planes of one thread, nothing skipped\",yes,"
+        rows "$view: one ray a pixel, two levels.*planes of one thread, nothing skipped\",yes,"
+        rows "$view: default quality, full detail" "$view: default quality: pixels sampled again"
+        for plane in red green blue "3-5 um" "8-12 um"; do rows "$view: two levels, $plane"; done
+    done
+    rows "memory: with frames of all views, full detail.*,yes," ;;
+*) fail "no rows are known of $group" ;;
+esac
+
+finish
