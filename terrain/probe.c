@@ -2,7 +2,7 @@
 #include "terrain/probe.h"
 
 #include "terrain/earth/geoid.h"
-#include "terrain/earth/local_frame.h"
+#include "terrain/earth/geodesy.h"
 #include "terrain/earth/sun.h"
 
 #include <stdlib.h>

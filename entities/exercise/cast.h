@@ -9,9 +9,9 @@
 #include "entities/exercise/scenario.h"
 #include "entities/motion/articulation.h"
 #include "entities/motion/dead_reckoning.h"
-#include "terrain/earth/local_frame.h"
+#include "terrain/earth/geodesy.h"
 #include "terrain/elevation/elevation.h"
-#include "terrain/landscape/landscape.h"
+#include "terrain/ground/landscape.h"
 
 /* ---- ground: cast_ground.c ---------------------------------------------------------------- */
 

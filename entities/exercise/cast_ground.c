@@ -1,7 +1,7 @@
 /* entities/exercise/cast_ground.c: the ground of an exercise, from files or synthetic, and the routes over it. */
 
 #include "entities/exercise/cast.h"
-#include "terrain/landscape/elevation_import.h"
+#include "terrain/from_files/elevation_import.h"
 #include "terrain/store/store.h"
 
 #include <stdlib.h>
@@ -50,7 +50,7 @@ Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario)
         return STATUS_BAD_VALUE;
     }
     if (*scenario->ground.store) {
-        status = landscape_open_store(&ground.stored, scenario->ground.store, (uint64_t)scenario->seed);
+        status = store_open_landscape(&ground.stored, scenario->ground.store, (uint64_t)scenario->seed);
         if (status != STATUS_OK) return status;
         ground.real = true;
         if (!isfinite(post_at(&ground, 0, 0))) {

@@ -7,8 +7,8 @@
 #define ENTITIES_TABLE_CONTACT_H
 
 #include "entities/table/snapshot.h"
-#include "terrain/landscape/landscape.h"
-#include "terrain/earth/local_frame.h"
+#include "terrain/ground/landscape.h"
+#include "terrain/earth/geodesy.h"
 
 typedef struct ContactGround {
     const LocalFrame *frame;

@@ -7,7 +7,7 @@
 #define ENTITIES_TRACES_EFFECT_PUFFS_H
 
 #include "pitviper_channels.h"
-#include "terrain/earth/local_frame.h"
+#include "terrain/earth/geodesy.h"
 #include "terrain/weather/weather.h"
 
 typedef enum EffectKind {

@@ -8,7 +8,7 @@
  *                    the pixels in their boxes besides. Details thinner than the spacing of those rays are missed.
  *   level_of_detail  Ground: change of the picked pixels if the ground were known at every second post only, by its
  *                    normals and by its displacement on the image. What is missing below the post spacing is taken
- *                    to be as much again: where hills are as high as they are long (terrain/landscape/landscape.c)
+ *                    to be as much again: where hills are as high as they are long (terrain/invented/invented.c)
  *                    each halving of that spacing brings half of what is left. Shadows and what is hidden by a crest
  *                    are left out. Plants: change of the picked pixels, by the same rays, when none is simplified.
  *   tables           A few pixels, the bright ones first, their air computed path by path and their light in double

@@ -4,7 +4,7 @@
 
 #include "render/air/daylight.h"
 #include "render/heat/heat.h"
-#include "terrain/weather/weather_course.h"
+#include "terrain/weather/weather.h"
 
 /* Heat keeps a pointer to it, and it to these: they outlive the heat. */
 typedef struct HeatDrive {

@@ -161,7 +161,7 @@ static void resolve_detail(Shader *shader, const ShadeScene *scene, const Sample
                                   .radar = s->radar ? shader->radar : NULL,
                                   .slope_x = s->channels ? shader->slope_x : NULL,
                                   .slope_y = s->channels ? shader->slope_y : NULL};
-        landscape_details(&out, scene->world->detail, landscape, hits->count, hits->surface, hits->p_enu[0],
+        detail_at(&out, scene->world->detail, landscape, hits->count, hits->surface, hits->p_enu[0],
                           hits->p_enu[1], &(GroundFootprint){shader->across_m, shader->along_m});
         for (int i = 0; i < hits->count && out.slope_x; i++)
             shader->sloped |= shader->slope_x[i] != 0 || shader->slope_y[i] != 0;

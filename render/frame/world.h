@@ -11,8 +11,8 @@
 #include "render/light/far_woods.h"
 #include "render/scattering/radar_image.h"
 #include "render/visibility/visibility.h"
-#include "terrain/landscape/detail.h"
-#include "terrain/weather/weather_course.h"
+#include "terrain/detail/detail.h"
+#include "terrain/weather/weather.h"
 
 typedef struct World {
     const Catalog   *catalog;

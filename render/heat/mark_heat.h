@@ -14,7 +14,7 @@
 
 #include "entities/table/snapshot.h"
 #include "render/heat/heat.h"
-#include "terrain/earth/local_frame.h"
+#include "terrain/earth/geodesy.h"
 
 typedef struct MarkHeat MarkHeat;
 

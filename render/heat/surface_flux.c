@@ -1,7 +1,7 @@
 /* render/heat/surface_flux.c: see surface_flux.h. */
 #include "render/heat/surface_flux.h"
 
-#include "terrain/weather/vapour.h"
+#include "terrain/weather/weather.h"
 
 static const double air_j_kgk = 1005, air_gas_j_kgk = 287.05, karman = 0.4, gravity = 9.81, least_wind_mps = 1;
 static const double air_viscosity_m2s = 1.5e-5;

@@ -2,7 +2,7 @@
 #include "render/light/plant_heat.h"
 
 #include "render/materials/surface_balance.h"
-#include "terrain/weather/vapour.h"
+#include "terrain/weather/weather.h"
 
 static const double heat_j_mol_k = 29.3, vapour_j_mol = 44000; /* of air; of water's evaporation */
 static const double pressure_pa = 101325;

@@ -27,7 +27,7 @@
 #include "render/light/hemisphere.h"
 #include "render/light/sky_kept.h"
 #include "render/scene/view.h"
-#include "terrain/landscape/landscape.h"
+#include "terrain/ground/landscape.h"
 
 typedef struct SkyVisibility SkyVisibility; /* of a frame; shared by its threads */
 typedef struct SkyWorker     SkyWorker;     /* of a thread */

@@ -18,8 +18,8 @@
 #include "render/scene/skip.h"
 #include "render/scene/view.h"
 #include "terrain/elevation/elevation.h"
-#include "terrain/landscape/landscape.h"
-#include "terrain/earth/local_frame.h"
+#include "terrain/ground/landscape.h"
+#include "terrain/earth/geodesy.h"
 
 /* One frame's world: a tree over the spheres of all entities (render/visibility/broad_phase.h), and the nodes of
  * those that are needed. Posing costs transforms only; nothing is committed or kept between frames, so any number of

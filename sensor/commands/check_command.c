@@ -9,10 +9,10 @@
 #include "sensor/detector/preset.h"
 #include "sensor/node/run/host_run.h"
 #include "sensor/radar/radar_preset.h"
-#include "terrain/weather/weather_course.h"
+#include "terrain/weather/weather.h"
 #include "terrain/earth/geoid.h"
-#include "terrain/landscape/ground_image.h"
-#include "terrain/landscape/elevation_survey.h"
+#include "terrain/ground/ground_image.h"
+#include "terrain/from_files/elevation_import.h"
 #include "terrain/store/store.h"
 #include "sensor/settings/command_line.h"
 
@@ -127,7 +127,7 @@ static bool terrain_is_valid(const Check *c)
     good &= sheets_are_valid(c, config->terrain.cover, "terrain.cover", false);
     good &= sheets_are_valid(c, config->terrain.orthophoto, "terrain.orthophoto", false);
     if (strpbrk(table, "/.")) {
-        if (cover_table_check(table) != STATUS_OK)
+        if (surface_table_check(table) != STATUS_OK)
             good = report(c, "terrain.cover_table", "etc/cover_worldcover.csv is an example");
     }
     if (*config->terrain.geoid) {

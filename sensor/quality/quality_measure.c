@@ -4,7 +4,7 @@
 
 #include "sensor/settings/config.h"
 #include "sensor/quality/quality.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 #include <time.h>
 
@@ -28,7 +28,7 @@ Status quality_measure_open(QualityMeasure *m, int threads, bool quick)
     Status status = pool_create(&m->pool, threads);
     if (status == STATUS_OK) status = pool_create(&m->many, thread_processors());
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = quick_landscape_create(&m->ground, times_s, &frame, quality_measure_east_m,
+    if (status == STATUS_OK) status = landscape_quick(&m->ground, times_s, &frame, quality_measure_east_m,
                                                                  quality_measure_north_m, m->many);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = trial_scene_open(&m->scene, &m->ground, catalog, types, 3, vehicles);

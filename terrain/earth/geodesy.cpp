@@ -1,4 +1,5 @@
-/* terrain/earth/geodesy.cpp: the only file that knows GeographicLib. Degrees, exceptions and std:: end here. */
+/* terrain/earth/geodesy.cpp: the only file that knows GeographicLib; and frames about a place. Degrees, exceptions and
+ * std:: end here. */
 #include "terrain/earth/geodesy.h"
 
 #include <GeographicLib/Geocentric.hpp>
@@ -68,4 +69,14 @@ try {
     return STATUS_NO_MEMORY;
 } catch (...) {
     return STATUS_BAD_VALUE;
+}
+
+extern "C" Status local_frame_at(LocalFrame *out, const Geodetic *origin)
+{
+    LocalFrame frame = {};
+    frame.origin = *origin;
+    const Status status = ecef_from_geodetic(frame.origin_ecef, frame.r_ecef_from_enu, origin);
+    if (status != STATUS_OK) return status;
+    *out = frame;
+    return STATUS_OK;
 }

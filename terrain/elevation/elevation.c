@@ -1,8 +1,10 @@
-/* terrain/elevation/elevation.c: memory and look-up of the nested grids. The header defines the surface. */
+/* terrain/elevation/elevation.c: nested grids of posts: their memory, look-up, tiles, and pyramids. */
 #include "terrain/elevation/elevation.h"
 
 #include <stdlib.h>
 #include <sys/mman.h>
+
+/* ---- memory and look-up -------------------------------------------------------------------------- */
 
 /* Zeroed heights. A ray touches a few of hundreds of megabytes: large arrays use huge pages where available, or half of
  * a look-up would be the TLB miss. NULL: no memory. */
@@ -115,4 +117,327 @@ double elevation_height(const Elevation *elevation, double x_m, double y_m, doub
         return sw + u * du + v * dv;
     }
     return NAN;
+}
+
+/* ---- tiles: a base and a shift of each, posts alike on the edges that two share ------------------ */
+
+/* A multiple of the unit next to the post, half a unit up; exact for negative posts too. */
+static inline int32_t rounded(int32_t post, int shift)
+{
+    return shift ? (post + (1 << (shift - 1))) & ~((1 << shift) - 1) : post;
+}
+
+ElevationTile elevation_tile_of(int32_t low, int32_t high)
+{
+    const int32_t last = elevation_base_unit - 1, top = (high + last) & ~last;
+    ElevationTile tile = {.base = low & ~last};
+    while (top - tile.base > 65535 << tile.shift) tile.shift++;
+    return tile;
+}
+
+static inline uint16_t stored_of(ElevationTile tile, int32_t post)
+{
+    const int32_t stored = (post - tile.base) >> tile.shift;
+    return (uint16_t)(stored < 0 ? 0 : stored > 65535 ? 65535 : stored);
+}
+
+/* The tiles that share line n of posts, of `tiles` along this axis: first and last. */
+static inline void sharing(int out[2], int n, int tiles)
+{
+    const int tile = n / elevation_tile_cells;
+    out[1] = tile < tiles ? tile : tiles - 1;
+    out[0] = n % elevation_tile_cells == 0 && n > 0 ? tile - 1 : out[1];
+}
+
+/* The coarsest shift of the tiles from .. to along both axes. */
+static int coarsest(const ElevationLevel *level, const int a[2], const int b[2])
+{
+    int shift = 0;
+    for (int j = b[0]; j <= b[1]; j++)
+        for (int i = a[0]; i <= a[1]; i++) {
+            const int s = level->tile[(size_t)j * (size_t)level->tiles_x + (size_t)i].shift;
+            shift = s > shift ? s : shift;
+        }
+    return shift;
+}
+
+void elevation_set_post(ElevationLevel *level, int i, int j, int32_t post)
+{
+    int a[2], b[2];
+    sharing(a, i, level->tiles_x);
+    sharing(b, j, level->tiles_y);
+    post = rounded(post, coarsest(level, a, b));
+    for (int tj = b[0]; tj <= b[1]; tj++)
+        for (int ti = a[0]; ti <= a[1]; ti++) {
+            const size_t tile = (size_t)tj * (size_t)level->tiles_x + (size_t)ti;
+            level->stored[tile * elevation_tile_posts +
+                          (size_t)(j - tj * elevation_tile_cells) * elevation_tile_side +
+                          (size_t)(i - ti * elevation_tile_cells)] = stored_of(level->tile[tile], post);
+        }
+}
+
+/* Repeats the last column and row of a tile of which only columns x rows posts exist. */
+static void fill_up(uint16_t *stored, int columns, int rows)
+{
+    for (int j = 0; j < rows && columns < elevation_tile_side; j++) {
+        uint16_t *row = stored + (size_t)j * elevation_tile_side;
+        for (int i = columns; i < elevation_tile_side; i++) row[i] = row[columns - 1];
+    }
+    for (int j = rows; j < elevation_tile_side; j++)
+        memcpy(stored + (size_t)j * elevation_tile_side, stored + (size_t)(rows - 1) * elevation_tile_side,
+               elevation_tile_side * sizeof *stored);
+}
+
+static int of_tile(int posts, int tile)
+{
+    const int left = posts - tile * elevation_tile_cells;
+    return left < elevation_tile_side ? left : elevation_tile_side;
+}
+
+void elevation_fill_edges(ElevationLevel *level)
+{
+    for (int tj = 0; tj < level->tiles_y; tj++)
+        for (int ti = 0; ti < level->tiles_x; ti += tj < level->tiles_y - 1 && ti < level->tiles_x - 1
+                                                        ? level->tiles_x - 1 - ti : 1)
+            fill_up(level->stored + ((size_t)tj * (size_t)level->tiles_x + (size_t)ti) * elevation_tile_posts,
+                    of_tile(level->nx, ti), of_tile(level->ny, tj));
+}
+
+static void fill_tile(ElevationLevel *level, int ti, int tj, const int32_t *row)
+{
+    const size_t        tile = (size_t)tj * (size_t)level->tiles_x + (size_t)ti;
+    const ElevationTile of = level->tile[tile];
+    const int           columns = of_tile(level->nx, ti), rows = of_tile(level->ny, tj);
+    uint16_t           *stored = level->stored + tile * elevation_tile_posts;
+    for (int j = 0; j < rows; j++) {
+        const int32_t *from = row + (size_t)j * (size_t)level->nx + (size_t)ti * elevation_tile_cells;
+        uint16_t      *to = stored + (size_t)j * elevation_tile_side;
+        for (int i = 0; i < columns; i++) to[i] = stored_of(of, rounded(from[i], of.shift));
+    }
+    /* edges: to the coarsest unit of those that share them */
+    for (int side = 0; side < 4; side++) {
+        const bool along_x = side < 2, far_side = side & 1;
+        const int  count = along_x ? columns : rows, at = far_side ? elevation_tile_cells : 0;
+        if (at >= (along_x ? rows : columns)) continue;
+        for (int n = 0; n < count; n++) {
+            const int i = along_x ? n : at, j = along_x ? at : n;
+            int       a[2], b[2];
+            sharing(a, ti * elevation_tile_cells + i, level->tiles_x);
+            sharing(b, tj * elevation_tile_cells + j, level->tiles_y);
+            const int32_t post = row[(size_t)j * (size_t)level->nx + (size_t)(ti * elevation_tile_cells + i)];
+            stored[(size_t)j * elevation_tile_side + (size_t)i] = stored_of(of, rounded(post, coarsest(level, a, b)));
+        }
+    }
+    fill_up(stored, columns, rows);
+}
+
+void elevation_fill_tiles(ElevationLevel *level, int tile_j, const int32_t *row)
+{
+    for (int ti = 0; ti < level->tiles_x; ti++) fill_tile(level, ti, tile_j, row);
+}
+
+void elevation_tile_range(int32_t range[2], const ElevationLevel *level, int tile_i, int tile_j, const int32_t *row)
+{
+    const int columns = of_tile(level->nx, tile_i), rows = of_tile(level->ny, tile_j);
+    int32_t   low = INT32_MAX, high = INT32_MIN;
+    for (int j = 0; j < rows; j++) {
+        const int32_t *from = row + (size_t)j * (size_t)level->nx + (size_t)tile_i * elevation_tile_cells;
+        for (int i = 0; i < columns; i++) {
+            low  = from[i] < low ? from[i] : low;
+            high = from[i] > high ? from[i] : high;
+        }
+    }
+    range[0] = low;
+    range[1] = high;
+}
+
+void elevation_choose_tiles(ElevationLevel *level, int tile_j, const int32_t *row)
+{
+    for (int ti = 0; ti < level->tiles_x; ti++) {
+        int32_t range[2];
+        elevation_tile_range(range, level, ti, tile_j, row);
+        level->tile[(size_t)tile_j * (size_t)level->tiles_x + (size_t)ti] = elevation_tile_of(range[0], range[1]);
+    }
+}
+
+Status elevation_fill(ElevationLevel *level, const int32_t *post)
+{
+    const size_t posts = (size_t)level->nx * (size_t)level->ny, tile_row = (size_t)level->nx * elevation_tile_cells;
+    int32_t      low = INT32_MAX, high = INT32_MIN;
+    for (size_t n = 0; n < posts; n++) {
+        low  = post[n] < low ? post[n] : low;
+        high = post[n] > high ? post[n] : high;
+    }
+    if (low < elevation_lowest_post || high > elevation_highest_post) return STATUS_BAD_VALUE;
+    level->plain = low >= 0 && high <= 65535;
+    memset(level->tile, 0, (size_t)level->tiles_x * (size_t)level->tiles_y * sizeof *level->tile);
+    for (int tj = 0; tj < level->tiles_y && !level->plain; tj++)
+        elevation_choose_tiles(level, tj, post + (size_t)tj * tile_row);
+    for (int tj = 0; tj < level->tiles_y; tj++) elevation_fill_tiles(level, tj, post + (size_t)tj * tile_row);
+    return STATUS_OK;
+}
+
+/* ---- pyramids: the highest post and the steepest rises of squares of cells ----------------------- */
+
+enum { square = 1 << elevation_pyramid_first, rise_square = 1 << elevation_rise_level };
+
+static inline uint16_t max_u16(uint16_t a, uint16_t b)
+{
+    return a > b ? a : b;
+}
+
+/* A height or a rise in units of 1 << shift, rounded up; at most 65535 by the choice of the shift. */
+static inline uint16_t rounded_up(int32_t posts, int shift)
+{
+    return (uint16_t)((posts + (1 << shift) - 1) >> shift);
+}
+
+static size_t tile_count(const ElevationLevel *level)
+{
+    return (size_t)level->tiles_x * (size_t)level->tiles_y;
+}
+
+/* Finest units that hold the level's heights and rises. */
+static void choose_units(ElevationLevel *level)
+{
+    int32_t base = INT32_MAX, top = INT32_MIN, shift = 0;
+    for (size_t t = 0; t < tile_count(level); t++) {
+        const ElevationTile tile = level->tile[t];
+        const uint16_t     *stored = level->stored + t * elevation_tile_posts;
+        uint16_t            most = 0;
+        for (int n = 0; n < elevation_tile_posts; n++) most = max_u16(most, stored[n]);
+        const int32_t high = tile.base + ((int32_t)most << tile.shift);
+        base  = tile.base < base ? tile.base : base;
+        top   = high > top ? high : top;
+        shift = tile.shift > shift ? tile.shift : shift;
+    }
+    level->pyramid_base = base;
+    level->rise_shift   = shift; /* an edge lies in one tile */
+    for (level->pyramid_shift = 0; top - base > 65535 << level->pyramid_shift;) level->pyramid_shift++;
+}
+
+/* The first maxima, a tile at a time: of the five rows of a square's posts, then of five columns. */
+static void tile_maxima(ElevationLevel *level, int ti, int tj)
+{
+    enum { k = elevation_pyramid_first, squares = elevation_tile_cells / square };
+    const size_t        t = (size_t)tj * (size_t)level->tiles_x + (size_t)ti;
+    const ElevationTile tile = level->tile[t];
+    const int           nx = level->pyramid_nx[k], wide = nx - ti * squares, tall = level->pyramid_ny[k] - tj * squares;
+    for (int j = 0; j < squares && j < tall; j++) {
+        const uint16_t *row = level->stored + t * elevation_tile_posts + (size_t)(j * square * elevation_tile_side);
+        uint16_t       *out = level->pyramid[k] + (size_t)(tj * squares + j) * (size_t)nx + (size_t)(ti * squares);
+        uint16_t        most[elevation_tile_side];
+        memcpy(most, row, sizeof most);
+        for (int n = 1; n <= square; n++)
+            for (int i = 0; i < elevation_tile_side; i++) most[i] = max_u16(most[i], row[n * elevation_tile_side + i]);
+        for (int i = 0; i < squares && i < wide; i++) {
+            uint16_t high = most[i * square];
+            for (int n = 1; n <= square; n++) high = max_u16(high, most[i * square + n]);
+            const int32_t above = tile.base - level->pyramid_base + ((int32_t)high << tile.shift);
+            out[i] = rounded_up(above, level->pyramid_shift);
+        }
+    }
+}
+
+/* A node's highest of up to four below it; equal for all levels, since they share one unit. */
+static void halve_maxima(uint16_t *restrict out, int out_w, int out_h, const uint16_t *restrict in, int w, int h)
+{
+    for (int j = 0; j < out_h; j++) {
+        const uint16_t *a = in + (size_t)(2 * j) * (size_t)w;
+        const uint16_t *b = 2 * j + 1 < h ? a + w : a;
+        uint16_t       *to = out + (size_t)j * (size_t)out_w;
+        for (int i = 0; i < w / 2; i++)
+            to[i] = max_u16(max_u16(a[2 * i], a[2 * i + 1]), max_u16(b[2 * i], b[2 * i + 1]));
+        if (w % 2) to[out_w - 1] = max_u16(a[w - 1], b[w - 1]);
+    }
+}
+
+/* Rise from a to b into `to`, from b to a into `from`, of count edges. */
+static void steepest(uint16_t *restrict to, uint16_t *restrict from, const uint16_t *a, const uint16_t *b, int count)
+{
+    for (int i = 0; i < count; i++) {
+        const uint16_t up = (uint16_t)(b[i] > a[i] ? b[i] - a[i] : 0), down = (uint16_t)(a[i] > b[i] ? a[i] - b[i] : 0);
+        to[i]   = max_u16(to[i], up);
+        from[i] = max_u16(from[i], down);
+    }
+}
+
+/* The first rises, a tile at a time: a row of nodes' steepest of each column of edges, then of a node's. */
+static void tile_rises(ElevationLevel *level, int ti, int tj)
+{
+    enum { k = elevation_rise_level, side = elevation_tile_side, squares = elevation_tile_cells / rise_square };
+    const size_t t = (size_t)tj * (size_t)level->tiles_x + (size_t)ti;
+    const int    shift = level->tile[t].shift, nx = level->pyramid_nx[k];
+    const int    wide = nx - ti * squares, tall = level->pyramid_ny[k] - tj * squares;
+    for (int j = 0; j < squares && j < tall; j++) {
+        const uint16_t *row = level->stored + t * elevation_tile_posts + (size_t)(j * rise_square * side);
+        ElevationRise  *out = level->rise[k] + (size_t)(tj * squares + j) * (size_t)nx + (size_t)(ti * squares);
+        uint16_t        steep[4][side] = {{0}};
+        for (int n = 0; n <= rise_square; n++, row += side) {
+            steepest(steep[0], steep[1], row, row + 1, side - 1);
+            if (n < rise_square) steepest(steep[2], steep[3], row, row + side, side);
+        }
+        for (int i = 0; i < squares && i < wide; i++) {
+            uint16_t most[4] = {0};
+            for (int c = 0; c < 4; c++) {
+                for (int n = 0; n < rise_square + (c >= 2); n++)
+                    most[c] = max_u16(most[c], steep[c][i * rise_square + n]);
+                most[c] = rounded_up((int32_t)most[c] << shift, level->rise_shift);
+            }
+            out[i] = (ElevationRise){most[0], most[1], most[2], most[3]};
+        }
+    }
+}
+
+static void halve_rises(ElevationLevel *level, int k)
+{
+    const int w = level->pyramid_nx[k - 1], h = level->pyramid_ny[k - 1];
+    for (int j = 0; j < level->pyramid_ny[k]; j++)
+        for (int i = 0; i < level->pyramid_nx[k]; i++) {
+            ElevationRise most = {0};
+            for (int n = 0; n < 4; n++) {
+                const int at_i = 2 * i + n % 2, at_j = 2 * j + n / 2;
+                if (at_i >= w || at_j >= h) continue;
+                const ElevationRise *part = &level->rise[k - 1][(size_t)at_j * (size_t)w + (size_t)at_i];
+                most.east  = max_u16(most.east, part->east);
+                most.west  = max_u16(most.west, part->west);
+                most.north = max_u16(most.north, part->north);
+                most.south = max_u16(most.south, part->south);
+            }
+            level->rise[k][(size_t)j * (size_t)level->pyramid_nx[k] + (size_t)i] = most;
+        }
+}
+
+void elevation_build_pyramid_tiles(ElevationLevel *level, int tile_j)
+{
+    for (int ti = 0; ti < level->tiles_x; ti++) {
+        tile_maxima(level, ti, tile_j);
+        if (level->pyramid_count > elevation_rise_level) tile_rises(level, ti, tile_j);
+    }
+}
+
+void elevation_begin_pyramid(ElevationLevel *level)
+{
+    elevation_fill_edges(level);
+    level->pyramid_base = level->pyramid_shift = level->rise_shift = 0;
+    if (!level->plain) choose_units(level);
+}
+
+void elevation_finish_pyramid(ElevationLevel *level)
+{
+    for (int k = elevation_pyramid_first + 1; k < level->pyramid_count; k++)
+        halve_maxima(level->pyramid[k], level->pyramid_nx[k], level->pyramid_ny[k], level->pyramid[k - 1],
+                     level->pyramid_nx[k - 1], level->pyramid_ny[k - 1]);
+    for (int k = elevation_rise_level + 1; k < level->pyramid_count; k++) halve_rises(level, k);
+}
+
+void elevation_build_pyramids(Elevation *elevation)
+{
+    for (int n = 0; n < elevation->level_count; n++) {
+        ElevationLevel *level = &elevation->level[n];
+        if (!level->stored || level->borrowed) continue;
+        elevation_begin_pyramid(level);
+        for (int tj = 0; tj < level->tiles_y; tj++) elevation_build_pyramid_tiles(level, tj);
+        elevation_finish_pyramid(level);
+    }
 }

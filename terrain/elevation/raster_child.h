@@ -1,9 +1,88 @@
-/* terrain/elevation/raster_child.h: the process that reads a set of rasters: started, asked, and given up when it ends or
- * does not answer. */
+/* terrain/elevation/raster_child.h: the processes that read the program's rasters (terrain/elevation/reader), and what
+ * both say to each other.
+ *
+ * The program starts one process, `pitviper-rasters`, which loads GDAL and opens no file of the user's; it is asked,
+ * over its first descriptor after the usual three, for a process for each set (WireOrder), and forks it. A channel is
+ * a pair of connected sockets and a piece of shared memory. The program writes a request there and sends an octet; the
+ * reader writes the reply, what it would log, and data, and sends one back. A channel carries one request at a time;
+ * there are several so that threads read at once. The reader believes the program. The program copies each reply
+ * before it looks at it, and believes nothing: the reader has parsed other people's files. */
 #ifndef TERRAIN_ELEVATION_RASTER_CHILD_H
 #define TERRAIN_ELEVATION_RASTER_CHILD_H
 
-#include "terrain/elevation/raster_wire.h"
+#include "pitviper.h"
+
+enum {
+    wire_channels     = 8,
+    wire_orders       = 3,                              /* descriptor that orders come from */
+    wire_descriptors  = wire_channels + 1,              /* sent along with WIRE_START: sockets, then the memory */
+    wire_most_rasters = 4096,
+    wire_most_sheets  = 65536,                          /* of all rasters */
+    wire_path_size    = 4096,
+    wire_key_size     = 128,
+    wire_log_octets   = 16384,
+    wire_data_octets  = 4 << 20,
+};
+
+typedef enum WireOrderKind {
+    WIRE_START, /* a process for a set; answer: its number, or minus the error */
+    WIRE_END,   /* it is ended, however it does; answer: its status as waitpid gives it */
+} WireOrderKind;
+
+typedef struct WireOrder {
+    int32_t kind, process;
+} WireOrder;
+
+typedef enum WireAsk {
+    WIRE_OPEN,          /* data: texts, each with its 0: the current folder, paths, folder, folders (raster_set.c). count: rasters */
+    WIRE_RASTER,        /* data: WireRaster of `raster` */
+    WIRE_SHEETS,        /* data: as many as fit of the sheets of `raster` from `first` on; count: how many */
+    WIRE_PX_FROM_EARTH, /* data: x[count], y[count], replaced */
+    WIRE_EARTH_FROM_PX,
+    WIRE_READ,          /* data: float [height][width], unless it is uniform: then `value` is all of them */
+    WIRE_READ_BYTES,    /* data: uint8_t [height][width][count], then valid [height][width] */
+    WIRE_UNIFORM,       /* whether a window of any size is known to be uniform without being read */
+} WireAsk;
+
+typedef struct WireRequest {
+    uint32_t ask;
+    int32_t  raster, first, count; /* first, count: of bands, sheets, places */
+    int32_t  x0, y0, width, height;
+    double   low, high;  /* of pixels: numbers outside are voids */
+    char     key[wire_key_size];
+} WireRequest;
+
+typedef struct WireReply {
+    int32_t status; /* Status */
+    int32_t count;
+    int32_t uniform;
+    float   value;
+} WireReply;
+
+/* Of a Raster, what it means (raster.h), what its file says of its numbers, and what the user
+ * does (raster.h). */
+typedef struct WireRaster {
+    double  posting_m[2], metres_per_unit, data_share, crs_unit_m, nodata, void_value;
+    int32_t width, height, bands, vertical, order, row_block, sheet_count, band, sense;
+    uint8_t ellipsoidal, bytes, whole, sparse, unit_of_crs, down, coloured, grey, has_nodata, has_void, no_void;
+    char    type[16], unit[32], crs[80], crs_unit[32], vertical_name[80], chosen_unit[16];
+} WireRaster;
+
+/* Followed by the path with its 0, to a whole number of 8 octets. */
+typedef struct WireSheet {
+    int32_t x0, y0, width, height, band, path_octets;
+} WireSheet;
+
+typedef struct WireChannel {
+    WireRequest request;
+    WireReply   reply;
+    uint64_t    alive;                  /* counts on while a request is worked at, at each file */
+    char        at[wire_path_size];     /* the file that is worked at */
+    char        log[wire_log_octets];   /* lines, each a LogLevel as a digit, its text, and a 0; an empty one is the last */
+    _Alignas(64) uint8_t data[wire_data_octets];
+} WireChannel;
+
+/* ---- the process that reads a set: started, asked, and given up when it ends or does not answer ---- */
 
 enum { raster_most_memory_mb = 4000 }; /* what the reader may take on top of its libraries */
 
@@ -16,15 +95,15 @@ void   raster_child_stop(RasterChild *child); /* accepts NULL; no request may be
 /* A channel that no thread uses; waits for one. */
 WireChannel *raster_child_take(RasterChild *child);
 void         raster_child_give(RasterChild *child, WireChannel *channel);
-/* The channel's request, answered: what the reader had to say is logged, and the reply copied. STATUS_IO: the reader has
- * ended or did nothing for too long, which is logged once and ends it for good, or a stop was asked for (work_stop_when).
- * Status of the reply itself: reply->status, one of Status. */
+/* The channel's request, answered: what the reader had to say is logged, and the reply copied. STATUS_IO: the reader
+ * has ended or did nothing for too long, which is logged once and ends it for good, or a stop was asked for
+ * (work_stop_when). Status of the reply itself: reply->status, one of Status. */
 Status raster_child_ask(RasterChild *child, WireChannel *channel, WireReply *reply);
 /* A reply cannot be what a reader sends: logged once, and the reader is ended. STATUS_BAD_VALUE. */
 Status raster_child_distrust(RasterChild *child, WireChannel *channel);
 
-/* For tests. Seconds without a sign of life after which a reader is given up; 0: as at the start, 120. Another program in the
- * place of pitviper-rasters, NULL: that again; no set may be open. */
+/* For tests. Seconds without a sign of life after which a reader is given up; 0: as at the start, 120. Another program
+ * in the place of pitviper-rasters, NULL: that again; no set may be open. */
 void   raster_child_patience(double s);
 void   raster_child_program(const char *path);
 

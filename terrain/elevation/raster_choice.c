@@ -1,5 +1,5 @@
 /* terrain/elevation/raster_choice.c: what a user says of a file, read off the end of its name. */
-#include "terrain/elevation/raster_choice.h"
+#include "terrain/elevation/raster.h"
 
 #include <strings.h>
 #include <sys/stat.h>

@@ -1,8 +1,12 @@
-/* terrain/elevation/raster_set.c: sets of rasters as the program has them: asked of the process that reads them, and checked. */
+/* terrain/elevation/raster_set.c: sets of rasters as the program has them: asked of the process that reads them, and
+ * checked; and rows that are kept. */
 #include "terrain/elevation/raster_child.h"
-#include "terrain/elevation/raster_kept.h"
+#include "terrain/elevation/raster.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -15,6 +19,108 @@ void raster_stay_within(const char *folder) { snprintf(only_within, sizeof only_
 void raster_sources_from(const char *folders) { snprintf(sources_from, sizeof sources_from, "%s", folders ? folders : ""); }
 
 const char *raster_sources(void) { return sources_from; }
+
+/* ---- rows that were read once, decoded, in a nameless file ---------------------------------------------- */
+
+/* The raster's rows in float, those that have been read, in pieces. */
+typedef struct RasterKept {
+    int           file;
+    int           band;
+    int           piece, pieces; /* px; of a row */
+    atomic_llong  left;          /* octets that may be written yet */
+    atomic_uchar *has;           /* [height][pieces] */
+} RasterKept;
+
+int raster_piece(const Raster *raster)
+{
+    enum { most = 65536, wide = 32768 }; /* a power of two: averages of 2, 4, 8 ... columns do not straddle pieces */
+    return raster->width <= most ? raster->width : wide;
+}
+
+static bool is_kept(const Raster *raster, int band) { return raster->kept && raster->kept->band == band; }
+
+static void kept_free(RasterKept *kept)
+{
+    if (!kept) return;
+    if (kept->file >= 0) close(kept->file);
+    free(kept->has);
+    free(kept);
+}
+
+void raster_keep(Raster *raster, int band, const char *folder, double most_octets)
+{
+    enum { most_marks = 1 << 28 };
+    RasterKept *kept = raster->kept || !(most_octets >= 1) ? NULL : calloc(1, sizeof *kept);
+    if (!kept) return;
+    kept->band   = band;
+    kept->piece  = raster_piece(raster);
+    kept->pieces = (raster->width - 1) / kept->piece + 1;
+    atomic_init(&kept->left, (long long)fmin(most_octets, 0x1p62));
+    if ((double)raster->height * kept->pieces <= most_marks)
+        kept->has = calloc((size_t)raster->height * (size_t)kept->pieces, sizeof *kept->has);
+    kept->file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (!kept->has || kept->file < 0) kept_free(kept); /* no such file system: read twice */
+    else raster->kept = kept;
+}
+
+static bool whole_io(bool write, int file, float *at, size_t count, size_t offset)
+{
+    char  *octets = (char *)at;
+    size_t left = count * sizeof *at;
+    off_t  where = (off_t)(offset * sizeof *at);
+    while (left > 0) {
+        const ssize_t n = write ? pwrite(file, octets, left, where) : pread(file, octets, left, where);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        octets += n;
+        where += n;
+        left -= (size_t)n;
+    }
+    return true;
+}
+
+/* Whole pieces (raster_piece) of rows into the file; a full disk only costs another reading. */
+static void keep_rows(const Raster *raster, float *rows, RasterWindow window)
+{
+    const int x0 = window.x0, y0 = window.y0, width = window.width, height = window.height;
+    RasterKept *kept = raster->kept;
+    const bool  whole = x0 % kept->piece == 0 && (x0 + width == raster->width || width % kept->piece == 0);
+    if (x0 < 0 || y0 < 0 || x0 + width > raster->width || y0 + height > raster->height || !whole) return;
+    const int first = x0 / kept->piece, pieces = (width - 1) / kept->piece + 1;
+    for (int y = y0; y < y0 + height; y++) {
+        atomic_uchar *has = kept->has + (size_t)y * (size_t)kept->pieces + (size_t)first;
+        bool          all = true;
+        for (int p = 0; p < pieces; p++) all &= atomic_load(&has[p]) != 0;
+        if (all) continue;
+        const long long octets = (long long)width * (long long)sizeof *rows;
+        if (atomic_fetch_sub(&kept->left, octets) < octets) {
+            atomic_fetch_add(&kept->left, octets);
+            return;
+        }
+        if (!whole_io(true, kept->file, rows + (size_t)(y - y0) * (size_t)width, (size_t)width,
+                      (size_t)y * (size_t)raster->width + (size_t)x0))
+            return;
+        for (int p = 0; p < pieces; p++) atomic_store(&has[p], 1);
+    }
+}
+
+/* False: not all of the window is there. */
+static bool read_kept(float *out, const Raster *raster, RasterWindow window)
+{
+    const int x0 = window.x0, y0 = window.y0, width = window.width, height = window.height;
+    const RasterKept *kept = raster->kept;
+    if (x0 < 0 || y0 < 0 || x0 + width > raster->width || y0 + height > raster->height) return false;
+    for (int y = y0; y < y0 + height; y++)
+        for (int p = x0 / kept->piece; p <= (x0 + width - 1) / kept->piece; p++)
+            if (!atomic_load(&kept->has[(size_t)y * (size_t)kept->pieces + (size_t)p])) return false;
+    if (x0 == 0 && width == raster->width)
+        return whole_io(false, kept->file, out, (size_t)width * (size_t)height, (size_t)y0 * (size_t)width);
+    for (int y = y0; y < y0 + height; y++)
+        if (!whole_io(false, kept->file, out + (size_t)(y - y0) * (size_t)width, (size_t)width,
+                        (size_t)y * (size_t)raster->width + (size_t)x0))
+            return false;
+    return true;
+}
 
 /* ---- what a set is ------------------------------------------------------------------------------------ */
 
@@ -194,7 +300,7 @@ void raster_set_close(RasterSet *set)
         Raster *raster = &set->raster[k];
         for (int n = 0; n < raster->sheet_count; n++) free(raster->sheet[n].path);
         free(raster->sheet);
-        raster_kept_free(raster->kept);
+        kept_free(raster->kept);
     }
     free(set->raster);
     raster_child_stop(set->child);
@@ -290,14 +396,15 @@ static bool next_part(Part *p, int width, int height, size_t octets)
     return p->y < height && p->width > 0;
 }
 
-bool raster_uniform(float *value, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key)
+bool raster_uniform(float *value, const Raster *raster, int band, RasterWindow window, const char *key)
 {
     WireReply reply;
     if (!raster->sparse) return false;
     WireChannel *channel = raster_child_take(raster->child);
     begin(channel, WIRE_UNIFORM, raster, key);
     WireRequest *r = &channel->request;
-    r->first = band, r->count = 1, r->x0 = x0, r->y0 = y0, r->width = width, r->height = height;
+    r->first = band, r->count = 1;
+    r->x0 = window.x0, r->y0 = window.y0, r->width = window.width, r->height = window.height;
     const Status status = answer(raster->child, channel, &reply);
     raster_child_give(raster->child, channel);
     if (status != STATUS_OK || !reply.uniform) return false;
@@ -305,20 +412,21 @@ bool raster_uniform(float *value, const Raster *raster, int band, int x0, int y0
     return true;
 }
 
-Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key)
+Status raster_read(float *out, const Raster *raster, int band, RasterWindow window, const char *key)
 {
-    const bool keeps = raster_keeps(raster, band);
+    const int  width = window.width;
+    const bool keeps = is_kept(raster, band);
     bool       uniform = true;
     Part       part = {0};
     WireReply  reply;
     Status     status = STATUS_OK;
-    if (keeps && raster_read_kept(out, raster, x0, y0, width, height)) return STATUS_OK;
+    if (keeps && read_kept(out, raster, window)) return STATUS_OK;
     WireChannel *channel = raster_child_take(raster->child);
-    while (status == STATUS_OK && next_part(&part, width, height, sizeof *out)) {
+    while (status == STATUS_OK && next_part(&part, width, window.height, sizeof *out)) {
         begin(channel, WIRE_READ, raster, key);
         WireRequest *r = &channel->request;
         r->first = band, r->count = 1;
-        r->x0 = x0 + part.x, r->y0 = y0 + part.y, r->width = part.width, r->height = part.height;
+        r->x0 = window.x0 + part.x, r->y0 = window.y0 + part.y, r->width = part.width, r->height = part.height;
         status = answer(raster->child, channel, &reply);
         uniform &= reply.uniform != 0;
         for (int row = 0; row < part.height && status == STATUS_OK; row++) {
@@ -330,23 +438,24 @@ Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, i
         }
     }
     raster_child_give(raster->child, channel);
-    if (status == STATUS_OK && keeps && !uniform) raster_keep_rows(raster, out, x0, y0, width, height);
+    if (status == STATUS_OK && keeps && !uniform) keep_rows(raster, out, window);
     return status;
 }
 
-Status raster_read_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, int first_band, int bands, int x0, int y0,
-                         int width, int height, const char *key)
+Status raster_read_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, int first_band, int bands,
+                         RasterWindow window, const char *key)
 {
+    const int width = window.width;
     Part      part = {0};
     WireReply reply;
     Status    status = STATUS_OK;
     if (bands < 1 || bands > 4) return STATUS_BAD_VALUE;
     WireChannel *channel = raster_child_take(raster->child);
-    while (status == STATUS_OK && next_part(&part, width, height, (size_t)bands + 1)) {
+    while (status == STATUS_OK && next_part(&part, width, window.height, (size_t)bands + 1)) {
         begin(channel, WIRE_READ_BYTES, raster, key);
         WireRequest *r = &channel->request;
         r->first = first_band, r->count = bands;
-        r->x0 = x0 + part.x, r->y0 = y0 + part.y, r->width = part.width, r->height = part.height;
+        r->x0 = window.x0 + part.x, r->y0 = window.y0 + part.y, r->width = part.width, r->height = part.height;
         status = answer(raster->child, channel, &reply);
         const size_t   row_octets = (size_t)part.width * (size_t)bands;
         const uint8_t *of_valid = channel->data + row_octets * (size_t)part.height;

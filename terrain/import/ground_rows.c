@@ -1,8 +1,5 @@
 /* terrain/import/ground_rows.c: samples rasters at rows of cells of ENU, on all threads. */
-#include "terrain/import/ground_rows.h"
-
-#include "terrain/landscape/cover_table.h"
-#include "terrain/landscape/photo.h"
+#include "terrain/import/terrain_import_private.h"
 
 #include <stdlib.h>
 
@@ -100,18 +97,27 @@ static void read_rows(void *user, int worker, int task)
     const size_t at = (size_t)(y0 - box[1]) * (size_t)box_w(job);
     if (job->bytes)
         job->status[task] = raster_read_bytes(job->bytes + at * (size_t)job->bands, job->valid + at, job->raster,
-                                              job->band, job->bands, box[0], y0, box_w(job), y1 - y0, job->view->key);
+                                              job->band, job->bands, (RasterWindow){box[0], y0, box_w(job), y1 - y0},
+                                              job->view->key);
     else
-        job->status[task] = raster_read(job->number + at, job->raster, job->band, box[0], y0, box_w(job), y1 - y0,
-                                        job->view->key);
+        job->status[task] = raster_read(job->number + at, job->raster, job->band,
+                                        (RasterWindow){box[0], y0, box_w(job), y1 - y0}, job->view->key);
 }
 
 typedef enum Samples { AS_BYTES, AS_NUMBERS, AS_THEY_ARE } Samples;
 
+typedef struct Sampling {
+    int       most_bands;
+    Samples   samples;
+    PoolTask *sample; /* of some rows of cells */
+} Sampling;
+
 /* One raster after the other: its box read, then the rows of cells sampled. */
-static Status each_raster(void *out, const RasterSet *set, int band, int most_bands, Samples samples,
-                          const CellRows *cells, const GroundView *view, PoolTask *sample)
+static Status each_raster(void *out, const RasterSet *set, int band, const Sampling *how, const CellRows *cells,
+                          const GroundView *view)
 {
+    const Samples samples = how->samples;
+    const int     most_bands = how->most_bands;
     Status status = STATUS_OK;
     for (int k = 0; k < set->count && status == STATUS_OK; k++) {
         const Raster *raster = &set->raster[k];
@@ -131,7 +137,7 @@ static Status each_raster(void *out, const RasterSet *set, int band, int most_ba
         if (status == STATUS_OK && !pool_run_unless_stopped(view->pool, tasks, read_rows, &job)) status = STATUS_IO;
         for (int n = 0; status == STATUS_OK && n < tasks; n++) status = job.status[n];
         if (status == STATUS_OK &&
-            !pool_run_unless_stopped(view->pool, (cells->rows + rows_a_task - 1) / rows_a_task, sample, &job))
+            !pool_run_unless_stopped(view->pool, (cells->rows + rows_a_task - 1) / rows_a_task, how->sample, &job))
             status = STATUS_IO;
         free(job.status);
         free(job.bytes);
@@ -166,7 +172,7 @@ static void sample_codes(void *user, int worker, int task)
                 const int64_t at = pixel_of(job, x[i], y[i]);
                 if (at < 0 || to[i] > 1) continue; /* 1: code 0, which most files have where they know nothing */
                 const float code = !job->bytes ? job->number[at] : job->valid[at] ? (float)job->bytes[at] : NAN;
-                if (code >= 0 && code < cover_codes_most && (code > 0 || to[i] == 0)) to[i] = (uint16_t)(code + 1);
+                if (code >= 0 && code < surface_codes_most && (code > 0 || to[i] == 0)) to[i] = (uint16_t)(code + 1);
             }
         }
 }
@@ -249,16 +255,16 @@ static void sample_colours(void *user, int worker, int task)
 
 Status ground_rows_codes(uint16_t *code, const RasterSet *set, int band, const CellRows *cells, const GroundView *view)
 {
-    return each_raster(code, set, band, 1, AS_THEY_ARE, cells, view, sample_codes);
+    return each_raster(code, set, band, &(Sampling){1, AS_THEY_ARE, sample_codes}, cells, view);
 }
 
 Status ground_rows_numbers(float *value, const RasterSet *set, int band, const CellRows *cells, const GroundView *view)
 {
-    return each_raster(value, set, band, 1, AS_NUMBERS, cells, view, sample_numbers);
+    return each_raster(value, set, band, &(Sampling){1, AS_NUMBERS, sample_numbers}, cells, view);
 }
 
 Status ground_rows_colours(uint8_t *rgba, const RasterSet *set, const CellRows *cells, const GroundView *view)
 {
     codes_fill();
-    return each_raster(rgba, set, 1, 3, AS_BYTES, cells, view, sample_colours);
+    return each_raster(rgba, set, 1, &(Sampling){3, AS_BYTES, sample_colours}, cells, view);
 }

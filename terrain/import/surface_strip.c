@@ -1,8 +1,6 @@
-/* terrain/import/surface_strip.c: overlapping windows of a surface model taken apart; beyond its data the ground that
- * the files lead over to. */
-#include "terrain/import/surface_strip.h"
-
-#include "terrain/import/ground_rows.h"
+/* terrain/import/surface_strip.c: overlapping windows of a surface model taken apart, beyond its data the ground that
+ * the files lead over to; and buildings counted. */
+#include "terrain/import/terrain_import_private.h"
 
 #include <stdlib.h>
 
@@ -111,7 +109,7 @@ static void take_window(void *user, int worker, int task)
     }
     const SurfaceModel model = {.nx = nx, .ny = ny, .cell_m = w->level.spacing_m, .surface_m = surface_m,
                                 .bare_m = bare_in_m, .rgb = rgb, .column = i0, .row = w->r0};
-    w->status[task] = surface_take_apart(&parts, &model);
+    w->status[task] = take_apart_surface(&parts, &model);
     if (w->status[task] != STATUS_OK) goto done;
     w->crown[task] = malloc(((size_t)parts.crown_count + 1) * sizeof **w->crown);
     if (w->crown[task]) keep_window(w, &parts, task, i0, nx, ny);
@@ -223,4 +221,56 @@ Status surface_strip_make(SurfaceStrip *out, const SurfaceSources *from, int row
     if (status == STATUS_OK) *out = strip;
     else surface_strip_free(&strip);
     return status;
+}
+
+/* ---- buildings counted: connected parts of cells, joined row by row ------------------------------ */
+
+static int root_of(int *parent, int label)
+{
+    while (parent[label] != label) label = parent[label] = parent[parent[label]];
+    return label;
+}
+
+Status terrain_buildings_count(TerrainBuildings *b, int nx, const uint8_t *kind)
+{
+    const size_t most = 2 * (size_t)nx + 2;
+    if (!b->label) {
+        b->label   = calloc((size_t)nx, sizeof *b->label);
+        b->parent  = malloc(most * sizeof *b->parent);
+        b->compact = malloc(most * sizeof *b->compact);
+        if (!b->label || !b->parent || !b->compact) return STATUS_NO_MEMORY;
+    }
+    int labels = b->labels;
+    for (int k = 0; k <= labels; k++) b->parent[k] = k;
+    for (int i = 0; i < nx; i++) {
+        const int west = i > 0 ? b->label[i - 1] : 0, south = b->label[i];
+        if (kind[i] != CELL_BUILDING) b->label[i] = 0;
+        else if (west && south) {
+            const int a = root_of(b->parent, west), c = root_of(b->parent, south);
+            b->count -= a != c;
+            b->parent[a] = c;
+        } else if (west || south) b->label[i] = west + south;
+        else {
+            b->label[i] = ++labels;
+            b->parent[labels] = labels;
+            b->count++;
+        }
+    }
+    memset(b->compact, 0, ((size_t)labels + 1) * sizeof *b->compact);
+    b->labels = 0;
+    for (int i = 0; i < nx; i++) {
+        if (!b->label[i]) continue;
+        int *to = &b->compact[root_of(b->parent, b->label[i])];
+        if (*to == 0) *to = ++b->labels;
+        b->label[i] = *to;
+    }
+    return STATUS_OK;
+}
+
+void terrain_buildings_free(TerrainBuildings *b)
+{
+    free(b->label);
+    free(b->parent);
+    free(b->compact);
+    *b = (TerrainBuildings){0};
 }

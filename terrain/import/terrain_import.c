@@ -1,12 +1,8 @@
 /* terrain/import/terrain_import.c: files to a terrain store: plan, the levels around, level 0 strip by strip with what
- * covers it. */
-#include "terrain/import/terrain_import.h"
-
+ * covers it (terrain_cover.c). */
 #include "pitviper_file.h"
-#include "terrain/import/building_count.h"
-#include "terrain/import/ground_rows.h"
-#include "terrain/import/surface_strip.h"
-#include "terrain/landscape/cover_table.h"
+#include "terrain/import/terrain_import_private.h"
+
 
 #include <stdlib.h>
 #include <sys/statvfs.h>
@@ -15,33 +11,8 @@ enum { rows_plain = 512, rows_apart = 1024, most_sources = 8192, options_size = 
 
 static const char module[] = "terrain import";
 
-typedef struct Making {
-    const TerrainOptions *o;
-    Pool            *pool;
-    TerrainWatch     watch;
-    double           told_s, keep_octets;
-    LocalFrame       frame;
-    ElevationFiles   files[2];        /* terrain model, surface model */
-    ElevationStream *terrain, *surface, *first; /* first: whose levels are made */
-    RasterSet        opened; /* the first's files, until it has them */
-    RasterSet        cover, photo, canopy_height, canopy_cover;
-    CoverTable       table;
-    int              cover_band;
-    StorePlan        plan;
-    StoreSource     *source;
-    char            *list[2];         /* terrain model, surface model: with what the options say of them */
-    char            *options, notes[2048], datum[256], folder[terrain_path_size];
-    StoreWriter     *writer;
-    StreamLevel      level;
-    int              strip_rows;
-    long             kinds[3];
-    BuildingCount    buildings;
-    long             voids, voids_coarser;
-    TerrainReport    r;
-} Making;
-
 /* False: stop. */
-static bool go_on(Making *m, const char *stage, double share, bool now)
+static bool go_on(StoreImport *m, const char *stage, double share, bool now)
 {
     const double s = wall_clock_s();
     if (!m->watch.progress || (!now && s - m->told_s < 0.1)) return true;
@@ -65,7 +36,7 @@ static Status open_set(RasterSet *out, const char *paths, const char *option, bo
     return status;
 }
 
-static Status open_sources(Making *m)
+static Status open_sources(StoreImport *m)
 {
     const TerrainOptions *o = m->o;
     Geodetic origin = {o->origin_deg[0] * rad_per_deg, o->origin_deg[1] * rad_per_deg, 0};
@@ -111,7 +82,7 @@ static Status open_sources(Making *m)
 
 /* Cells of a power of two times the posts' spacing, about as large as pixels, over level 0; or, with a set, only over
  * its part of that, from whole nodes on. */
-static void plan_grid(StoreGrid *out, const Making *m, double posting_m, const RasterSet *set, int finest)
+static void plan_grid(StoreGrid *out, const StoreImport *m, double posting_m, const RasterSet *set, int finest)
 {
     const double s = m->level.spacing_m;
     const int    p = (int)clamp(floor(log2(posting_m / s) + 0.5), finest, 6);
@@ -138,13 +109,8 @@ static void plan_grid(StoreGrid *out, const Making *m, double posting_m, const R
     else *out = (StoreGrid){i1 - i0, j1 - j0, x0_m + i0 * cell_m, y0_m + j0 * cell_m, cell_m};
 }
 
-static double finest_m(const RasterSet *set)
-{
-    return set->count ? fmin(set->raster[0].posting_m[0], set->raster[0].posting_m[1]) : 0;
-}
-
 /* Over all that the cover files show, at eight times the cells, at most 2000 each way about the origin. */
-static void plan_wide(StoreGrid *out, const Making *m, double cell_m)
+static void plan_wide(StoreGrid *out, const StoreImport *m, double cell_m)
 {
     enum { half = 1000 };
     int a[2] = {half, half}, b[2] = {-half, -half};
@@ -160,7 +126,7 @@ static void plan_wide(StoreGrid *out, const Making *m, double cell_m)
     if (b[0] > a[0] && b[1] > a[1]) *out = (StoreGrid){b[0] - a[0], b[1] - a[1], a[0] * cell_m, a[1] * cell_m, cell_m};
 }
 
-static Status list_sources(Making *m)
+static Status list_sources(StoreImport *m)
 {
     const RasterSet *sets[] = {m->terrain ? elevation_stream_files(m->terrain) : NULL,
                                m->surface ? elevation_stream_files(m->surface) : NULL, &m->cover, &m->photo,
@@ -182,7 +148,7 @@ static Status list_sources(Making *m)
     return STATUS_OK;
 }
 
-static Status plan(Making *m)
+static Status plan(StoreImport *m)
 {
     StorePlan *p = &m->plan;
     p->origin      = m->frame.origin;
@@ -196,9 +162,9 @@ static Status plan(Making *m)
     }
     m->strip_rows = m->surface ? rows_apart : rows_plain;
     if (m->surface) plan_grid(&p->surface[0], m, m->level.spacing_m, NULL, 0);
-    else if (m->cover.count) plan_grid(&p->surface[0], m, finest_m(&m->cover), &m->cover, 0);
-    if (m->cover.count) plan_wide(&p->surface[1], m, 8 * fmax(p->surface[0].cell_m, finest_m(&m->cover)));
-    if (m->photo.count) plan_grid(&p->albedo, m, finest_m(&m->photo), &m->photo, -3);
+    else if (m->cover.count) plan_grid(&p->surface[0], m, import_finest_m(&m->cover), &m->cover, 0);
+    if (m->cover.count) plan_wide(&p->surface[1], m, 8 * fmax(p->surface[0].cell_m, import_finest_m(&m->cover)));
+    if (m->photo.count) plan_grid(&p->albedo, m, import_finest_m(&m->photo), &m->photo, -3);
     if (m->photo.count && p->albedo.nx == 0) {
         log_error("terrain import: --photo: %s does not reach the terrain; leave it out, or name one of the place",
                   m->photo.raster[0].sheet[0].path);
@@ -209,8 +175,9 @@ static Status plan(Making *m)
         p->canopy_cover = p->canopy_height;
     }
     if (m->canopy_height.count)
-        plan_grid(&p->canopy_height, m, fmax(finest_m(&m->canopy_height), 4), &m->canopy_height, 0);
-    if (m->canopy_cover.count) plan_grid(&p->canopy_cover, m, fmax(finest_m(&m->canopy_cover), 4), &m->canopy_cover, 0);
+        plan_grid(&p->canopy_height, m, fmax(import_finest_m(&m->canopy_height), 4), &m->canopy_height, 0);
+    if (m->canopy_cover.count)
+        plan_grid(&p->canopy_cover, m, fmax(import_finest_m(&m->canopy_cover), 4), &m->canopy_cover, 0);
     ElevationReport e;
     Status status = elevation_stream_report(&e, m->first, NULL);
     if (status == STATUS_OK) status = list_sources(m);
@@ -238,9 +205,9 @@ static Status plan(Making *m)
     return STATUS_OK;
 }
 
-/* Says what there is to do, before it is done; no more than is allowed, and than the disk has room for. Decoded rows are
- * kept, where that is worth it, in what the store leaves of both. */
-static Status say_size(Making *m, const char *path)
+/* Says what there is to do, before it is done; no more than is allowed, and than the disk has room for. Decoded rows
+ * are kept, where that is worth it, in what the store leaves of both. */
+static Status say_size(StoreImport *m, const char *path)
 {
     enum { reads_per_octet = 64 };
     const double   most = 1e9 * m->o->most_gb;
@@ -276,7 +243,7 @@ static Status say_size(Making *m, const char *path)
 }
 
 /* The levels around: all files are read once. */
-static Status begin(Making *m)
+static Status begin(StoreImport *m)
 {
     const bool   both = m->surface && m->terrain;
     const double keep_octets = both ? 0.5 * m->keep_octets : m->keep_octets;
@@ -287,235 +254,23 @@ static Status begin(Making *m)
     return status;
 }
 
-/* ---- what covers the ground ------------------------------------------------------------------ */
-
-static double ground_z(void *user, double x_m, double y_m)
-{
-    return elevation_stream_around(user, x_m, y_m);
-}
-
-static GroundView view_of(const Making *m, const char *key)
-{
-    return (GroundView){&m->frame, ground_z, m->first, m->pool, key};
-}
-
-/* Rows of a grid that lie beside rows row0 .. row0 + rows - 1 of level 0: each row once. */
-static bool rows_of(CellRows *out, int *first, const StoreGrid *g, const Making *m, int row0, int rows)
-{
-    if (g->nx == 0) return false;
-    const double y_m = (m->level.j0 - 0.5) * m->level.spacing_m, s = m->level.spacing_m;
-    const bool   last = row0 + rows == m->level.ny;
-    const double from = ceil((y_m + row0 * s - g->y0_m) / g->cell_m - 1e-6);
-    const double to = last ? g->ny : ceil((y_m + (row0 + rows) * s - g->y0_m) / g->cell_m - 1e-6);
-    const int    a = (int)clamp(from, 0, g->ny), b = (int)clamp(to, 0, g->ny);
-    if (b <= a) return false;
-    *out   = (CellRows){g->nx, b - a, g->x0_m, g->y0_m + a * g->cell_m, g->cell_m};
-    *first = a;
-    return true;
-}
-
-/* The wide window of classes comes first: its codes choose the table. */
-static Status make_wide(Making *m)
-{
-    const StoreGrid *g = &m->plan.surface[1];
-    if (g->nx == 0 && m->cover.count) {
-        log_error("terrain import: --cover: %s does not reach the terrain; leave it out, or name one of the place",
-                  m->cover.raster[0].sheet[0].path);
-        return STATUS_BAD_VALUE;
-    }
-    if (g->nx == 0) return STATUS_OK;
-    const Raster    *raster = &m->cover.raster[0];
-    const CellRows   cells = {g->nx, g->ny, g->x0_m, g->y0_m, g->cell_m};
-    const GroundView view = view_of(m, "terrain import: --cover");
-    const size_t     count = (size_t)g->nx * (size_t)g->ny;
-    uint16_t        *code = calloc(count, sizeof *code);
-    uint8_t         *surface = malloc(count);
-    long             histogram[cover_codes_most] = {0};
-    m->cover_band = raster->sheet[0].band ? 0 : raster->bands >= 8 ? 4 : 1;
-    Status status = code && surface ? ground_rows_codes(code, &m->cover, m->cover_band, &cells, &view) : STATUS_NO_MEMORY;
-    for (size_t n = 0; status == STATUS_OK && n < count; n++)
-        if (code[n]) histogram[code[n] - 1]++;
-    if (status == STATUS_OK) status = cover_table_choose(&m->table, &m->r.cover.table, m->o->cover_table, histogram);
-    long known = 0;
-    for (size_t n = 0; status == STATUS_OK && n < count; n++) {
-        surface[n] = code[n] ? m->table.surface[code[n] - 1] : SURFACE_NONE;
-        known += surface[n] != SURFACE_NONE;
-    }
-    if (status == STATUS_OK && known == 0) {
-        log_error("terrain import: --cover: none of the codes of %s is in the table %s; give --cover-table",
-                  raster->sheet[0].path, m->r.cover.table);
-        status = STATUS_BAD_VALUE;
-    }
-    if (status == STATUS_OK) status = store_write_surface(m->writer, 1, g->ny, surface);
-    m->r.cover.posting_m = finest_m(&m->cover);
-    m->r.cover.band      = raster->sheet[0].band ? raster->sheet[0].band : m->cover_band;
-    free(code);
-    free(surface);
-    return status;
-}
-
-/* Classes of a strip: the file's; built where a building stands; grass under crowns where no file says. */
-static Status make_surface(Making *m, int row0, int rows, const SurfaceStrip *strip)
-{
-    CellRows cells;
-    int      first;
-    if (!rows_of(&cells, &first, &m->plan.surface[0], m, row0, rows)) return STATUS_OK;
-    const size_t count = (size_t)cells.nx * (size_t)cells.rows;
-    uint16_t    *of_file = m->cover.count ? calloc(count, sizeof *of_file) : NULL;
-    uint8_t     *code = calloc(count, 1);
-    Status       status = code && (of_file || !m->cover.count) ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK && of_file) {
-        const GroundView view = view_of(m, "terrain import: --cover");
-        status = ground_rows_codes(of_file, &m->cover, m->cover_band, &cells, &view);
-        for (size_t n = 0; n < count; n++) {
-            m->r.cover.unknown += of_file[n] > 1 && !m->table.known[of_file[n] - 1];
-            code[n] = of_file[n] ? m->table.surface[of_file[n] - 1] : SURFACE_NONE;
-        }
-    }
-    free(of_file);
-    for (size_t n = 0; strip && status == STATUS_OK && n < count; n++) { /* cells and posts are one to one */
-        if (strip->kind[n] == CELL_BUILDING) code[n] = SURFACE_BUILT;
-        else if (strip->kind[n] == CELL_TREE && code[n] == SURFACE_NONE) code[n] = SURFACE_GRASS;
-    }
-    long of_class[256] = {0};
-    for (size_t n = 0; status == STATUS_OK && n < count; n++) of_class[code[n]]++;
-    for (int s = 1; s < SURFACE_COUNT; s++) m->r.cover.share[s] += (double)of_class[s]; /* made shares at the end */
-    if (status == STATUS_OK) status = store_write_surface(m->writer, 0, cells.rows, code);
-    free(code);
-    return status;
-}
-
-static Status make_albedo(Making *m, int row0, int rows)
-{
-    enum { some_rows = 512 }; /* where pixels are finer than posts */
-    CellRows all;
-    int      first;
-    if (!rows_of(&all, &first, &m->plan.albedo, m, row0, rows)) return STATUS_OK;
-    const GroundView view = view_of(m, "terrain import: --photo");
-    Status status = STATUS_OK;
-    for (int j = 0; j < all.rows && status == STATUS_OK; j += some_rows) {
-        CellRows cells = all;
-        cells.rows = all.rows - j < some_rows ? all.rows - j : some_rows;
-        cells.y0_m = all.y0_m + j * all.cell_m;
-        uint8_t *rgba = calloc((size_t)cells.nx * (size_t)cells.rows, 4);
-        status = rgba ? ground_rows_colours(rgba, &m->photo, &cells, &view) : STATUS_NO_MEMORY;
-        if (status == STATUS_OK) status = store_write_albedo(m->writer, cells.rows, rgba);
-        free(rgba);
-    }
-    return status;
-}
-
-/* ---- canopy ---------------------------------------------------------------------------------- */
-
-/* In the unit that the file states. Without one whole numbers above 80 are no metres: LANDFIRE's are tenths of them. */
-static Status look_at_canopy(Making *m)
-{
-    const RasterSet *set = &m->canopy_height;
-    enum { rows = 64 };
-    if (set->count == 0) return STATUS_OK;
-    const Raster *raster = &set->raster[0];
-    const int     band = raster->sheet[0].band ? raster->sheet[0].band : 1;
-    const char   *unit = *raster->choice.unit ? raster->choice.unit : raster->stated.unit;
-    if (*unit) {
-        m->r.canopy_scale_m = raster_unit_m(unit);
-        if (m->r.canopy_scale_m > 0) return STATUS_OK;
-        log_error("terrain import: --canopy-height: %s: its unit is '%s', which is no length that is known here; say it: "
-                  "%s@m, or %s@dm", raster->sheet[0].path, unit, raster->sheet[0].path, raster->sheet[0].path);
-        return STATUS_BAD_VALUE;
-    }
-    float        *some = malloc((size_t)raster->width * sizeof *some), most = 0;
-    Status        status = some ? STATUS_OK : STATUS_NO_MEMORY;
-    for (int r = 0; r < rows && status == STATUS_OK; r++) {
-        status = raster_read(some, raster, band, 0, (int)((int64_t)r * raster->height / rows), raster->width, 1,
-                             "terrain import: --canopy-height");
-        for (int i = 0; i < raster->width && status == STATUS_OK; i++) most = some[i] > most ? some[i] : most;
-    }
-    free(some);
-    m->r.canopy_scale_m = raster->whole && most > 80 ? 0.1 : 1;
-    return status;
-}
-
-static Status canopy_of_file(Making *m, bool height, int row0, int rows)
-{
-    const RasterSet *set = height ? &m->canopy_height : &m->canopy_cover;
-    CellRows cells;
-    int      first;
-    const StoreGrid *g = height ? &m->plan.canopy_height : &m->plan.canopy_cover;
-    if (!rows_of(&cells, &first, g, m, row0, rows)) return STATUS_OK;
-    const GroundView view = view_of(m, height ? "terrain import: --canopy-height" : "terrain import: --canopy-cover");
-    const size_t     count = (size_t)cells.nx * (size_t)cells.rows;
-    const double     scale = height ? m->r.canopy_scale_m / store_canopy_height_m : 0.01 / store_canopy_cover;
-    float           *value = malloc(count * sizeof *value);
-    uint8_t         *octet = malloc(count);
-    Status           status = value && octet ? STATUS_OK : STATUS_NO_MEMORY;
-    for (size_t n = 0; status == STATUS_OK && n < count; n++) value[n] = NAN;
-    if (status == STATUS_OK) status = ground_rows_numbers(value, set, 0, &cells, &view);
-    for (size_t n = 0; status == STATUS_OK && n < count; n++)
-        octet[n] = (uint8_t)(value[n] > 0 ? fmin(rint((double)value[n] * scale), height ? 255 : 100) : 0);
-    if (status == STATUS_OK)
-        status = (height ? store_write_canopy_height : store_write_canopy_cover)(m->writer, cells.rows, octet);
-    free(value);
-    free(octet);
-    return status;
-}
-
-/* Of the crowns that were found: highest, and share of the posts in each cell. */
-static Status canopy_of_strip(Making *m, bool height, int row0, int rows, const SurfaceStrip *strip)
-{
-    CellRows cells;
-    int      first;
-    const StoreGrid *g = height ? &m->plan.canopy_height : &m->plan.canopy_cover;
-    if (!rows_of(&cells, &first, g, m, row0, rows)) return STATUS_OK;
-    const int nx = m->level.nx, side = (int)lrint(g->cell_m / m->level.spacing_m);
-    uint8_t  *octet = calloc((size_t)cells.nx * (size_t)cells.rows, 1);
-    if (!octet) return STATUS_NO_MEMORY;
-    for (int j = 0; j < cells.rows; j++)
-        for (int i = 0; i < cells.nx; i++) {
-            double most_m = 0;
-            int    trees = 0, posts = 0;
-            for (int b = j * side; b < (j + 1) * side && b < rows; b++)
-                for (int a = i * side; a < (i + 1) * side && a < nx; a++) {
-                    const size_t at = (size_t)b * (size_t)nx + (size_t)a;
-                    posts++;
-                    trees += strip->kind[at] == CELL_TREE;
-                    most_m = fmax(most_m, (double)strip->canopy_m[at]);
-                }
-            octet[(size_t)j * (size_t)cells.nx + (size_t)i] =
-                (uint8_t)(height ? fmin(rint(most_m / store_canopy_height_m), 255)
-                                 : rint(100.0 * trees / (posts + !posts)));
-        }
-    const Status status = (height ? store_write_canopy_height : store_write_canopy_cover)(m->writer, cells.rows, octet);
-    free(octet);
-    return status;
-}
-
-static Status make_canopy(Making *m, int row0, int rows, const SurfaceStrip *strip)
-{
-    Status status = STATUS_OK;
-    for (int height = 0; height < 2 && status == STATUS_OK; height++) {
-        if ((height ? &m->canopy_height : &m->canopy_cover)->count) status = canopy_of_file(m, height, row0, rows);
-        else if (strip) status = canopy_of_strip(m, height, row0, rows, strip);
-    }
-    return status;
-}
-
 /* ---- strips ---------------------------------------------------------------------------------- */
 
-static Status count_kinds(Making *m, int rows, const SurfaceStrip *strip)
+static Status count_kinds(StoreImport *m, int rows, const SurfaceStrip *strip)
 {
     const size_t nx = (size_t)m->level.nx;
     Status       status = STATUS_OK;
     for (int r = 0; r < rows && status == STATUS_OK; r++) {
         const uint8_t *row = strip->kind + (size_t)r * nx;
         for (size_t i = 0; i < nx; i++) m->kinds[row[i] <= CELL_TREE ? row[i] : 0]++;
-        status = building_count_row(&m->buildings, m->level.nx, row);
+        status = terrain_buildings_count(&m->buildings, m->level.nx, row);
     }
     m->voids += strip->voids;
     m->voids_coarser += strip->voids_coarser;
     return status;
 }
 
-static Status make_strip(Making *m, int row0, int rows)
+static Status make_strip(StoreImport *m, int row0, int rows)
 {
     const SurfaceSources from = {m->surface, m->terrain, m->photo.count ? &m->photo : NULL, &m->frame, m->pool};
     SurfaceStrip strip = {0};
@@ -535,9 +290,9 @@ static Status make_strip(Making *m, int row0, int rows)
     free(strip.h_m);
     strip.h_m = NULL;
     const double written_s = wall_clock_s();
-    if (status == STATUS_OK) status = make_surface(m, row0, rows, m->surface ? &strip : NULL);
-    if (status == STATUS_OK) status = make_albedo(m, row0, rows);
-    if (status == STATUS_OK) status = make_canopy(m, row0, rows, m->surface ? &strip : NULL);
+    if (status == STATUS_OK) status = import_cover(m, row0, rows, m->surface ? &strip : NULL);
+    if (status == STATUS_OK) status = import_albedo(m, row0, rows);
+    if (status == STATUS_OK) status = import_canopy(m, row0, rows, m->surface ? &strip : NULL);
     if (status == STATUS_OK && strip.crowns > 0) status = store_write_crowns(m->writer, strip.crowns, strip.crown);
     m->r.seconds[1] += posts_s - begun_s;
     m->r.seconds[3] += written_s - posts_s;
@@ -546,7 +301,7 @@ static Status make_strip(Making *m, int row0, int rows)
     return status;
 }
 
-static Status make_levels(Making *m)
+static Status make_levels(StoreImport *m)
 {
     Status status = STATUS_OK;
     for (int k = m->plan.level_count - 1; k >= 1 && status == STATUS_OK; k--) {
@@ -554,8 +309,8 @@ static Status make_levels(Making *m)
         elevation_stream_level(&l, m->first, k);
         status = store_write_posts(m->writer, k, l.ny, l.z_m);
     }
-    if (status == STATUS_OK) status = look_at_canopy(m);
-    if (status == STATUS_OK) status = make_wide(m);
+    if (status == STATUS_OK) status = import_canopy_look(m);
+    if (status == STATUS_OK) status = import_cover_wide(m);
     for (int row0 = 0; row0 < m->level.ny && status == STATUS_OK; row0 += m->strip_rows) {
         if (!go_on(m, m->surface ? "taking apart" : "posts", (double)row0 / m->level.ny, false)) return STATUS_IO;
         status = make_strip(m, row0, m->level.ny - row0 < m->strip_rows ? m->level.ny - row0 : m->strip_rows);
@@ -565,7 +320,7 @@ static Status make_levels(Making *m)
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
-static Status finish(Making *m, const char *path)
+static Status finish(StoreImport *m, const char *path)
 {
     StoreWriter *writer = m->writer;
     TerrainStore store = {0};
@@ -591,14 +346,14 @@ static Status finish(Making *m, const char *path)
     m->r.beside = m->surface && m->terrain;
     m->r.nx     = m->level.nx;
     m->r.ny     = m->level.ny;
-    m->r.photo_posting_m = finest_m(&m->photo);
+    m->r.photo_posting_m = import_finest_m(&m->photo);
     return status;
 }
 
 Status terrain_import(TerrainReport *out, const TerrainOptions *options, const char *path, Pool *pool,
                       const TerrainWatch *watch)
 {
-    Making *m = calloc(1, sizeof *m);
+    StoreImport *m = calloc(1, sizeof *m);
     if (!m) return STATUS_NO_MEMORY;
     m->o        = options;
     m->pool     = pool;
@@ -634,7 +389,7 @@ Status terrain_import(TerrainReport *out, const TerrainOptions *options, const c
     free(m->source);
     for (int k = 0; k < 2; k++) free(m->list[k]);
     free(m->options);
-    building_count_free(&m->buildings);
+    terrain_buildings_free(&m->buildings);
     if (sources) raster_sources_from(sources);
     work_stop_when(NULL);
     free(sources);

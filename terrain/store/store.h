@@ -7,9 +7,9 @@
 #ifndef TERRAIN_STORE_STORE_H
 #define TERRAIN_STORE_STORE_H
 
-#include "terrain/landscape/ground_image.h"
-#include "terrain/landscape/landscape.h"
-#include "terrain/landscape/take_apart.h"
+#include "terrain/ground/ground_image.h"
+#include "terrain/ground/landscape.h"
+#include "terrain/bare_earth/take_apart.h"
 
 /* ---- writer --------------------------------------------------------------------------------- */
 
@@ -127,7 +127,7 @@ StoreSources store_sources(const TerrainStore *store, char *which, size_t which_
 
 /* The landscape of a store, which it keeps mapped until landscape_destroy. seed: of texture, and of surfaces that the
  * store does not have. */
-Status landscape_open_store(Landscape *out, const char *path, uint64_t seed);
+Status store_open_landscape(Landscape *out, const char *path, uint64_t seed);
 
 enum { store_sections_most = 24 };
 typedef struct StorePart {

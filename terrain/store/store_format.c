@@ -1,10 +1,12 @@
 /* terrain/store/store_format.c: where everything is in a terrain store, and what of a header can be believed. */
 #include "terrain/store/store_format.h"
 
-#include "terrain/landscape/landscape_parts.h"
-#include "terrain/landscape/photo.h"
+#include "pitviper_file.h"
+#include "terrain/ground/landscape_parts.h"
 
+#include <stdlib.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 /* ---- hashes ------------------------------------------------------------------------------------- */
 
@@ -15,7 +17,8 @@ static uint64_t mixed(uint64_t h)
     return h ^ (h >> 31);
 }
 
-uint64_t store_hash(uint64_t seed, const void *octets, size_t count)
+/* 64 well mixed bits of any octets. */
+static uint64_t store_hash(uint64_t seed, const void *octets, size_t count)
 {
     const uint8_t *at = octets;
     uint64_t       lane[4], word[4];
@@ -92,7 +95,8 @@ uint64_t store_content(const StoreHeader *header, const uint8_t *map, Pool *pool
 
 static size_t aligned(size_t octets, size_t unit) { return (octets + unit - 1) / unit * unit; }
 
-size_t store_pyramid(ElevationLevel *to, uint8_t *at, const ElevationLevel *level)
+/* Octets of a level's pyramid; to is set, where not NULL, to point into `at`. */
+static size_t store_pyramid(ElevationLevel *to, uint8_t *at, const ElevationLevel *level)
 {
     size_t sum = 0;
     for (int k = elevation_pyramid_first; k < level->pyramid_count; k++) {
@@ -106,7 +110,7 @@ size_t store_pyramid(ElevationLevel *to, uint8_t *at, const ElevationLevel *leve
     return sum;
 }
 
-size_t store_mips(Photo *to, uint8_t *at, int nx, int ny)
+static size_t store_mips(Photo *to, uint8_t *at, int nx, int ny)
 {
     Photo p = {.nx = {nx}, .ny = {ny}};
     size_t sum = 0;
@@ -249,6 +253,67 @@ const char *store_text(const StoreHeader *header, StoreText text)
     const char *at = (const char *)header + sizeof *header;
     for (int t = 0; t < (int)text; t++) at += header->text[t];
     return at;
+}
+
+/* ---- the options that a store was made with, as a record that is found and checked by itself ------- */
+
+/* MARK HASH LENGTH\n OPTIONS: the same in every version. It lies in the header's texts, before any section. */
+static const char mark[] = "terrain-import-options ";
+enum { record_most = store_page + 2 * store_most_text };
+
+static uint64_t record_hash(const char *options, size_t length) { return store_hash(3, options, length); }
+
+char *store_record(const char *options)
+{
+    char        *out = NULL;
+    size_t       octets = 0;
+    const size_t length = strlen(options);
+    FILE        *to = open_memstream(&out, &octets);
+    if (!to) return NULL;
+    fprintf(to, "%s%016llx %zu\n%s", mark, (unsigned long long)record_hash(options, length), length, options);
+    const bool whole = !ferror(to);
+    if (fclose(to) == 0 && whole) return out;
+    free(out);
+    return NULL;
+}
+
+/* Options within a record of `size` octets, which a 0 ends; NULL: damaged. */
+static const char *options_of(const char *record, size_t size, size_t *length)
+{
+    unsigned long long hash;
+    int                at = 0;
+    if (strncmp(record, mark, sizeof mark - 1) != 0) return NULL;
+    if (sscanf(record + sizeof mark - 1, "%16llx %7zu%n", &hash, length, &at) < 2 || at == 0) return NULL;
+    const size_t from = sizeof mark - 1 + (size_t)at;
+    if (from >= size || record[from] != '\n' || *length == 0 || *length > size - from - 1) return NULL;
+    return record_hash(record + from + 1, *length) == hash ? record + from + 1 : NULL;
+}
+
+static const char *store_record_options(const char *text)
+{
+    size_t      length;
+    const char *options = options_of(text, strlen(text), &length);
+    return options ? options : text;
+}
+
+char *store_recall(const char *path)
+{
+    char      *all = malloc(record_most + 1), *out = NULL;
+    char       why[file_why_size];
+    const int  file = file_open(why, NULL, path, FILE_FROM_DISK);
+    const long size = all && file >= 0 ? file_read(file, all, record_most) : 0;
+    if (file >= 0) close(file);
+    if (size > (long)sizeof store_magic && memcmp(all, store_magic, sizeof store_magic) == 0) {
+        all[size] = 0;
+        const char *end = all + size;
+        for (char *at = all; !out && (at = memmem(at, (size_t)(end - at), mark, sizeof mark - 1)); at++) {
+            size_t      length;
+            const char *options = options_of(at, (size_t)(end - at), &length);
+            if (options) out = strndup(options, length);
+        }
+    }
+    free(all);
+    return out;
 }
 
 /* ---- attached to its octets ------------------------------------------------------------------------ */

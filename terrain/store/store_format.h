@@ -64,15 +64,10 @@ _Static_assert(sizeof(StoreHeader) <= store_page && sizeof(StoreGrid) == 32 && s
 _Static_assert(sizeof(PhotoBlock) == 8 && sizeof(ElevationTile) == 8 && sizeof(Crown) == 16 &&
                    sizeof(ElevationRise) == 8, "as in the file");
 
-/* 64 well mixed bits of any octets. */
-uint64_t store_hash(uint64_t seed, const void *octets, size_t count);
 uint64_t store_checksum(const StoreHeader *header); /* its texts follow it in memory */
 
 /* Fills in section[] and file_octets from levels, rasters, crown_count and header_octets. False: too large. */
 bool store_layout(StoreHeader *header);
-/* Octets of a level's pyramid; to is set, where not NULL, to point into `at`. */
-size_t store_pyramid(ElevationLevel *to, uint8_t *at, const ElevationLevel *level);
-size_t store_mips(Photo *to, uint8_t *at, int nx, int ny);
 
 /* Octets of the header and its texts, from its first page of a file of file_octets. STATUS_BAD_VALUE or
  * STATUS_UNSUPPORTED, and the reason in *why (static storage). */
@@ -83,7 +78,6 @@ const char *store_text(const StoreHeader *header, StoreText text);
 
 /* The text STORE_OPTIONS of some options, malloc'd, and the options in it. */
 char       *store_record(const char *options);
-const char *store_record_options(const char *text);
 
 /* Levels, rasters and texts of a checked header, whose sections are at map + offset. */
 void store_attach(TerrainStore *out, const StoreHeader *header, uint8_t *map);

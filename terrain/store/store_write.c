@@ -1,9 +1,7 @@
 /* terrain/store/store_write.c: a terrain store written: the file at its full size, its rasters, and its end. */
-#include "terrain/store/store_write_private.h"
 #include "pitviper_output.h"
-
-#include "terrain/landscape/landscape_parts.h"
-#include "terrain/store/store_landscape_private.h"
+#include "terrain/ground/landscape_parts.h"
+#include "terrain/store/store_writer_private.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -13,11 +11,6 @@
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
-
-void store_run(Pool *pool, int count, PoolTask *task, void *user)
-{
-    (void)pool_run_unless_stopped(count > 1 ? pool : NULL, count, task, user); /* what is not whole is never sealed */
-}
 
 bool store_source_look(StoreSource *source)
 {
@@ -49,8 +42,8 @@ static bool is_power_of_two(double x)
     return x > 0 && isfinite(x) && frexp(x, &exponent) == 0.5;
 }
 
-/* How far the ellipsoid lies below the plane of the posts at the corner of a level farthest from its origin; radius: of the
- * pole, where it bends least, so that nothing is refused that fits. */
+/* How far the ellipsoid lies below the plane of the posts at the corner of a level farthest from its origin; radius:
+ * of the pole, where it bends least, so that nothing is refused that fits. */
 static double deepest_m(const StoreHeaderLevel *l)
 {
     static const double radius_m = 6.4e6;
@@ -243,43 +236,53 @@ void store_writer_abandon(StoreWriter *w)
 
 /* ---- rasters ---------------------------------------------------------------------------------------- */
 
-/* The next rows of a raster of octets, none above `most`. */
-static Status write_rows(StoreWriter *w, const StoreGrid *grid, int section, int *done, int rows, const uint8_t *value,
-                         int most, const char *what)
+/* A raster of octets, none above `most`. */
+typedef struct OctetRaster {
+    const StoreGrid *grid;
+    int              section, most;
+    int             *done; /* rows */
+    const char      *what;
+} OctetRaster;
+
+/* The next rows of one. */
+static Status write_rows(StoreWriter *w, const OctetRaster *to, int rows, const uint8_t *value)
 {
-    const size_t count = (size_t)(rows > 0 ? rows : 0) * (size_t)grid->nx;
-    unsigned     bad = 0;
-    if (rows < 0 || rows > grid->ny - *done) {
-        log_error("store: %s: too many rows of the %s", w->path, what);
+    const StoreGrid *grid = to->grid;
+    const size_t     count = (size_t)(rows > 0 ? rows : 0) * (size_t)grid->nx;
+    unsigned         bad = 0;
+    if (rows < 0 || rows > grid->ny - *to->done) {
+        log_error("store: %s: too many rows of the %s", w->path, to->what);
         return STATUS_BAD_VALUE;
     }
-    for (size_t n = 0; n < count; n++) bad |= value[n] > most;
+    for (size_t n = 0; n < count; n++) bad |= value[n] > to->most;
     if (bad) {
-        log_error("store: %s: a value of the %s is above %d", w->path, what, most);
+        log_error("store: %s: a value of the %s is above %d", w->path, to->what, to->most);
         return STATUS_BAD_VALUE;
     }
-    memcpy(w->map + w->header->section[section].offset + (size_t)*done * (size_t)grid->nx, value, count);
-    *done += rows;
+    memcpy(w->map + w->header->section[to->section].offset + (size_t)*to->done * (size_t)grid->nx, value, count);
+    *to->done += rows;
     return STATUS_OK;
 }
 
 Status store_write_surface(StoreWriter *w, int window, int rows, const uint8_t *surface)
 {
     if (window < 0 || window >= cover_windows) return STATUS_BAD_VALUE;
-    return write_rows(w, &w->header->surface[window], STORE_SURFACE + window, &w->surface_rows[window], rows, surface,
-                      SURFACE_COUNT - 1, "classes");
+    const OctetRaster to = {&w->header->surface[window], STORE_SURFACE + window, SURFACE_COUNT - 1,
+                            &w->surface_rows[window], "classes"};
+    return write_rows(w, &to, rows, surface);
 }
 
 Status store_write_canopy_height(StoreWriter *w, int rows, const uint8_t *height)
 {
-    return write_rows(w, &w->header->canopy_height, STORE_CANOPY_HEIGHT, &w->canopy_height_rows, rows, height, 255,
-                      "canopy height");
+    const OctetRaster to = {&w->header->canopy_height, STORE_CANOPY_HEIGHT, 255, &w->canopy_height_rows,
+                            "canopy height"};
+    return write_rows(w, &to, rows, height);
 }
 
 Status store_write_canopy_cover(StoreWriter *w, int rows, const uint8_t *cover)
 {
-    return write_rows(w, &w->header->canopy_cover, STORE_CANOPY_COVER, &w->canopy_cover_rows, rows, cover, 100,
-                      "canopy cover");
+    const OctetRaster to = {&w->header->canopy_cover, STORE_CANOPY_COVER, 100, &w->canopy_cover_rows, "canopy cover"};
+    return write_rows(w, &to, rows, cover);
 }
 
 Status store_write_crowns(StoreWriter *w, int count, const Crown *crown)

@@ -1,5 +1,5 @@
 /* terrain/weather/weather_course.c: weather at a time: a clear day's course, or rows of a file and what lies between. */
-#include "terrain/weather/weather_course_private.h"
+#include "terrain/weather/weather_private.h"
 
 #include <stdlib.h>
 #include <time.h>

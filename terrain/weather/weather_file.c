@@ -2,7 +2,7 @@
  *
  * Sources: EnergyPlus 24.1, Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary"; Wilcox & Marion, Users
  * Manual for TMY3 Data Sets, NREL/TP-581-43156 (2008), table 1-1 and 1-2. */
-#include "terrain/weather/weather_course_private.h"
+#include "terrain/weather/weather_private.h"
 
 #include <stdlib.h>
 #include <strings.h>

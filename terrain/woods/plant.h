@@ -16,8 +16,7 @@ typedef enum PlantKind {
     PLANT_KINDS
 } PlantKind;
 
-const char *plant_name(PlantKind kind);   /* "pine", "english_oak", "hedge" ... */
-PlantKind   plant_find(const char *name); /* PLANT_KINDS: no such kind */
+const char *plant_name(PlantKind kind); /* "pine", "english_oak", "hedge" ... */
 static inline bool plant_is_tree(PlantKind kind) { return kind < PLANT_TREES; }
 /* Radius of its prototype's crown over its height, about (tests/render/test_plants.c). */
 double      plant_crown_share(PlantKind kind);
@@ -42,8 +41,8 @@ typedef struct Plant {
 } Plant;
 
 static inline double plant_height_m(const Plant *plant) { return plant->height * plant_height_step_m; }
-/* The prototype's axes as the plant stands, unit, ENU; scales: across, along its axis. sway: added to the lean, rad east
- * and north; NULL: none. */
+/* The prototype's axes as the plant stands, unit, ENU; scales: across, along its axis. sway: added to the lean, rad
+ * east and north; NULL: none. */
 void plant_axes(double axis_enu[3][3], double scale[2], const Plant *plant, const double sway_rad[2]);
 /* From the prototype's axes to ENU, with its scales: columns are the images of x, y, z. */
 void plant_transform(double m_enu_from_plant[9], const Plant *plant, const double sway_rad[2]);

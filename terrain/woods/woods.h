@@ -6,7 +6,8 @@
 #ifndef TERRAIN_WOODS_WOODS_H
 #define TERRAIN_WOODS_WOODS_H
 
-#include "terrain/landscape/landscape.h"
+#include "terrain/ground/landscape.h"
+#include "terrain/surface.h"
 #include "terrain/woods/plant.h"
 
 /* A straight piece of a path along which invented woods are cleared. */
@@ -58,12 +59,12 @@ enum { woods_low_most = 4096 };
 int woods_low_plants(Plant plant[woods_low_most], const Woods *woods, int64_t i, int64_t j);
 
 /* Woods of which nothing stands: of squares that were left out, and beyond them all. stand[count]: the class of forest
- * whose canopy covers the ground there, SURFACE_NONE: none; cover[count]: the share of it by a store's canopy layer, -1: that
- * of the class; density[count]: plants there over the class's mean. surface: of the places. */
+ * whose canopy covers the ground there, SURFACE_NONE: none; cover[count]: the share of it by a store's canopy layer,
+ * -1: that of the class; density[count]: plants there over the class's mean. surface: of the places. */
 void   woods_not_standing(uint8_t *stand, float *cover, float *density, const Woods *woods, int count, const uint8_t *surface,
                           const double *x_m, const double *y_m);
-/* Plants of one class alone on level ground of height 0, squares x squares about the origin, everywhere as many, over the
- * class's mean, and with all its kinds. */
+/* Plants of one class alone on level ground of height 0, squares x squares about the origin, everywhere as many, over
+ * the class's mean, and with all its kinds. */
 Status woods_of_class(Woods *out, SurfaceClass surface, double density, uint64_t seed, int squares);
 
 /* The standing plants whose trunk or stem (woods_trunk_m of radius) a circle touches: at most `most` of their indices;
@@ -71,5 +72,22 @@ Status woods_of_class(Woods *out, SurfaceClass surface, double density, uint64_t
 int    woods_near(int *index, int most, const Woods *woods, double x_m, double y_m, double radius_m);
 /* Radius of a plant's trunk at breast height, m; 0 for kinds without one. */
 double woods_trunk_m(const Plant *plant);
+
+/* ---- what grows on each surface class (etc/woods.csv) -------------------------------------------- */
+
+typedef struct WoodsClass {
+    double    per_m2;               /* woody plants */
+    double    low_m, high_m;
+    double    share[PLANT_STANDING]; /* their sum is 1, or 0 where per_m2 is 0 */
+    PlantKind floor;                /* PLANT_KINDS: none */
+    double    floor_per_m2, floor_low_m, floor_high_m;
+} WoodsClass;
+
+typedef struct WoodsTable {
+    WoodsClass of[SURFACE_COUNT];
+} WoodsTable;
+
+/* STATUS_BAD_VALUE: logged, with file, line and value. */
+Status woods_table_read(WoodsTable *out, const char *path);
 
 #endif

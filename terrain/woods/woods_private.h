@@ -4,7 +4,6 @@
 
 #include "terrain/store/store.h"
 #include "terrain/woods/woods.h"
-#include "terrain/woods/woods_table.h"
 
 /* Pieces of paths, and vehicles' places, by the squares of woods_square_m that they reach into. */
 typedef struct WoodsClearings {
@@ -47,13 +46,11 @@ static inline uint64_t woods_hash(uint64_t seed, int64_t a, int64_t b, uint64_t 
     return h ^ (h >> 31);
 }
 static inline double woods_unit(uint64_t hash) { return (double)(hash >> 11) * 0x1p-53; }
-/* Smooth noise, -1 .. 1, of waves of length_m. */
-double woods_noise(uint64_t seed, uint64_t stream, double x_m, double y_m, double length_m);
 
 /* Fills in all but p_m: kind and height are given; lean, twist and width drawn. */
 Plant  woods_draw_plant(uint64_t hash, PlantKind kind, double height_m, double width);
-/* Whether the ground there bears a trunk: none on roads, tracks, water, roofs, in clearings. Many places of one square at a
- * time; bears[count]: 1 or 0. */
+/* Whether the ground there bears a trunk: none on roads, tracks, water, roofs, in clearings. Many places of one square
+ * at a time; bears[count]: 1 or 0. */
 void   woods_bears(uint8_t *bears, const WoodsSource *s, int count, const double *x_m, const double *y_m, double room_m,
                    bool low);
 

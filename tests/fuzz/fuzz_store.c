@@ -64,7 +64,7 @@ static void look(const uint8_t *data, size_t size)
         if (!(sum >= 0)) abort();
         store_close(&store);
     }
-    if (landscape_open_store(&landscape, path, 1) == STATUS_OK) {
+    if (store_open_landscape(&landscape, path, 1) == STATUS_OK) {
         float factor[albedo_channels];
         for (int k = -40; k <= 40; k += 5) {
             if (isinf(elevation_height(&landscape.elevation, k, 0.3 * k, NULL))) abort();

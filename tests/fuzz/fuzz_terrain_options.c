@@ -2,7 +2,7 @@
  * drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "terrain/import/options.h"
+#include "terrain/import/terrain_import.h"
 
 #include <stdlib.h>
 

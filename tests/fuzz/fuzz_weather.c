@@ -1,7 +1,7 @@
 /* tests/fuzz/fuzz_weather.c: any octets as a weather file. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "terrain/weather/weather_course.h"
+#include "terrain/weather/weather.h"
 
 #include <stdlib.h>
 

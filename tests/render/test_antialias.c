@@ -3,7 +3,7 @@
  * test_antialias_threads.c. labels: slow */
 #include "tests/render/strewn_world.h"
 
-#include "terrain/landscape/ways.h"
+#include "terrain/ground/landscape.h"
 
 /* No band's bits hang on what other bands were asked for: shadows show in two of them only. */
 static void a_band_alone_is_the_band_in_company(void **state)

@@ -68,7 +68,7 @@ static void open_place(SurfaceClass surface, bool leaves)
     place = (Place){.surface = surface};
     snprintf(path, sizeof path, "/tmp/test_far_woods_%ld.store", (long)getpid());
     assert_true(write_ground(path, surface));
-    assert_int_equal(landscape_open_store(&place.landscape, path, 3), STATUS_OK);
+    assert_int_equal(store_open_landscape(&place.landscape, path, 3), STATUS_OK);
     unlink(path);
     assert_true(etc_path(catalog, sizeof catalog, "catalog.csv") && text_to_unix_s(&unix_s, "2026-06-21T00:00:00Z"));
     assert_int_equal(catalog_open(&place.catalog, catalog, 0.05), STATUS_OK);

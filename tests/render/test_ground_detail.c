@@ -3,7 +3,7 @@
  * labels: physics */
 #include "tests/render/hand_world.h"
 
-#include "terrain/landscape/detail.h"
+#include "terrain/detail/detail.h"
 
 enum { width = 120, height = 80, pixels = width * height, side = 12 };
 
@@ -102,7 +102,7 @@ static void averages_of(float *albedo, float *warmth_k, const View *view)
             const double range_m = (double)p.range_m[i] * v3_dot(n, d_hit) / v3_dot(n, d);
             x_m[k] = view->p_enu[0] + range_m * d[0], y_m[k] = view->p_enu[1] + range_m * d[1];
         }
-        landscape_details(&(GroundDetail){.albedo = a, .warmth_k = w}, table, &hand.landscape, places, class, x_m, y_m,
+        detail_at(&(GroundDetail){.albedo = a, .warmth_k = w}, table, &hand.landscape, places, class, x_m, y_m,
                           &(GroundFootprint){none, none});
         for (int k = 0; k < places; k++) sum[0] += (double)a[k], sum[1] += (double)w[k];
         albedo[i] = (float)(sum[0] / places), warmth_k[i] = (float)(sum[1] / places);

@@ -6,7 +6,7 @@
 #include "tests/check.h"
 
 #include "sensor/quality/trial.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 enum { most_entities = 24 };
 
@@ -34,7 +34,7 @@ static inline int open_stage(void **state)
     double         times_s[2];
     stage.arena = arena_create();
     return stage.arena && pool_create(&stage.pool, 2) == STATUS_OK && local_frame_at(&stage.frame, &origin) == STATUS_OK &&
-                   quick_landscape_create(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) == STATUS_OK
+                   landscape_quick(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) == STATUS_OK
                ? 0 : -1;
 }
 

@@ -3,7 +3,7 @@
 #include "tests/scenes/woods_stand.h"
 #include "sensor/quality/trial.h"
 #include "sensor/settings/config.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 #include "tests/check.h"
 
 enum { vehicles = 20, width_px = 160, height_px = 110, rays = 12 };
@@ -38,7 +38,7 @@ static int lab_open(void **state)
     for (int k = 0; k < 3; k++) lab.arena[k] = arena_create();
     assert_int_equal(pool_create(&lab.pool, thread_processors()), STATUS_OK);
     assert_int_equal(local_frame_at(&frame, &origin), STATUS_OK);
-    assert_int_equal(quick_landscape_create(&lab.ground, times_s, &frame, east_m, north_m, lab.pool), STATUS_OK);
+    assert_int_equal(landscape_quick(&lab.ground, times_s, &frame, east_m, north_m, lab.pool), STATUS_OK);
     char catalog[512];
     CHECK(etc_path(catalog, sizeof catalog, "catalog.csv"));
     assert_int_equal(trial_scene_open(&lab.scene, &lab.ground, catalog, types, 3, vehicles), STATUS_OK);

@@ -3,7 +3,7 @@
 
 #include "entities/motion/dead_reckoning.h"
 #include "sensor/node/session/seeker.h"
-#include "terrain/earth/local_frame.h"
+#include "terrain/earth/geodesy.h"
 #include "tests/sensor/attitude.h"
 
 static Seeker head(double limit_deg, double rate_dps, double lag_s)

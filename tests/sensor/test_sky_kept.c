@@ -6,7 +6,7 @@
 
 #include "render/light/sky_kept.h"
 #include "sensor/quality/trial.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 enum { width = 56, height = 42 };
 
@@ -38,7 +38,7 @@ static int open_stage(void **state)
     if (!stage.arena || !stage.other || !etc_path(catalog, sizeof catalog, "catalog.csv")) return -1;
     if (pool_create(&stage.pool, 2) != STATUS_OK || pool_create(&stage.one, 1) != STATUS_OK) return -1;
     if (local_frame_at(&stage.frame, &origin) != STATUS_OK ||
-        quick_landscape_create(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) != STATUS_OK ||
+        landscape_quick(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) != STATUS_OK ||
         trial_scene_open(&stage.scene, &stage.landscape, catalog, &tank, 1, 0) != STATUS_OK)
         return -1;
     place(seen, 0, 0, 0.6, 0);

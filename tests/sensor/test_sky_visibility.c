@@ -4,7 +4,7 @@
 #include "tests/check.h"
 
 #include "sensor/quality/trial.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 enum { width = 160, height = 108, block_px = 5, reference_samples = 64 };
 
@@ -25,7 +25,7 @@ static int open_stage(void **state)
     for (int k = 0; k < 3; k++)
         if (!(stage.arena[k] = arena_create())) return -1;
     return pool_create(&stage.pool, 2) == STATUS_OK && local_frame_at(&stage.frame, &origin) == STATUS_OK &&
-                   quick_landscape_create(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) == STATUS_OK
+                   landscape_quick(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) == STATUS_OK
                ? 0 : -1;
 }
 

@@ -2,8 +2,8 @@
  * over data that are noise. labels: slow */
 #include "tests/sensor/store_frames.h"
 
-#include "terrain/landscape/landscape_import.h"
-#include "terrain/landscape/landscape_parts.h"
+#include "terrain/from_files/elevation_import.h"
+#include "terrain/ground/landscape_parts.h"
 #include "terrain/store/store_format.h"
 
 #include <fcntl.h>
@@ -94,7 +94,7 @@ static void render_noise(const char *path)
         CHECK(pwrite(file, page, sizeof page, at) == sizeof page);
     }
     close(file);
-    assert_int_equal(landscape_open_store(&landscape, path, 1), STATUS_OK);
+    assert_int_equal(store_open_landscape(&landscape, path, 1), STATUS_OK);
     render_all(&any, &landscape);
     landscape_destroy(&landscape);
 }
@@ -116,7 +116,7 @@ static void a_store_has_the_planes_of_its_landscape(void **state)
     assert_int_equal(landscape_import(&direct, &report, &files, &frame, NULL, 0), STATUS_OK);
     name_file(path, "same.store");
     store_of(path, &direct);
-    assert_int_equal(landscape_open_store(&stored, path, 1), STATUS_OK);
+    assert_int_equal(store_open_landscape(&stored, path, 1), STATUS_OK);
     check_same_posts(&direct.elevation, &stored.elevation);
     CHECK(render_all(&a, &direct) && render_all(&b, &stored));
     for (int n = 0; n < frames; n++) assert_string_equal(a.sha256[n], b.sha256[n]);

@@ -75,7 +75,7 @@ static bool make_group(char group[4096], bool *v2)
 static bool visit(FrameHashes *out, uint64_t *sum, const char *path)
 {
     Landscape landscape;
-    if (landscape_open_store(&landscape, path, 1) != STATUS_OK) return false;
+    if (store_open_landscape(&landscape, path, 1) != STATUS_OK) return false;
     bool good = true;
     *sum = 0;
     for (int round = 0; round < 2; round++) {

@@ -1,6 +1,6 @@
 /* tests/terrain/rasters_hostile.c: in the place of a reader of rasters: a file has taken it over, and its answers are spoilt: of
  * sound ones to begin with a field, some octets or all of it, one more often than another, while the program reads them. */
-#include "terrain/elevation/raster_wire.h"
+#include "terrain/elevation/raster_child.h"
 
 #include <limits.h>
 #include <signal.h>

@@ -2,8 +2,8 @@
  * written here; and independent of the other places. */
 #include "tests/check.h"
 
-#include "terrain/landscape/landscape_parts.h"
-#include "terrain/landscape/ways.h"
+#include "terrain/ground/landscape_parts.h"
+#include "terrain/ground/landscape.h"
 
 /* ---- the plain reading ------------------------------------------------------------------------ */
 

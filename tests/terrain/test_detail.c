@@ -2,7 +2,7 @@
  * the table's; filtered, against means over the footprint of the unfiltered noise. labels: physics */
 #include "tests/check.h"
 
-#include "terrain/landscape/detail.h"
+#include "terrain/detail/detail.h"
 
 static Landscape    bare; /* of one seed, without photograph and fields */
 static DetailTable *table;
@@ -32,7 +32,7 @@ static void ask(int count, double across, double elongation)
     const GroundDetail out = {.albedo = found[DETAIL_ALBEDO], .warmth_k = found[DETAIL_WARMTH],
                               .radar = found[DETAIL_RADAR], .slope_x = found[DETAIL_HEIGHT], .slope_y = slope_y};
     for (int n = 0; n < count; n++) across_m[n] = (float)across, along_m[n] = (float)(across * elongation);
-    landscape_details(&out, table, &bare, count, class, x_m, y_m, &(GroundFootprint){across_m, along_m});
+    detail_at(&out, table, &bare, count, class, x_m, y_m, &(GroundFootprint){across_m, along_m});
 }
 
 static double far_place(int axis, int n) { return 60e3 * (random_uniform(9, (uint32_t)axis, 0, (uint64_t)n) - 0.5); }
@@ -120,17 +120,17 @@ static void company_changes_nothing(void **state)
     }
     GroundDetail out = {.albedo = mixed_list[0], .warmth_k = mixed_list[1], .radar = mixed_list[2],
                         .slope_x = mixed_list[3], .slope_y = slope_y};
-    landscape_details(&out, table, &bare, some, class, x_m, y_m, &(GroundFootprint){across_m, along_m});
+    detail_at(&out, table, &bare, some, class, x_m, y_m, &(GroundFootprint){across_m, along_m});
     for (int n = 0; n < some; n++) {
         float              alone[5];
         const GroundDetail one = {.albedo = alone, .warmth_k = alone + 1, .radar = alone + 2, .slope_x = alone + 3,
                                   .slope_y = alone + 4};
-        landscape_details(&one, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n,
+        detail_at(&one, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n,
                                                                                                  along_m + n});
         for (int f = 0; f < detail_fields; f++) CHECK(alone[f] == mixed_list[f][n]);
         CHECK(alone[4] == slope_y[n] && alone[0] > 0 && alone[2] > 0);
         const GroundDetail only = {.radar = alone};
-        landscape_details(&only, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n,
+        detail_at(&only, table, &bare, 1, class + n, x_m + n, y_m + n, &(GroundFootprint){across_m + n,
                                                                                                   along_m + n});
         CHECK(alone[0] == mixed_list[2][n]);
     }
@@ -280,7 +280,7 @@ static void no_seams(void **state)
         x_m[n] = 5, y_m[n] = 7, across_m[n] = (float)(0.01 * pow(20000, n / 40000.0)), along_m[n] = across_m[n] * 1.7f;
     }
     const GroundDetail out = {.albedo = found[0], .warmth_k = found[1]};
-    landscape_details(&out, table, &bare, 40000, class, x_m, y_m, &(GroundFootprint){across_m, along_m});
+    detail_at(&out, table, &bare, 40000, class, x_m, y_m, &(GroundFootprint){across_m, along_m});
     for (int n = 1; n < 40000; n++)
         for (int f = 0; f < 2; f++) worst_size = fmax(worst_size, fabs((double)(found[f][n] - found[f][n - 1])));
     print_message("worst step %.1e over 0.1 mm, %.1e over 0.025 %% of the footprint\n", worst, worst_size);
@@ -300,7 +300,7 @@ static void without_a_table_or_a_place(void **state)
                 for (int w = 0; w < 6; w++) {
                     float              of[5] = {9, 9, 9, 9, 9};
                     const GroundDetail out = {of, of + 1, of + 2, of + 3, of + 4};
-                    landscape_details(&out, t ? table : NULL, &bare, 1, classes + c, &places[p][0], &places[p][1],
+                    detail_at(&out, t ? table : NULL, &bare, 1, classes + c, &places[p][0], &places[p][1],
                                       &(GroundFootprint){footprints + w, footprints + (w + c) % 6});
                     const bool even = of[0] == 1 && of[1] == 0 && of[2] == 1 && of[3] == 0 && of[4] == 0;
                     if (!t || c > 0 || p == 1 || p == 2) CHECK(even);

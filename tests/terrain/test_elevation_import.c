@@ -5,7 +5,7 @@
  * within what the import says resampling cost. EGM96 has its own test. labels: slow */
 #include "tests/check.h"
 
-#include "terrain/landscape/elevation_import.h"
+#include "terrain/from_files/elevation_import.h"
 #include "terrain/earth/geoid.h"
 
 #include <sys/stat.h>

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "terrain/import/terrain_import.h"
-#include "terrain/landscape/elevation_import.h"
+#include "terrain/from_files/elevation_import.h"
 
 #include <unistd.h>
 

@@ -2,7 +2,7 @@
  * labels: physics */
 #include "tests/check.h"
 
-#include "terrain/earth/local_frame.h"
+#include "terrain/earth/geodesy.h"
 
 static const long double a_m = 6378137.0L, flattening = 1 / 298.257223563L;
 

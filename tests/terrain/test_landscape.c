@@ -1,7 +1,7 @@
 /* The invented landscape: it keeps its promises to fixes, to lines, and at its own seams. */
 #include "tests/check.h"
 
-#include "terrain/landscape/landscape.h"
+#include "terrain/ground/landscape.h"
 
 static LocalFrame frame_at(double lat_deg, double lon_deg, double h_m)
 {
@@ -401,7 +401,7 @@ static void lines_stay_clear(void **state)
                     continue;
                 }
                 inside++;
-                CHECK(near_an_end_on_a_fix(p, line, lines, fix, count, landscape_taper_m(&config) + 2));
+                CHECK(near_an_end_on_a_fix(p, line, lines, fix, count, invented_taper_m(&config) + 2));
             }
         }
         printf("%d fixes, %d lines: least room outside %.2f m, %d samples in tapers, dropped %d, worst fix %.4f m\n",

@@ -2,8 +2,7 @@
  * a list of heights that no line of the landscape's computes. labels: physics */
 #include "tests/check.h"
 
-#include "terrain/landscape/landscape.h"
-#include "terrain/landscape/ways.h"
+#include "terrain/ground/landscape.h"
 
 static LocalFrame frame_at(double lat_deg, double lon_deg)
 {
@@ -33,7 +32,7 @@ static unsigned outvoted(const GroundFix *fix, int count)
     uint8_t  out[2000];
     unsigned voters = 0, whole = ~0u;
     assert_true(count <= 2000);
-    assert_int_equal(ground_inconsistent(out, fix, count), STATUS_OK);
+    assert_int_equal(invented_inconsistent(out, fix, count), STATUS_OK);
     for (int n = 0; n < count; n++) {
         if (fix[n].voter == 0) CHECK(!out[n]);
         else if (out[n]) voters |= 1u << (fix[n].voter - 1);
@@ -115,9 +114,9 @@ static void true_hills_are_believed(void **state)
     for (int n = 0; n < 5; n++) count = add(fix, count, 0, 40 * n, 0, n == 2 ? 30 : 0);
     assert_int_equal(outvoted(fix, count), 0);
     fix[0].voter = 6;
-    CHECK(ground_inconsistent((uint8_t[8]){0}, fix, count) == STATUS_BAD_VALUE);
+    CHECK(invented_inconsistent((uint8_t[8]){0}, fix, count) == STATUS_BAD_VALUE);
     fix[0].voter = -1;
-    CHECK(ground_inconsistent((uint8_t[8]){0}, fix, count) == STATUS_BAD_VALUE);
+    CHECK(invented_inconsistent((uint8_t[8]){0}, fix, count) == STATUS_BAD_VALUE);
 }
 
 /* Rolling country of slopes up to 0.3, a hundred entities about 90 m apart, ten of them 25 m off, against 15 m that
@@ -136,7 +135,7 @@ static void lies_are_told_from_country(void **state)
             for (int n = 0; n < 10; n++, x += 9, y += 3)
                 count = add(fix, count, v, x, y, 20 * sin(x / 97) * cos(y / 140) + lie_m);
         }
-        assert_int_equal(ground_inconsistent(out, fix, count), STATUS_OK);
+        assert_int_equal(invented_inconsistent(out, fix, count), STATUS_OK);
         for (int v = 0; v < 100; v++) *(v < 10 ? &caught : &wronged) += out[10 * v];
     }
     printf("of 80 lies %d found, of 720 truths %d wronged\n", caught, wronged);
@@ -152,7 +151,7 @@ static void places_are_held_against_their_neighbours_plane(void **state)
     double    above_m[3], nearest_m[3];
     for (int n = 0; n < 5; n++) count = add(fix, count, n + 1, 30 * n, 20 * (n % 3), 7 + 0.2 * 30 * n - 0.1 * 20 * (n % 3));
     const double place[3][3] = {{60, 10, 7 + 12 - 1 + 9}, {60, 40, 7 + 12 - 4}, {900, 0, 0}};
-    CHECK(ground_consensus_height(above_m, nearest_m, place, 3, fix, count) == STATUS_OK);
+    CHECK(invented_consensus_height(above_m, nearest_m, place, 3, fix, count) == STATUS_OK);
     CHECK_NEAR(above_m[0], 9, 1e-9);
     CHECK_NEAR(nearest_m[0], 30, 1e-9);
     CHECK_NEAR(above_m[1], 0, 1e-9);

@@ -6,7 +6,7 @@
 #include "tests/check.h"
 
 #include "terrain/earth/geoid.h"
-#include "terrain/landscape/landscape_import.h"
+#include "terrain/from_files/elevation_import.h"
 
 enum { cells = 64 };
 static const double centre_lat_deg = 44.0551450382678, centre_lon_deg = -123.06866432757;

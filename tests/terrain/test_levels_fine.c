@@ -2,7 +2,7 @@
  * labels: physics */
 #include "tests/check.h"
 
-#include "terrain/landscape/work_level.h"
+#include "terrain/elevation/levels.h"
 
 enum { levels = 3, cells = 160 };
 
@@ -19,7 +19,7 @@ static void make_levels(WorkLevel *level, double steep_m)
     for (int k = 0; k < levels; k++) {
         level[k] = (WorkLevel){.hole_i1 = -1, .outermost = k == levels - 1};
         assert_int_equal(
-            field_create(&level[k].z, 1 << (3 * k), -80, -80 - 8 * k, cells + 1, cells + 1 - 16 * (k == 1)), STATUS_OK);
+            levels_field_create(&level[k].z, 1 << (3 * k), -80, -80 - 8 * k, cells + 1, cells + 1 - 16 * (k == 1)), STATUS_OK);
         const Field *z = &level[k].z, *in = &level[k - (k > 0)].z;
         for (int j = 0; j < z->ny; j++)
             for (int i = 0; i < z->nx; i++) z->v[j * z->nx + i] = height(k, z->i0 + i, z->j0 + j, steep_m);
@@ -76,7 +76,7 @@ static void posts_are_near_and_seams_exact(void **state)
         CHECK(((shifts & (shifts - 1)) != 0) == (n > 0)); /* more than one shift from where relief needs it */
         check_seams(&ground);
         elevation_destroy(&ground);
-        for (int k = 0; k < levels; k++) field_destroy(&level[k].z);
+        for (int k = 0; k < levels; k++) levels_field_destroy(&level[k].z);
     }
 }
 
@@ -112,7 +112,7 @@ static void a_peak_moves_only_the_seam_beside_it(void **state)
     CHECK(posts > 40 && elsewhere_m <= 8.5 / 2048);                              /* eight steps, rounded down */
     CHECK(beside_m > 0.05 && beside_m <= (8 << 7) / 2048.0 + 1.0 / 2048);        /* eight units of the peak's tile */
     elevation_destroy(&ground);
-    for (int k = 0; k < levels; k++) field_destroy(&level[k].z);
+    for (int k = 0; k < levels; k++) levels_field_destroy(&level[k].z);
 }
 
 int main(void)

@@ -1,7 +1,7 @@
 /* ECEF <-> ENU against the same map in long double, and how fast the Earth falls away. labels: physics */
 #include "tests/check.h"
 
-#include "terrain/earth/local_frame.h"
+#include "terrain/earth/geodesy.h"
 
 /* The frame evaluated wholly in long double from the angles of its origin. */
 typedef struct FrameL {

@@ -1,7 +1,7 @@
 /* tests/terrain/test_photo.c: a photograph's blocks of 4 x 4 pixels: what they lose, coverage, mips. */
 #include "tests/check.h"
 
-#include "terrain/landscape/photo.h"
+#include "terrain/ground/ground_image.h"
 
 enum { side = 128 };
 

@@ -2,7 +2,7 @@
  * hangs or is taken over by a file, and that gaps cost nothing. labels: threads */
 #include "tests/terrain/raster_lab.h"
 
-#include "terrain/elevation/patch.h"
+#include "terrain/elevation/patches.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -52,7 +52,7 @@ static Status read_some(float out[4], const char *path)
 {
     RasterSet set = {0};
     Status    status = raster_set_open(&set, path, "test");
-    if (status == STATUS_OK) status = raster_read(out, &set.raster[0], 1, 0, 0, 2, 2, "test");
+    if (status == STATUS_OK) status = raster_read(out, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2}, "test");
     raster_set_close(&set);
     return status;
 }
@@ -77,7 +77,8 @@ static void every_thread_of_it_is_confined(void **state)
     float     some[4];
     char      path[300], target[256];
     int       threads = 0;
-    CHECK(raster_set_open(&set, tiff, "test") == STATUS_OK && raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test") == STATUS_OK);
+    CHECK(raster_set_open(&set, tiff, "test") == STATUS_OK &&
+          raster_read(some, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2}, "test") == STATUS_OK);
     const pid_t reader = lab_reader();
     snprintf(path, sizeof path, "/proc/%d/task", (int)reader);
     DIR *tasks = opendir(path);
@@ -227,16 +228,17 @@ static void ends_by(int number, const char *wanted)
     RasterSet set = {0};
     float     some[4];
     double    x = 0.25, y = 0.8;
-    CHECK(raster_set_open(&set, tiff, "test.key") == STATUS_OK && raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test.key") == STATUS_OK);
+    CHECK(raster_set_open(&set, tiff, "test.key") == STATUS_OK &&
+          raster_read(some, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2}, "test.key") == STATUS_OK);
     const pid_t reader = lab_reader();
     CHECK(kill(reader, number) == 0);
     raster_child_patience(0.3); /* no longer than a stopped one needs: opening takes longer on a busy machine */
     said_errors = 0;
     log_set_sink(count_errors, NULL);
-    CHECK(raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test.key") == STATUS_IO);
+    CHECK(raster_read(some, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2}, "test.key") == STATUS_IO);
     if (!strstr(check_said, wanted) || !strstr(check_said, tiff) || !strstr(check_said, "test.key") || !strstr(check_said, "gdal_translate"))
         fail_msg("said: %s", check_said);
-    CHECK(raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test.key") == STATUS_IO);
+    CHECK(raster_read(some, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2}, "test.key") == STATUS_IO);
     raster_px_from_earth(&set.raster[0], 1, &x, &y);
     CHECK(isnan(x) && isnan(y) && said_errors == 1);
     log_set_sink(NULL, NULL);
@@ -262,7 +264,7 @@ static void one_that_starts_them_may_end(void **state)
     CHECK(raster_set_open(&set, tiff, "test") == STATUS_OK);
     CHECK(kill(lab_starter(), SIGKILL) == 0);
     log_set_sink(check_listen, NULL);
-    (void)raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test");
+    (void)raster_read(some, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2}, "test");
     log_set_sink(NULL, NULL);
     raster_set_close(&set);
     CHECK(read_some(some, tiff) == STATUS_OK && some[1] == lab_height(1, 0));
@@ -283,7 +285,8 @@ static void a_fork_has_its_own(void **state)
         _exit(good ? 0 : 1);
     }
     CHECK(waitpid(process, &how, 0) == process && WIFEXITED(how) && WEXITSTATUS(how) == 0);
-    CHECK(raster_read(some, &set.raster[0], 1, 0, 0, 2, 2, "test") == STATUS_OK && lab_starter() == starter);
+    CHECK(raster_read(some, &set.raster[0], 1, (RasterWindow){0, 0, 2, 2},
+                      "test") == STATUS_OK && lab_starter() == starter);
     raster_set_close(&set);
 }
 
@@ -294,7 +297,7 @@ static void none_is_left(void **state)
     CHECK(raster_set_open(&a, tiff, "test") == STATUS_OK && raster_set_open(&b, tiff, "test") == STATUS_OK);
     raster_set_close(&a);
     float some[4];
-    CHECK(raster_read(some, &b.raster[0], 1, 0, 0, 2, 2, "test") == STATUS_OK);
+    CHECK(raster_read(some, &b.raster[0], 1, (RasterWindow){0, 0, 2, 2}, "test") == STATUS_OK);
     raster_set_close(&b);
     CHECK(lab_child_of(lab_starter()) == 0);
 }
@@ -328,9 +331,9 @@ static void whatever_it_sends_the_program_goes_on(void **state)
                 const RasterSheet *sheet = &r->sheet[s];
                 CHECK(strlen(sheet->path) < wire_path_size && sheet->x0 >= 0 && sheet->x0 + sheet->width <= r->width);
             }
-            (void)raster_read(out, r, 1, -3, -3, 600, 300, "test");
-            (void)raster_read_bytes(bytes, valid, r, 1, 3, 0, 0, 40, 30, "test");
-            (void)raster_uniform(&value, r, 1, 0, 0, 40, 30, "test");
+            (void)raster_read(out, r, 1, (RasterWindow){-3, -3, 600, 300}, "test");
+            (void)raster_read_bytes(bytes, valid, r, 1, 3, (RasterWindow){0, 0, 40, 30}, "test");
+            (void)raster_uniform(&value, r, 1, (RasterWindow){0, 0, 40, 30}, "test");
             for (int i = 0; i < 40; i++) x[i] = y[i] = 0.01 * i;
             raster_px_from_earth(r, 40, x, y);
             for (int i = 0; i < 40; i++) CHECK(isnan(x[i]) == isnan(y[i]) && !isinf(x[i]));
@@ -367,7 +370,7 @@ static void gaps_are_known_without_reading(void **state)
         const Raster *r = &set.raster[0];
         CHECK(r->sparse);
         CHECK_NEAR(r->data_share, 2.0 / (side * side), 1e-9);
-        CHECK(raster_read(all, r, 1, 0, 0, px, px, "test") == STATUS_OK);
+        CHECK(raster_read(all, r, 1, (RasterWindow){0, 0, px, px}, "test") == STATUS_OK);
         for (int y = 0; y < px; y++)
             for (int x = 0; x < px; x++) {
                 const bool  there = has >> (y / 64 * side + x / 64) & 1;
@@ -375,14 +378,15 @@ static void gaps_are_known_without_reading(void **state)
                 if (there ? got != lab_height(x, y) : n == 0 ? got != 0 : !isnan(got)) fail_msg("%d, %d: %g", x, y, (double)got);
             }
         for (int t = 0; t < side * side; t++) {
-            const bool known = raster_uniform(&v, r, 1, t % side * 64, t / side * 64, 64, 64, "test");
+            const bool known = raster_uniform(&v, r, 1, (RasterWindow){t % side * 64, t / side * 64, 64, 64}, "test");
             CHECK(known == !(has >> t & 1));
             if (known) CHECK(n == 0 ? v == 0 : isnan(v));
         }
-        CHECK(raster_uniform(&v, r, 1, 0, 0, px, 64, "test") && !raster_uniform(&v, r, 1, 0, 0, px, 65, "test"));
-        CHECK(raster_uniform(&v, r, 1, px, 0, 100, 100, "test") && isnan(v)); /* beyond the raster */
+        CHECK(raster_uniform(&v, r, 1, (RasterWindow){0, 0, px, 64}, "test") &&
+              !raster_uniform(&v, r, 1, (RasterWindow){0, 0, px, 65}, "test"));
+        CHECK(raster_uniform(&v, r, 1, (RasterWindow){px, 0, 100, 100}, "test") && isnan(v)); /* beyond the raster */
         /* the same when it was kept, which gaps are not */
-        CHECK(raster_read(part, r, 1, 40, 40, 64, 64, "test") == STATUS_OK);
+        CHECK(raster_read(part, r, 1, (RasterWindow){40, 40, 64, 64}, "test") == STATUS_OK);
         for (int k = 0; k < 64 * 64; k++) {
             const float a = part[k], b = all[(40 + k / 64) * px + 40 + k % 64];
             CHECK(memcmp(&a, &b, sizeof a) == 0);
@@ -394,7 +398,7 @@ static void gaps_are_known_without_reading(void **state)
     float     v;
     save_tiff(tiff, 0x0000ffff & ~0u, NAN);
     CHECK(raster_set_open(&set, tiff, "test") == STATUS_OK && !set.raster[0].sparse && set.raster[0].data_share == 1);
-    CHECK(!raster_uniform(&v, &set.raster[0], 1, 0, 0, 64, 64, "test"));
+    CHECK(!raster_uniform(&v, &set.raster[0], 1, (RasterWindow){0, 0, 64, 64}, "test"));
     raster_set_close(&set);
 }
 
@@ -406,7 +410,7 @@ static void kept_rows_are_bounded(void **state)
         RasterSet set = {0};
         CHECK(raster_set_open(&set, tiff, "test") == STATUS_OK);
         raster_keep(&set.raster[0], 1, folder, whole ? 1e9 : 10.5 * px * sizeof(float)); /* room for ten rows */
-        CHECK(raster_read(all, &set.raster[0], 1, 0, 0, px, px, "test") == STATUS_OK);
+        CHECK(raster_read(all, &set.raster[0], 1, (RasterWindow){0, 0, px, px}, "test") == STATUS_OK);
         char        path[64];
         struct stat about;
         double      octets = 0;
@@ -419,8 +423,10 @@ static void kept_rows_are_bounded(void **state)
         CHECK(octets == (whole ? px : 10) * px * sizeof(float));
         CHECK(kill(lab_reader(), SIGKILL) == 0);
         log_set_sink(check_listen, NULL);
-        CHECK(raster_read(again, &set.raster[0], 1, 3, 2, 50, 8, "test") == STATUS_OK); /* without the reader */
-        CHECK((raster_read(again, &set.raster[0], 1, 0, 0, px, px, "test") == STATUS_OK) == (whole != 0));
+        CHECK(raster_read(again, &set.raster[0], 1, (RasterWindow){3, 2, 50, 8},
+                          "test") == STATUS_OK); /* without the reader */
+        CHECK((raster_read(again, &set.raster[0], 1, (RasterWindow){0, 0, px, px},
+                           "test") == STATUS_OK) == (whole != 0));
         log_set_sink(NULL, NULL);
         if (whole) CHECK(memcmp(again, all, sizeof all) == 0);
         raster_set_close(&set);

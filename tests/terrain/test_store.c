@@ -3,7 +3,7 @@
  * with the next step. labels: threads */
 #include "tests/terrain/store_lab.h"
 
-#include "terrain/landscape/photo.h"
+#include "terrain/ground/ground_image.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -158,7 +158,7 @@ static void opening_touches_no_page_of_data(void **state)
     CHECK(resident_kb(lab) == 0);
     store_close(&store);
     CHECK(resident_kb(lab) == -1);
-    assert_int_equal(landscape_open_store(&landscape, lab, 1), STATUS_OK);
+    assert_int_equal(store_open_landscape(&landscape, lab, 1), STATUS_OK);
     CHECK(resident_kb(lab) == 0);
     CHECK_NEAR(elevation_height(&landscape.elevation, 10, 20, NULL), (double)lab_height_m(10, 20), 0x1p-9);
     CHECK(resident_kb(lab) > 0 && landscape_has_photo(&landscape));

@@ -1,7 +1,7 @@
 /* A surface model taken apart, on sites whose ground, roofs and trees are known because the test made them. */
 #include "tests/check.h"
 
-#include "terrain/landscape/take_apart.h"
+#include "terrain/bare_earth/take_apart.h"
 
 #include <stdlib.h>
 
@@ -37,7 +37,7 @@ static void site_free(Site *s)
 static void site_run(Site *s)
 {
     const SurfaceModel model = {.nx = s->nx, .ny = s->ny, .cell_m = s->cell_m, .surface_m = s->surface_m};
-    CHECK(surface_take_apart(&s->parts, &model) == STATUS_OK);
+    CHECK(take_apart_surface(&s->parts, &model) == STATUS_OK);
 }
 
 /* A round crown with leaves of rough height. */
@@ -204,7 +204,7 @@ static void overlapping_windows_agree(void **state)
     site_run(&a);
     const SurfaceModel model = {.nx = b.nx, .ny = b.ny, .cell_m = cell_m, .surface_m = b.surface_m,
                                 .column = shift_x, .row = shift_y};
-    CHECK(surface_take_apart(&b.parts, &model) == STATUS_OK);
+    CHECK(take_apart_surface(&b.parts, &model) == STATUS_OK);
     const size_t some = (size_t)(b.nx - 2 * reach);
     for (int j = reach; j < b.ny - reach; j++) {
         const size_t p = (size_t)(j + shift_y) * side + (size_t)(reach + shift_x),
@@ -243,7 +243,7 @@ static void odd_windows_are_survived(void **state)
             }
     const SurfaceModel coarse = {.nx = 1, .ny = 1, .cell_m = 4.5};
     SurfaceParts none = {0};
-    CHECK(surface_take_apart(&none, &coarse) == STATUS_UNSUPPORTED);
+    CHECK(take_apart_surface(&none, &coarse) == STATUS_UNSUPPORTED);
 }
 
 static void spikes_leave_no_mark(void **state)

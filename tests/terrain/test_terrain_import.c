@@ -3,9 +3,8 @@
 #include "tests/check.h"
 
 #include "terrain/earth/geoid.h"
-#include "terrain/import/building_count.h"
 #include "terrain/import/terrain_import.h"
-#include "terrain/landscape/elevation_stream.h"
+#include "terrain/from_files/elevation_import.h"
 
 #include <limits.h>
 #include <sys/stat.h>
@@ -384,14 +383,14 @@ static void buildings_are_counted_over_rows(void **state)
     (void)state;
     /* a ring about a cell, two arms that meet in the last row but one, cells that touch at a corner */
     static const char *const rows[] = {"###..#.#.#", "#.#..#.#..", "###..#.#..", ".....###..", "#.......##"};
-    BuildingCount b = {0};
+    TerrainBuildings b = {0};
     for (int j = 0; j < 5; j++) {
         uint8_t kind[10];
         for (int i = 0; i < 10; i++) kind[i] = rows[j][i] == '#' ? CELL_BUILDING : i & 1 ? CELL_TREE : CELL_BARE;
-        assert_int_equal(building_count_row(&b, 10, kind), STATUS_OK);
+        assert_int_equal(terrain_buildings_count(&b, 10, kind), STATUS_OK);
     }
     assert_int_equal(b.count, 5);
-    building_count_free(&b);
+    terrain_buildings_free(&b);
 }
 
 /* ---- options, stopping, making again --------------------------------------------------------- */

@@ -2,8 +2,8 @@
  * them lies under a reported vehicle, and plots keep off the roads. */
 #include "tests/check.h"
 
-#include "terrain/landscape/hedges.h"
-#include "terrain/landscape/ways.h"
+#include "terrain/detail/detail.h"
+#include "terrain/ground/landscape.h"
 
 enum { most = 20000 };
 static double vertex[most][2];
@@ -169,7 +169,7 @@ static void ask_section(const Landscape *land, const double middle[2], const dou
         of_class[n] = SURFACE_TRACK, footprint[n] = (float)footprint_m;
         albedo[n] = radar[n] = 1, warmth_k[n] = slope_x[n] = slope_y[n] = 0;
     }
-    ways_detail(&(GroundDetail){albedo, warmth_k, radar, slope_x, slope_y}, land, across, of_class, place_x, place_y,
+    detail_ways(&(GroundDetail){albedo, warmth_k, radar, slope_x, slope_y}, land, across, of_class, place_x, place_y,
                 footprint);
 }
 

@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "terrain/earth/sun.h"
-#include "terrain/weather/weather_course.h"
+#include "terrain/weather/weather.h"
 
 static const double day_s = 86400;
 static const double new_year_2016_s = 1451606400; /* 2016-01-01T00:00:00Z, a leap year */

@@ -2,10 +2,9 @@
  * a store say. labels: physics */
 #include "tests/check.h"
 
-#include "terrain/landscape/ways.h"
+#include "terrain/ground/landscape.h"
 #include "terrain/store/store.h"
 #include "terrain/woods/woods.h"
-#include "terrain/woods/woods_table.h"
 
 static Landscape landscape;
 static LocalFrame frame;
@@ -352,7 +351,7 @@ static void layers_of_a_store(void **state)
     (void)state;
     snprintf(path_of, sizeof path_of, "/tmp/test_woods_%ld.store", (long)getpid());
     assert_true(write_store(path_of));
-    assert_int_equal(landscape_open_store(&ground, path_of, 3), STATUS_OK);
+    assert_int_equal(store_open_landscape(&ground, path_of, 3), STATUS_OK);
     WoodsConfig config = about(0, 0, 250);
     config.path_count = 0, config.store = path_of;
     assert_int_equal(woods_create(&w, &ground, &config, NULL), STATUS_OK);

@@ -8,7 +8,7 @@
 #include "tests/scenes/woods_stand.h"
 #include "sensor/quality/trial.h"
 #include "sensor/settings/config.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 #include <gnu/libc-version.h>
 #include <sched.h>
@@ -93,7 +93,7 @@ static Status open_world(double *unix_s)
     Status status = pool_create(&stage.pool, 1);
     if (status == STATUS_OK) status = local_frame_at(&stage.frame, &origin);
     if (status == STATUS_OK)
-        status = quick_landscape_create(&stage.landscape, times_s, &stage.frame, east_m, north_m, stage.pool);
+        status = landscape_quick(&stage.landscape, times_s, &stage.frame, east_m, north_m, stage.pool);
     if (status == STATUS_OK) status = catalog_open(&stage.catalog, catalog, 0.01);
     if (status == STATUS_OK)
         status = world_open(&stage.world, stage.catalog, &stage.landscape, &stage.frame, "avx2");

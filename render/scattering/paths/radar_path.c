@@ -3,7 +3,7 @@
 #include "render/scattering/paths/radar_path.h"
 #include "render/scattering/paths/attenuation.h"
 #include "render/scattering/scatter.h"
-#include "terrain/weather/vapour.h"
+#include "terrain/weather/weather.h"
 
 static const double earth_m = 6371000, level_m = 100, top_m = 20000, fade_m = 2000;
 

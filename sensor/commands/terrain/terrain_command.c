@@ -305,7 +305,7 @@ static int parse(Wanted *w, int argc, char **argv)
         {"threads", 1, NULL, THREADS},
         {"json", 0, NULL, JSON},
         {"help", 0, NULL, HELP},
-        /* those of terrain/import/options.h */
+        /* those of terrain/import/terrain_import.h */
         {"surface", 1, NULL, VALUE},
         {"cover", 1, NULL, VALUE + 1},
         {"cover-table", 1, NULL, VALUE + 2},

@@ -7,7 +7,7 @@
 #include "entities/catalog/catalog.h"
 #include "entities/survey/survey.h"
 #include "sensor/settings/config.h"
-#include "terrain/landscape/landscape.h"
+#include "terrain/ground/landscape.h"
 #include "terrain/woods/woods.h"
 
 /* ---- host and aim ------------------------------------------------------------------------------------- */

@@ -6,7 +6,7 @@
 #include "sensor/node/choices/ground_evidence.h"
 #include "terrain/elevation/raster.h"
 #include "terrain/import/terrain_import.h"
-#include "terrain/landscape/landscape_import.h"
+#include "terrain/from_files/elevation_import.h"
 #include "terrain/store/store.h"
 
 #include <stdlib.h>
@@ -132,7 +132,7 @@ static Status open_store(Landscape *out, Choices *choices, const Config *config)
     if (status != STATUS_OK) return status;
     report_store(choices, &store, path);
     store_close(&store);
-    return landscape_open_store(out, path, (uint64_t)config->seed);
+    return store_open_landscape(out, path, (uint64_t)config->seed);
 }
 
 /* ---- synthetic -------------------------------------------------------------------------------------- */

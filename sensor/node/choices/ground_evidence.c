@@ -166,7 +166,7 @@ static Status judge_landed(Gathering *g)
     }
     for (int n = 0; n < count; n++) memcpy(place[n], still[n].p_enu, sizeof place[n]);
     if (count)
-        status = ground_consensus_height(above_m, above_m + most, (const double (*)[3])place, count, g->e->fix,
+        status = invented_consensus_height(above_m, above_m + most, (const double (*)[3])place, count, g->e->fix,
                                  g->e->said.fix_count);
     for (int n = 0; status == STATUS_OK && n < count; n++) {
         const Track *track = &g->survey->track[still[n].track];

@@ -12,7 +12,7 @@
 
 #include "entities/catalog/catalog.h"
 #include "entities/survey/survey.h"
-#include "terrain/landscape/landscape.h"
+#include "terrain/ground/landscape.h"
 
 typedef enum Stance {
     STANCE_OTHER,      /* in the air, or nothing known */

@@ -5,7 +5,7 @@
 #define SENSOR_VERIFY_SAVED_FRAME_GROUND_CUTOUT_H
 
 #include "sensor/verify/saved_frame/chunks.h"
-#include "terrain/landscape/landscape_parts.h"
+#include "terrain/ground/landscape_parts.h"
 
 typedef struct GroundCutout {
     int           count;

@@ -2,7 +2,7 @@
  * cover, photograph. */
 #include "sensor/verify/saved_frame/saved_frame_private.h"
 
-#include "terrain/landscape/photo.h"
+#include "terrain/ground/ground_image.h"
 
 #include <stdlib.h>
 

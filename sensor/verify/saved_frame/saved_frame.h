@@ -12,7 +12,7 @@
 #include "sensor/frame/plane.h"
 #include "sensor/settings/tables_used.h"
 #include "sensor/truth/truth.h"
-#include "terrain/landscape/landscape_parts.h"
+#include "terrain/ground/landscape_parts.h"
 #include "sensor/verify/saved_frame/chunks.h"
 
 enum { saved_models_max = 4096, saved_entities_max = 1 << 20 };

@@ -34,7 +34,7 @@ Status saved_tables(TablesUsed *out, const Config *config, const char *catalog)
 /* Of a terrain store, which may have gigabytes, the file has the path and the hash of the content. */
 static Status open_store(Landscape *out, const LandscapeParts *parts)
 {
-    const Status status = landscape_open_store(out, parts->store, parts->config.seed);
+    const Status status = store_open_landscape(out, parts->store, parts->config.seed);
     if (status != STATUS_OK) {
         log_error("frame: the frame was made over the terrain store %s; put it back there, or make it again with "
                   "`pitviper terrain import` from the same files", parts->store);

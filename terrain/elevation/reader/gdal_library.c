@@ -1,5 +1,8 @@
-/* terrain/elevation/reader/gdal_library.c: the functions of GDAL that the reader calls. */
-#include "terrain/elevation/reader/gdal_library.h"
+/* terrain/elevation/reader/gdal_library.c: GDAL: the functions of it that the reader calls, loaded and prepared; what
+ * it has to say is kept. */
+#include "terrain/elevation/reader/reader_private.h"
+
+#include <cpl_conv.h>
 
 #define GDAL(X)                                                                                                       \
     X(CPLErrorReset) X(CPLGetLastErrorMsg) X(CPLPopErrorHandler) X(CPLPushErrorHandler) X(CPLQuietErrorHandler)       \
@@ -17,3 +20,33 @@
     X(OSRIsProjected) X(OSRIsSame) X(OSRNewSpatialReference) X(OSRSetAxisMappingStrategy) X(OSRSetFromUserInput)      \
     X(OSRStripVertical)
 LIBRARY(gdal_library, GDAL, "GDAL", PITVIPER_GDAL_FILE, "libgdal32");
+
+Status reader_prepare(void)
+{
+    static const GIntBig most_cache = 256 << 20; /* octets; by default a twentieth of the memory */
+    static bool    done; /* by the process that this one was forked from */
+    const Status   status = library_load(&gdal_library);
+    if (status != STATUS_OK || done) return status;
+    done = true;
+    CPLSetErrorHandler(CPLQuietErrorHandler);
+    /* A file may name others (VRT): none makes this process ask a server, which could not be reached. */
+    CPLSetConfigOption("GDAL_SKIP", "HTTP,WMS,WMTS,WCS,DAAS,EEDA,EEDAI,PLMosaic,NGW,OGCAPI,STACTA,STACIT,PostGISRaster");
+    CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none"); /* of /vsicurl/ and those of its kind */
+    GDALAllRegister();
+    if (GDALGetCacheMax64() > most_cache) GDALSetCacheMax64(most_cache);
+    return STATUS_OK;
+}
+
+const char *reader_reason(const char *else_text)
+{
+    const char *text = CPLGetLastErrorMsg();
+    return text && *text ? text : else_text;
+}
+
+void reader_quiet(void)
+{
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+    CPLErrorReset();
+}
+
+void reader_loud(void) { CPLPopErrorHandler(); }

@@ -1,6 +1,6 @@
-/* terrain/elevation/reader/reader_main.c: `pitviper-rasters`: loads GDAL once, and forks a process for each set of rasters,
- * which reads it for the program under confinement, one thread a channel (raster_wire.h). It ends when the program's end of
- * its socket closes, and each of those with it. */
+/* terrain/elevation/reader/reader_main.c: `pitviper-rasters`: loads GDAL once, and forks a process for each set of
+ * rasters, which reads it for the program under confinement, one thread a channel (raster_child.h). It ends when the
+ * program's end of its socket closes, and each of those with it. */
 #include "pitviper_confine.h"
 #include "terrain/elevation/raster_child.h"
 #include "terrain/elevation/reader/reader_private.h"
@@ -166,16 +166,20 @@ static Status answer(WireChannel *c)
         return STATUS_OK;
     }
     case WIRE_UNIFORM:
-        c->reply.uniform = reader_uniform(&c->reply.value, raster, q->first, q->x0, q->y0, q->width, q->height, q->key);
+        c->reply.uniform = reader_uniform(&c->reply.value, raster, q->first,
+                                          (RasterWindow){q->x0, q->y0, q->width, q->height}, q->key);
         return STATUS_OK;
     case WIRE_READ:
         if (raster->sparse)
-            c->reply.uniform = reader_uniform(&c->reply.value, raster, q->first, q->x0, q->y0, q->width, q->height, q->key);
+            c->reply.uniform = reader_uniform(&c->reply.value, raster, q->first,
+                                              (RasterWindow){q->x0, q->y0, q->width, q->height}, q->key);
         if (c->reply.uniform) return STATUS_OK;
-        return reader_read((float *)(void *)c->data, raster, q->first, q->x0, q->y0, q->width, q->height, q->key);
+        return reader_read((float *)(void *)c->data, raster, q->first,
+                           (RasterWindow){q->x0, q->y0, q->width, q->height}, q->key);
     case WIRE_READ_BYTES: {
         uint8_t *valid = c->data + (size_t)q->width * (size_t)q->height * (size_t)q->count;
-        return reader_read_bytes(c->data, valid, raster, q->first, q->count, q->x0, q->y0, q->width, q->height, q->key);
+        return reader_read_bytes(c->data, valid, raster, q->first, q->count,
+                                 (RasterWindow){q->x0, q->y0, q->width, q->height}, q->key);
     }
     default: return STATUS_BAD_VALUE;
     }

@@ -1,7 +1,6 @@
 /* terrain/elevation/reader/reader_pixels.c: places and pixels of the rasters of a set, as GDAL and PROJ give them. */
-#include "terrain/elevation/reader/reader_private.h"
 
-#include "terrain/elevation/reader/reader_handles.h"
+#include "terrain/elevation/reader/reader_private.h"
 
 #include <ogr_srs_api.h>
 #include <stdlib.h>
@@ -56,7 +55,8 @@ void reader_earth_from_px(const Raster *raster, int count, double *x_to_lon, dou
 
 /* ---- pixels --------------------------------------------------------------------------------- */
 
-GDALDatasetH sheet_open(const RasterSheet *s, int row_block, int y, const char *key)
+/* A sheet's handle for a window that begins at row y, locked; NULL, logged: the file cannot be read. */
+static GDALDatasetH sheet_open(const RasterSheet *s, int row_block, int y, const char *key)
 {
     const int    h = y / (row_block > 0 ? row_block : 1) % handles;
     GDALDatasetH file = NULL;
@@ -77,14 +77,16 @@ GDALDatasetH sheet_open(const RasterSheet *s, int row_block, int y, const char *
     return NULL;
 }
 
-void sheet_done(const RasterSheet *s, int row_block, int y, GDALDatasetH file)
+static void sheet_done(const RasterSheet *s, int row_block, int y, GDALDatasetH file)
 {
     if (!s->open) GDALClose(file);
     else pthread_mutex_unlock(&s->open->lock[y / (row_block > 0 ? row_block : 1) % handles]);
 }
 
-bool common_part(int part[4], const RasterSheet *s, int x0, int y0, int width, int height)
+/* What a sheet and a window have in common, px of the raster. False: nothing. */
+static bool common_part(int part[4], const RasterSheet *s, RasterWindow window)
 {
+    const int x0 = window.x0, y0 = window.y0, width = window.width, height = window.height;
     part[0] = x0 > s->x0 ? x0 : s->x0;
     part[1] = y0 > s->y0 ? y0 : s->y0;
     part[2] = x0 + width < s->x0 + s->width ? x0 + width : s->x0 + s->width;
@@ -99,11 +101,12 @@ static Status damaged(const RasterSheet *s, const char *key)
 }
 
 /* One sheet's part of the window, over what is there already: the first sheet that has a value wins. */
-static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s, bool first, int number, int x0, int y0,
-                         int width, int height, const char *key)
+static Status read_sheet(float *out, const Raster *raster, const RasterSheet *s, bool first, int number,
+                         RasterWindow window, const char *key)
 {
+    const int x0 = window.x0, y0 = window.y0, width = window.width;
     int part[4];
-    if (!common_part(part, s, x0, y0, width, height)) return STATUS_OK;
+    if (!common_part(part, s, window)) return STATUS_OK;
     const int w = part[2] - part[0], h = part[3] - part[1];
     const int strip = h < 256 ? h : 256;
 
@@ -165,10 +168,11 @@ done:
 }
 
 static Status read_sheet_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, const RasterSheet *s, int first,
-                               int bands, int x0, int y0, int width, int height, const char *key)
+                               int bands, RasterWindow window, const char *key)
 {
+    const int x0 = window.x0, y0 = window.y0, width = window.width;
     int part[4];
-    if (!common_part(part, s, x0, y0, width, height)) return STATUS_OK;
+    if (!common_part(part, s, window)) return STATUS_OK;
     const int      w = part[2] - part[0], h = part[3] - part[1];
     const size_t   count = (size_t)w * (size_t)h;
     uint8_t       *value = NULL, *mask = NULL;
@@ -222,30 +226,80 @@ done:
     return status;
 }
 
-Status reader_read(float *out, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key)
+Status reader_read(float *out, const Raster *raster, int band, RasterWindow window, const char *key)
 {
     Status       status = STATUS_OK;
-    const size_t count = (size_t)width * (size_t)height;
+    const size_t count = (size_t)window.width * (size_t)window.height;
     const RasterSheet *only = raster->sheet_count == 1 ? &raster->sheet[0] : NULL;
     for (size_t k = 0; k < count; k++) out[k] = NAN;
     reader_quiet();
     for (int k = 0; status == STATUS_OK && k < raster->sheet_count; k++)
-        status = read_sheet(out, raster, &raster->sheet[k], only != NULL, band, x0, y0, width, height, key);
+        status = read_sheet(out, raster, &raster->sheet[k], only != NULL, band, window, key);
     reader_loud();
     return status;
 }
 
-Status reader_read_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, int first_band, int bands, int x0, int y0,
-                         int width, int height, const char *key)
+Status reader_read_bytes(uint8_t *out, uint8_t *valid, const Raster *raster, int first_band, int bands,
+                         RasterWindow window, const char *key)
 {
     Status       status = STATUS_OK;
-    const size_t count = (size_t)width * (size_t)height;
+    const size_t count = (size_t)window.width * (size_t)window.height;
     if (bands < 1 || bands > 4) return STATUS_BAD_VALUE;
     memset(out, 0, count * (size_t)bands);
     memset(valid, 0, count);
     reader_quiet();
     for (int k = 0; status == STATUS_OK && k < raster->sheet_count; k++)
-        status = read_sheet_bytes(out, valid, raster, &raster->sheet[k], first_band, bands, x0, y0, width, height, key);
+        status = read_sheet_bytes(out, valid, raster, &raster->sheet[k], first_band, bands, window, key);
     reader_loud();
     return status;
+}
+
+/* ---- what of a raster holds nothing: between its sheets, and blocks that a TIFF lacks ----------- */
+
+static bool is_tiff(GDALDatasetH file)
+{
+    const GDALDriverH driver = GDALGetDatasetDriver(file);
+    return driver && strcmp(GDALGetDescription(driver), "GTiff") == 0;
+}
+
+double reader_data_px(GDALDatasetH file)
+{
+    const int             width = GDALGetRasterXSize(file), height = GDALGetRasterYSize(file);
+    const GDALRasterBandH band = GDALGetRasterBand(file, 1);
+    double                percent = 100;
+    if (band && is_tiff(file) &&
+        GDALGetDataCoverageStatus(band, 0, 0, width, height, 0, &percent) & GDAL_DATA_COVERAGE_STATUS_UNIMPLEMENTED)
+        percent = 100;
+    return (percent >= 0 && percent <= 100 ? percent / 100 : 1) * width * height;
+}
+
+/* No block of this part is there, and no mask says more of it than its nodata value does: all of it is one value. */
+static bool has_no_block(GDALDatasetH file, int number, const int part[4], const RasterSheet *s)
+{
+    const GDALRasterBandH band = GDALGetRasterBand(file, s->band ? s->band : number);
+    if (!band || !is_tiff(file) || (GDALGetMaskFlags(band) & ~(GMF_ALL_VALID | GMF_NODATA))) return false;
+    return GDALGetDataCoverageStatus(band, part[0] - s->x0, part[1] - s->y0, part[2] - part[0], part[3] - part[1],
+                                     GDAL_DATA_COVERAGE_STATUS_DATA, NULL) == GDAL_DATA_COVERAGE_STATUS_EMPTY;
+}
+
+bool reader_uniform(float *value, const Raster *raster, int band, RasterWindow window, const char *key)
+{
+    bool  uniform = true;
+    float v = NAN;
+    int   sheets = 0;
+    reader_quiet();
+    for (int k = 0; uniform && k < raster->sheet_count; k++) {
+        const RasterSheet *s = &raster->sheet[k];
+        int                part[4];
+        if (!common_part(part, s, window)) continue;
+        GDALDatasetH file = sheet_open(s, raster->row_block, part[1], key);
+        uniform = file && has_no_block(file, band, part, s);
+        if (file) sheet_done(s, raster->row_block, part[1], file);
+        if (uniform) uniform = reader_read(&v, raster, band, (RasterWindow){part[0], part[1], 1, 1}, key) == STATUS_OK;
+        const bool whole = part[2] - part[0] == window.width && part[3] - part[1] == window.height;
+        if (!isnan(v)) uniform &= whole && ++sheets == 1 && raster->sheet_count == 1;
+    }
+    reader_loud();
+    if (uniform) *value = v;
+    return uniform;
 }

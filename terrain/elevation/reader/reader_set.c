@@ -1,169 +1,14 @@
-/* terrain/elevation/reader/reader_set.c: sets of files as GDAL has them: what each is, and which share a grid. */
+/* terrain/elevation/reader/reader_set.c: sets of files as GDAL has them: which of their sheets share a grid. */
 #include "terrain/elevation/reader/reader_private.h"
 
-#include "terrain/elevation/reader/gdal_library.h"
-#include "terrain/elevation/reader/reader_handles.h"
-
-#include <strings.h>
-#include <cpl_conv.h>
 #include <cpl_string.h>
 #include <dirent.h>
 #include <errno.h>
-#include <gdal.h>
-#include <ogr_srs_api.h>
 #include <stdlib.h>
+#include <strings.h>
 #include <sys/stat.h>
 
-/* most_side: of a sheet, px; sheets lie within 1e8 px of the first, so that sums stay in an int */
-enum { most_sheets = 4096, path_size = wire_path_size, most_side = 100000000 };
-
-Status reader_prepare(void)
-{
-    static const GIntBig most_cache = 256 << 20; /* octets; by default a twentieth of the memory */
-    static bool    done; /* by the process that this one was forked from */
-    const Status   status = library_load(&gdal_library);
-    if (status != STATUS_OK || done) return status;
-    done = true;
-    CPLSetErrorHandler(CPLQuietErrorHandler);
-    /* A file may name others (VRT): none makes this process ask a server, which could not be reached. */
-    CPLSetConfigOption("GDAL_SKIP", "HTTP,WMS,WMTS,WCS,DAAS,EEDA,EEDAI,PLMosaic,NGW,OGCAPI,STACTA,STACIT,PostGISRaster");
-    CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none"); /* of /vsicurl/ and those of its kind */
-    GDALAllRegister();
-    if (GDALGetCacheMax64() > most_cache) GDALSetCacheMax64(most_cache);
-    return STATUS_OK;
-}
-
-const char *reader_reason(const char *else_text)
-{
-    const char *text = CPLGetLastErrorMsg();
-    return text && *text ? text : else_text;
-}
-
-void reader_quiet(void)
-{
-    CPLPushErrorHandler(CPLQuietErrorHandler);
-    CPLErrorReset();
-}
-
-void reader_loud(void) { CPLPopErrorHandler(); }
-
-/* ---- one sheet ------------------------------------------------------------------------------ */
-
-/* What decides whether sheets share a grid. */
-typedef struct Opened {
-    double transform[6];
-    int    width, height, bands;
-    bool   ellipsoidal, bytes, whole;
-    double metres_per_unit;
-    int    row_block;
-    RasterStated stated;
-    RasterChoice choice;
-    OGRSpatialReferenceH crs;
-} Opened;
-
-/* The coordinate system that the user names, else the file's; NULL, logged: none. */
-static OGRSpatialReferenceH crs_of(const RasterChoice *choice, GDALDatasetH file, const char *path, const char *key)
-{
-    const OGRSpatialReferenceH stated = GDALGetSpatialRef(file);
-    if (!*choice->srs) {
-        if (!stated)
-            log_error("%s: %s does not say its coordinate system; %s@srs=EPSG:nnnn does (or gdal_edit.py -a_srs EPSG:nnnn)", key,
-                      path, path);
-        return stated ? OSRClone(stated) : NULL;
-    }
-    OGRSpatialReferenceH named = OSRNewSpatialReference(NULL);
-    if (named && OSRSetFromUserInput(named, choice->srs) == OGRERR_NONE) return named;
-    log_error("%s: %s: '%s' is no coordinate system that PROJ knows: %s; EPSG:32633 is one", key, path, choice->srs,
-              reader_reason("unknown"));
-    if (named) OSRDestroySpatialReference(named);
-    return NULL;
-}
-
-/* Corner 0, 0 and pixels of 1 are what GDAL gives a file that says nothing. */
-static bool is_placed(double transform[6], GDALDatasetH file)
-{
-    static const double nothing[6] = {0, 1, 0, 0, 0, 1};
-    double inverse[6], mirrored[6];
-    if (GDALGetGeoTransform(file, transform) != CE_None || !GDALInvGeoTransform(transform, inverse)) return false;
-    memcpy(mirrored, transform, sizeof mirrored);
-    mirrored[5] = fabs(mirrored[5]);
-    return memcmp(mirrored, nothing, sizeof nothing) != 0;
-}
-
-/* GDAL's name of a grid in a file, `NETCDF:"a.nc":height`, and its own, `height`; NULL: this line of the list names none. */
-static const char *part_of(const char **own, const char *line)
-{
-    const char *name = strstr(line, "_NAME=");
-    if (!name) return NULL;
-    const char *colon = strrchr(name, ':');
-    *own = colon ? colon + 1 : name + 6;
-    return name + 6;
-}
-
-/* The grid that is asked for, in path; false, logged: there is none, or none was asked for. */
-static bool choose_part(char path[path_size], GDALDatasetH file, const char *asked, const char *key)
-{
-    char      **part = GDALGetMetadata(file, "SUBDATASETS");
-    char        names[400] = "";
-    const char *own;
-    for (int k = 0; part && part[k]; k++) {
-        const char *name = part_of(&own, part[k]);
-        if (!name) continue;
-        if (strcmp(own, asked) == 0 && strlen(name) < path_size) {
-            strcpy(path, name);
-            return true;
-        }
-        const size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", own);
-    }
-    log_error("%s: %s holds several grids, %s: %s; choose one: %s@part=NAME", key, path,
-              *asked ? "but none that is called so" : "and none is chosen", *names ? names : "none that can be named", path);
-    return false;
-}
-
-static Status describe(Opened *out, GDALDatasetH file, const RasterChoice *choice, const char *path, const char *key)
-{
-    Opened o = {.width = GDALGetRasterXSize(file), .height = GDALGetRasterYSize(file),
-                .bands = GDALGetRasterCount(file), .choice = *choice};
-    if (o.bands < 1 || o.width < 2 || o.height < 2) {
-        log_error("%s: %s holds %d bands of %d x %d pixels; a sheet needs a band and 2 x 2", key, path, o.bands,
-                  o.width, o.height);
-        return STATUS_BAD_VALUE;
-    }
-    if (o.width > most_side || o.height > most_side) {
-        log_error("%s: %s has %d x %d pixels, more than %d a side; gdal_translate -srcwin cuts out what is needed", key,
-                  path, o.width, o.height, (int)most_side);
-        return STATUS_BAD_VALUE;
-    }
-    if (choice->band > o.bands) {
-        log_error("%s: %s has %d bands, not %d; gdalinfo %s lists them", key, path, o.bands, choice->band, path);
-        return STATUS_BAD_VALUE;
-    }
-    if (!is_placed(o.transform, file)) {
-        log_error("%s: %s does not say where its corners are; gdal_translate -a_ullr W N E S %s OUT.tif", key, path,
-                  path);
-        return STATUS_BAD_VALUE;
-    }
-    o.crs = crs_of(choice, file, path, key);
-    if (!o.crs) return STATUS_BAD_VALUE;
-    const int             number = choice->band ? choice->band : 1;
-    const GDALRasterBandH band = GDALGetRasterBand(file, number);
-    reader_state(&o.stated, file, number, o.crs);
-    o.ellipsoidal     = !OSRIsCompound(o.crs) && OSRGetAxesCount(o.crs) == 3;
-    o.bytes           = GDALGetRasterDataType(band) == GDT_Byte;
-    o.whole           = GDALDataTypeIsInteger(GDALGetRasterDataType(band));
-    int block_x = 0, block_y = 0;
-    GDALGetBlockSize(band, &block_x, &block_y);
-    for (o.row_block = 64; o.row_block < block_y && o.row_block < 1024;) o.row_block *= 2;
-    const double unit_m = raster_unit_m(*choice->unit ? choice->unit : o.stated.unit);
-    const bool   down = choice->sense ? choice->sense < 0 : o.stated.down;
-    o.metres_per_unit = (unit_m > 0 ? unit_m : 1) * (down ? -1 : 1);
-    OSRStripVertical(o.crs);
-    OSRDemoteTo2D(o.crs, NULL);
-    OSRSetAxisMappingStrategy(o.crs, OAMS_TRADITIONAL_GIS_ORDER);
-    *out = o;
-    return STATUS_OK;
-}
+enum { most_sheets = 4096, path_size = wire_path_size };
 
 /* ---- grids ---------------------------------------------------------------------------------- */
 
@@ -175,7 +20,7 @@ static bool same_choice(const RasterChoice *a, const RasterChoice *b)
            (a->band != 0) == (b->band != 0);
 }
 
-static bool same_grid(const Raster *raster, const Opened *o, double at_px[2])
+static bool same_grid(const Raster *raster, const SheetOpened *o, double at_px[2])
 {
     const double *a = raster->crs_from_px, *b = o->transform;
     if (!OSRIsSame(raster->crs, o->crs) || raster->ellipsoidal != o->ellipsoidal || raster->bytes != o->bytes ||
@@ -195,7 +40,7 @@ static bool same_grid(const Raster *raster, const Opened *o, double at_px[2])
            fabs(at_px[0]) < 1e8 && fabs(at_px[1]) < 1e8;
 }
 
-static Status start_raster(Raster *raster, Opened *o)
+static Status start_raster(Raster *raster, SheetOpened *o)
 {
     OGRSpatialReferenceH earth = OSRNewSpatialReference(NULL);
     Status status = STATUS_BAD_VALUE;
@@ -259,7 +104,7 @@ static const char *remedy(char out[path_size + 80], const char *path)
 
 static Status add_sheet(RasterSet *set, const char *name, const RasterChoice *choice, const char *key)
 {
-    Opened o = {0};
+    SheetOpened o = {0};
     Status status = STATUS_IO;
     double at_px[2] = {0, 0};
     char   path[path_size], next[path_size + 80];
@@ -272,7 +117,8 @@ static Status add_sheet(RasterSet *set, const char *name, const RasterChoice *ch
         return STATUS_IO;
     }
     if (*choice->part || (GDALGetRasterCount(file) < 1 && GDALGetMetadata(file, "SUBDATASETS"))) {
-        const bool chosen = parts_may_be_opened(file, path, path, key, 0) && choose_part(path, file, choice->part, key);
+        const bool chosen = parts_may_be_opened(file, path, path, key, 0) &&
+                            reader_choose_part(path, file, choice->part, key);
         GDALClose(file);
         if (!chosen) return STATUS_BAD_VALUE;
         file = GDALOpen(path, GA_ReadOnly);
@@ -281,7 +127,7 @@ static Status add_sheet(RasterSet *set, const char *name, const RasterChoice *ch
             return STATUS_IO;
         }
     }
-    status = parts_may_be_opened(file, path, name, key, 0) ? describe(&o, file, choice, path, key) : STATUS_IO;
+    status = parts_may_be_opened(file, path, name, key, 0) ? reader_describe(&o, file, choice, path, key) : STATUS_IO;
     const double data_px = status == STATUS_OK ? reader_data_px(file) : 0;
     GDALClose(file);
     if (status != STATUS_OK) return status;
@@ -452,6 +298,23 @@ bool reader_next_name(char out[wire_path_size], const char **at, bool *long_name
     return false;
 }
 
+static void reader_set_close(RasterSet *set)
+{
+    for (int k = 0; k < set->count; k++) {
+        Raster *raster = &set->raster[k];
+        for (int n = 0; n < raster->sheet_count; n++) {
+            close_handles(raster->sheet[n].open);
+            free(raster->sheet[n].path);
+        }
+        free(raster->sheet);
+        if (raster->crs_from_earth) OCTDestroyCoordinateTransformation(raster->crs_from_earth);
+        if (raster->earth_from_crs) OCTDestroyCoordinateTransformation(raster->earth_from_crs);
+        if (raster->crs) OSRDestroySpatialReference(raster->crs);
+    }
+    free(set->raster);
+    *set = (RasterSet){0};
+}
+
 Status reader_set_open(RasterSet *out, const char *paths, const char *key)
 {
     RasterSet set = {0};
@@ -488,21 +351,3 @@ Status reader_set_open(RasterSet *out, const char *paths, const char *key)
     else reader_set_close(&set);
     return status;
 }
-
-void reader_set_close(RasterSet *set)
-{
-    for (int k = 0; k < set->count; k++) {
-        Raster *raster = &set->raster[k];
-        for (int n = 0; n < raster->sheet_count; n++) {
-            close_handles(raster->sheet[n].open);
-            free(raster->sheet[n].path);
-        }
-        free(raster->sheet);
-        if (raster->crs_from_earth) OCTDestroyCoordinateTransformation(raster->crs_from_earth);
-        if (raster->earth_from_crs) OCTDestroyCoordinateTransformation(raster->earth_from_crs);
-        if (raster->crs) OSRDestroySpatialReference(raster->crs);
-    }
-    free(set->raster);
-    *set = (RasterSet){0};
-}
-

@@ -1,5 +1,5 @@
-/* terrain/elevation/reader/reader_source.c: which files GDAL may be given: it opens by name, and what lies beside a file
- * with it. */
+/* terrain/elevation/reader/reader_source.c: which files GDAL may be given: it opens by name, and what lies beside a
+ * file with it. */
 #include "terrain/elevation/reader/reader_private.h"
 
 #include "pitviper_file.h"

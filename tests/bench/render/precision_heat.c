@@ -5,7 +5,7 @@
 
 #include "render/heat/heat_scene.h"
 #include "tests/bench/bench.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 #include <stdlib.h>
 
@@ -303,7 +303,7 @@ static Status tunable_shade(Bench *bench, const GroundKinds *kinds, Pool *pool)
     bench_progress(bench, "cells of shade");
     Status status = arena ? local_frame_at(&frame, &origin) : STATUS_NO_MEMORY;
     c.pool = pool;
-    if (status == STATUS_OK) status = quick_landscape_create(&landscape, times_s, &frame, wide_m, wide_m, pool);
+    if (status == STATUS_OK) status = landscape_quick(&landscape, times_s, &frame, wide_m, wide_m, pool);
     if (status == STATUS_OK) status = heat_create(&heat, kinds, &c, NULL, 0);
     if (status == STATUS_OK) status = heat_now(&now, heat, c.unix_s, arena);
     if (status == STATUS_OK) {

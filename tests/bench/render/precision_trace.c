@@ -3,7 +3,7 @@
 
 #include "render/ground/ground.h"
 #include "render/parts/parts.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 #include "tests/bench/bench.h"
 
 #include <embree3/rtcore.h>
@@ -161,7 +161,7 @@ static Status tunable_ground(Bench *bench)
     bench_progress(bench, "ground");
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
     if (status == STATUS_OK)
-        status = quick_landscape_create(&landscape, times_s, &frame, east_posts, north_posts, pool);
+        status = landscape_quick(&landscape, times_s, &frame, east_posts, north_posts, pool);
     pool_destroy(pool);
     if (status != STATUS_OK) return status;
     rays.elevation = &landscape.elevation;

@@ -3,7 +3,7 @@
 #include "tests/bench/suites.h"
 
 #include "tests/bench/bench.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 #include "sensor/quality/trial.h"
 #include "sensor/settings/config.h"
 
@@ -210,7 +210,7 @@ Status bench_speed_crowd(Bench *bench)
     double         times_s[2];
     Status         status = all.arena ? pool_create(&all.pool, bench_threads(bench)) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = quick_landscape_create(&all.landscape, times_s, &frame, 2000, 2000, all.pool);
+    if (status == STATUS_OK) status = landscape_quick(&all.landscape, times_s, &frame, 2000, 2000, all.pool);
     if (status == STATUS_OK) status = time_world(&all);
     if (status == STATUS_OK && bench_quick(bench))
         status = time_stack(&all, 40, 150, 0.5, "crowd: 40 tanks in 60 m, from 150 m, 160 x 108");

@@ -3,7 +3,7 @@
 
 #include "sensor/settings/config.h"
 #include "sensor/node/session/seeker.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 const char *const precision_shot_name[SHOT_COUNT] =
     {"ground alone", "vehicles of 70 px", "vehicles of 5 px", "horizon"};
@@ -103,7 +103,7 @@ Status precision_open(Precision *out, Bench *bench)
     Status status = out->arena && out->other ? pool_create(&out->pool, bench_threads(bench)) : STATUS_NO_MEMORY;
     bench_progress(bench, "ground and vehicles");
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = quick_landscape_create(&out->landscape, times_s, &frame, 2000, 8000, out->pool);
+    if (status == STATUS_OK) status = landscape_quick(&out->landscape, times_s, &frame, 2000, 8000, out->pool);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK)
         status = trial_scene_open(&out->scene, &out->landscape, catalog, types, sizeof types / sizeof *types, vehicles);

@@ -5,7 +5,7 @@
 #include "render/scene/upright.h"
 #include "tests/scenes/woods_stand.h"
 #include "sensor/settings/config.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 /* The last is for low plants alone. */
 typedef enum PlantShot { SHOT_ABOVE, SHOT_CLOSE, SHOT_LOW, TIMED_SHOTS = SHOT_LOW, PLANT_SHOTS } PlantShot;
@@ -292,7 +292,7 @@ static Status open_wood(PlantPrecision *p)
     bench_progress(p->bench, "a wood");
     if (!p->fine || !p->arena) status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = quick_landscape_create(&p->landscape, times_s, &frame, side_m, side_m, p->pool);
+    if (status == STATUS_OK) status = landscape_quick(&p->landscape, times_s, &frame, side_m, side_m, p->pool);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK)
         status = trial_scene_open(&p->scene, &p->landscape, catalog, types, sizeof types / sizeof *types, 1);

@@ -3,7 +3,7 @@
 #include "tests/bench/sensor/precision.h"
 
 #include "tests/bench/sensor/radar_update.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 enum { tanks = 12 };
 static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0};
@@ -83,7 +83,7 @@ Status precision_radar_seeker(Bench *bench)
     bench_progress(bench, "what a seeker's radar leaves out");
     if (status == STATUS_OK) status = pool_create(&pool, bench_threads(bench));
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = quick_landscape_create(&landscape, times_s, &frame, 6000, 6000, pool);
+    if (status == STATUS_OK) status = landscape_quick(&landscape, times_s, &frame, 6000, 6000, pool);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = trial_scene_open(&scene, &landscape, catalog, &tank_type, 1, 0);
     for (int ground = 0; ground < 2 && status == STATUS_OK; ground++) {

@@ -71,8 +71,9 @@ static void look(void *user)
             plane[y * size_px + x] = (float)photon_table_electrons(w->photons, radiance);
         }
     const SmallTargets targets = {1, &t};
-    if (w->cells)
-        subpixel_targets(w->sub, plane, more, size_px, size_px, &targets, picture_lwir, w->photons, 1, still);
+    const SubPixelPlane fine = {.electrons = plane, .more = more, .width = size_px, .height = size_px,
+                                .plane = picture_lwir, .photons = w->photons, .exposure = 1};
+    if (w->cells) subpixel_targets(w->sub, &fine, &targets, still);
     blur_apply_with(w->blur, w->out, plane, still, w->cells ? more : NULL);
     bench_keep(w->out);
 }

@@ -5,7 +5,7 @@
 
 #include "sensor/quality/trial.h"
 #include "sensor/settings/config.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 #include <stdlib.h>
 
@@ -221,7 +221,7 @@ Status bench_skip(Bench *bench)
     for (int k = 0; k < 3 && status == STATUS_OK; k++)
         if (!(s.arena[k] = arena_create())) status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = local_frame_at(&s.frame, &origin);
-    if (status == STATUS_OK) status = quick_landscape_create(&s.landscape, times_s, &s.frame, side_m, side_m, s.pool);
+    if (status == STATUS_OK) status = landscape_quick(&s.landscape, times_s, &s.frame, side_m, side_m, s.pool);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++) status = time_scene(&s, k);
     for (int k = 0; k < variants && status == STATUS_OK; k++)
         if (k != whole) say(&s, k);

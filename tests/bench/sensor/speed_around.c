@@ -8,7 +8,7 @@
 #include "sensor/frame/frame_world.h"
 #include "sensor/publish/files/frame_files.h"
 #include "sensor/publish/images/image_file.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -284,7 +284,7 @@ Status speed_files(Speed *s)
 void speed_memory(Speed *s)
 {
     size_t posts, pyramids;
-    quick_landscape_bytes(&posts, &pyramids, &s->landscape.elevation);
+    landscape_quick_bytes(&posts, &pyramids, &s->landscape.elevation);
     const struct { const char *what; double mb; } rows[] = {
         {"memory: posts", 1e-6 * (double)posts}, {"memory: their pyramid", 1e-6 * (double)pyramids},
         {"memory: arena of a frame", 1e-6 * (double)arena_bytes(s->arena[0])},

@@ -3,7 +3,7 @@
 
 #include "render/frame/world_vehicles.h"
 #include "sensor/settings/config.h"
-#include "terrain/weather/weather_course.h"
+#include "terrain/weather/weather.h"
 
 /* ---- the state --------------------------------------------------------------------------------- */
 

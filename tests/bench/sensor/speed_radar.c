@@ -4,7 +4,7 @@
 
 #include "tests/bench/sensor/radar_update.h"
 #include "sensor/radar/echo.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 #include <stdlib.h>
 
@@ -320,7 +320,7 @@ static Status on_ground(RadarSpeed *r, SceneRows rows)
     double         times_s[2];
     Status         status = arena[0] && arena[1] && arena[2] ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = quick_landscape_create(&landscape, times_s, &frame, 6000, 6000, r->many);
+    if (status == STATUS_OK) status = landscape_quick(&landscape, times_s, &frame, 6000, 6000, r->many);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = trial_scene_open(&scene, &landscape, catalog, &tank_type, 1, 0);
     if (status == STATUS_OK) status = rows(r, &scene, arena);

@@ -5,7 +5,7 @@
 
 #include "entities/import/model_import.h"
 #include "tests/bench/sensor/speed_private.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -89,7 +89,7 @@ Status speed_make_ground(Speed *s)
     bench_progress(s->bench, "ground");
     Status status = local_frame_at(&s->frame, &origin);
     if (status == STATUS_OK)
-        status = quick_landscape_create(&s->landscape, times_s, &s->frame, s->east_m, s->north_m, s->many);
+        status = landscape_quick(&s->landscape, times_s, &s->frame, s->east_m, s->north_m, s->many);
     if (status != STATUS_OK) return status;
 
     const ElevationLevel *level = &s->landscape.elevation.level[0];

@@ -10,7 +10,7 @@
 #include "tests/bench/sensor/speed_private.h"
 #include "tests/scenes/woods_stand.h"
 #include "sensor/settings/config.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/ground/landscape.h"
 
 #include <time.h>
 
@@ -67,7 +67,7 @@ static Status make_ground(WoodsBench *w)
     bench_progress(w->bench, "ground");
     Status status = local_frame_at(&w->frame, &origin);
     if (status == STATUS_OK)
-        status = quick_landscape_create(&w->landscape, times_s, &w->frame, w->east_m, w->north_m, w->many);
+        status = landscape_quick(&w->landscape, times_s, &w->frame, w->east_m, w->north_m, w->many);
     if (status != STATUS_OK) return status;
     const ElevationLevel *level = &w->landscape.elevation.level[0];
     say(w, "ground: posts", 1e-6 * level->nx * level->ny, "M");

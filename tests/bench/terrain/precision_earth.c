@@ -4,7 +4,7 @@
 #include "tests/bench/bench.h"
 #include "pitviper_simd.h"
 #include "terrain/earth/geoid.h"
-#include "terrain/earth/local_frame.h"
+#include "terrain/earth/geodesy.h"
 #include "terrain/earth/sun.h"
 
 #include <stdlib.h>
@@ -71,7 +71,7 @@ static Status tunable_frame(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == FRAME_DOUBLE;
     }
-    bench_tunable(bench, &(BenchTunable){"Earth to local frame", "terrain/earth/local_frame.h", "a place within 20 km", "m",
+    bench_tunable(bench, &(BenchTunable){"Earth to local frame", "terrain/earth/geodesy.h", "a place within 20 km", "m",
                                    "largest, long double", 1e-10}, work, point, settings);
     return STATUS_OK;
 }

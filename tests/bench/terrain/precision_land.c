@@ -1,8 +1,8 @@
 /* tests/bench/terrain/precision_land.c: the ground as posts, and the weakest octave of its detail. */
 #include "tests/bench/suites.h"
 
-#include "terrain/landscape/detail.h"
-#include "terrain/landscape/quick_landscape.h"
+#include "terrain/detail/detail.h"
+#include "terrain/ground/landscape.h"
 #include "tests/bench/bench.h"
 
 #include <stdlib.h>
@@ -42,7 +42,7 @@ static double rms_m(const Elevation *got, const Elevation *want, double from_m, 
 static double bytes_of(const Elevation *e)
 {
     size_t posts, pyramids;
-    quick_landscape_bytes(&posts, &pyramids, e);
+    landscape_quick_bytes(&posts, &pyramids, e);
     return (double)(posts + pyramids);
 }
 
@@ -122,7 +122,7 @@ static Status tunable_reach(Bench *bench, const LocalFrame *frame)
     }
     if (status == STATUS_OK)
         bench_tunable(bench,
-                   &(BenchTunable){"reach of the finest level", "terrain/landscape/landscape.c", "to make the ground",
+                   &(BenchTunable){"reach of the finest level", "terrain/invented/invented.c", "to make the ground",
                                 "px",
                                 quick ? "rms just outside it, the finest level; posts of 16 m"
                                       : "rms just outside it, the finest level; 720 px across 40 degrees",
@@ -194,7 +194,7 @@ static void tunable_posts(Bench *bench)
         point[k].is_default = k == 3;
         point[k].bytes      = (s->step_m > 0 ? 2.0 : 4.0) * side_posts * side_posts;
     }
-    bench_tunable(bench, &(BenchTunable){"height of a post", "terrain/landscape/levels.c", "a height between posts", "m",
+    bench_tunable(bench, &(BenchTunable){"height of a post", "terrain/elevation/levels.c", "a height between posts", "m",
                                    "largest, double, hills of 80 m", 0.002}, work, point, settings);
 }
 
@@ -276,7 +276,7 @@ static Status tunable_store(Bench *bench)
             s->narrow ? (double)sizeof narrow : 2.0 * (double)elevation_level_stored(&s->ground.level[0]);
     }
     if (status == STATUS_OK)
-        bench_tunable(bench, &(BenchTunable){"posts of terrain from files", "terrain/landscape/levels_fine.c",
+        bench_tunable(bench, &(BenchTunable){"posts of terrain from files", "terrain/elevation/levels.c",
                                        "a height between posts", "m", "largest, double, mountains of 1.4 km", 0.005},
                    work, point, settings);
     for (int k = 0; k < settings; k++) elevation_destroy(&set[k].ground);
@@ -300,7 +300,7 @@ static void ask_details(void *user)
     DetailSet         *s = user;
     const GroundDetail out = {.albedo = s->albedo, .warmth_k = s->warmth_k, .slope_x = s->slope_x, .slope_y =
                               s->slope_y};
-    landscape_details(&out, s->table, s->land, spots, s->class, s->x_m, s->y_m,
+    detail_at(&out, s->table, s->land, spots, s->class, s->x_m, s->y_m,
                       &(GroundFootprint){s->across_m, s->along_m});
     bench_keep(s->albedo);
 }
@@ -342,7 +342,7 @@ static Status tunable_detail(Bench *bench, const Landscape *land)
                                   .is_default = cut_off[k] == detail_cut_off};
     }
     if (status == STATUS_OK)
-        bench_tunable(bench, &(BenchTunable){"detail: weakest octave", "terrain/landscape/detail_table.c",
+        bench_tunable(bench, &(BenchTunable){"detail: weakest octave", "terrain/detail/detail_table.c",
                                        "a pixel of 0.03 .. 6 m on grass", "%", "rms of brightness, every octave", 2},
                    work, point, settings);
     for (int k = 0; k < settings; k++) detail_table_close(table[k]);

@@ -3,7 +3,7 @@
 #include "tests/bench/suites.h"
 
 #include "terrain/earth/geoid.h"
-#include "terrain/earth/local_frame.h"
+#include "terrain/earth/geodesy.h"
 #include "terrain/earth/sun.h"
 
 #include <erfa.h>

@@ -5,7 +5,7 @@
 #include "pitviper_output.h"
 
 #include "terrain/elevation/elevation.h"
-#include "terrain/landscape/elevation_import.h"
+#include "terrain/from_files/elevation_import.h"
 
 #include <stdlib.h>
 #include <unistd.h>

@@ -1,0 +1,279 @@
+/* terrain/ground/cover.c: what covers a landscape: its classes, invented (invented_cover.c), or of the land cover
+ * files, and where they have none woods on the slopes and the invented ones in the lowlands; and its brightness,
+ * relative to the mean of a class, by the photograph. Pure functions of the position, classes of eight positions at
+ * once. */
+
+#include "terrain/ground/landscape_private.h"
+#include "terrain/invented/invented_eight.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+
+/* ---- real cover ----------------------------------------------------------------------------- */
+
+/* Elevation files without cover: woods on slopes too steep for the plough and below the tree line, fields in the
+ * lowlands, rock where it is steeper than soil stays (40 degrees), the sea where it is flat at its level. SURFACE_NONE:
+ * as synthetic. */
+static SurfaceClass unmapped_surface(const Cover *cover, double x_m, double y_m, double z_m, double slope,
+                                     double patchy, double woods)
+{
+    const double far_m = sqrt(x_m * x_m + y_m * y_m);
+    double       ellipsoid_m, dz_per_h;
+    levels_curve_at(&cover->curve, x_m, y_m, &ellipsoid_m, &dz_per_h);
+    const double h_msl_m = (z_m - ellipsoid_m) / dz_per_h - cover->geoid_m;
+    if (fabs(h_msl_m) < 1 + 5e-5 * far_m && slope < 0.002) return SURFACE_WATER; /* the geoid tilts by so much */
+    if (slope + 0.12 * patchy > 0.84) return SURFACE_ROCK;
+    const double above_m = h_msl_m - cover->treeline_m + 150 * patchy;
+    if (above_m > 700) return SURFACE_ROCK;
+    if (above_m > 0) return patchy > 0.4 ? SURFACE_ROCK : SURFACE_DRY_GRASS;
+    if (slope + 0.08 * patchy > 0.16) {
+        if (patchy < -0.75) return SURFACE_DRY_GRASS;
+        if (patchy < -0.5) return SURFACE_SCRUB;
+        return above_m > -1200 + 500 * woods ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF;
+    }
+    return SURFACE_NONE;
+}
+
+/* Land cover from the files; fills those lanes and returns the others. Borders wander by up to half a cell, over
+ * wavelengths from a cell down to 0.1 m: real borders have no steps of a cell. Places all of whose corners within reach
+ * are of one class need none of it. */
+static unsigned mapped_surfaces(int32_t surface[8], const Cover *cover, const double x_m[8], const double y_m[8],
+                                unsigned lanes)
+{
+    enum { most_octaves = 9 };
+    if (!cover->grid[0].surface && !cover->grid[1].surface) return lanes;
+    const double cell_m = cover->grid[0].surface ? cover->grid[0].cell_m : cover->grid[1].cell_m;
+    const double reach_m = 0.5 * cell_m;
+    unsigned     none = 0, near = 0;
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int k = __builtin_ctz(left);
+        SurfaceClass corner[4];
+        for (int c = 0; c < 4; c++)
+            corner[c] = cover_grid_at(cover->grid, x_m[k] + (c & 1 ? reach_m : -reach_m),
+                                      y_m[k] + (c & 2 ? reach_m : -reach_m));
+        surface[k] = (int32_t)corner[0];
+        if (corner[0] != corner[1] || corner[0] != corner[2] || corner[0] != corner[3]) near |= 1u << k;
+        else if (corner[0] == SURFACE_NONE) none |= 1u << k;
+    }
+    if (!near) return none;
+    F32x8 dx = f32x8_set(0), dy = f32x8_set(0);
+    for (int octave = 0; octave < most_octaves; octave++) {
+        const double wave_m = cell_m * exp2(-octave);
+        if (octave && wave_m < 0.1) break;
+        const F32x8 share = f32x8_set(reach_m * 0.4 * pow(0.6, octave)); /* 0.4 / (1 - 0.6): within reach */
+        F32x8       wave_y;
+        dx = f32x8_fma(share, noise_pair_eight(&wave_y, cover->invented.seed + 40 + (uint64_t)octave, wave_m, x_m, y_m),
+                       dx);
+        dy = f32x8_fma(share, wave_y, dy);
+    }
+    float off_x[8], off_y[8];
+    f32x8_store(off_x, dx), f32x8_store(off_y, dy);
+    for (; near; near &= near - 1) {
+        const int k = __builtin_ctz(near);
+        surface[k] = (int32_t)cover_grid_at(cover->grid, x_m[k] + (double)off_x[k], y_m[k] + (double)off_y[k]);
+        if (surface[k] == SURFACE_NONE) none |= 1u << k;
+    }
+    return none;
+}
+
+static void real_surfaces(int32_t surface[8], const Landscape *landscape, const double x_m[8],
+                          const double y_m[8], unsigned lanes)
+{
+    const Cover   *cover = landscape->cover;
+    const uint64_t seed = cover->invented.seed;
+    lanes = mapped_surfaces(surface, cover, x_m, y_m, lanes);
+    if (!lanes) return;
+    const F32x8 slopes = invented_slopes(&landscape->elevation, x_m, y_m, lanes);
+    F32x8       patches = noise_eight(seed + 14, 700, x_m, y_m);
+    patches = f32x8_fma(f32x8_set(0.6), noise_eight(seed + 15, 190, x_m, y_m), patches);
+    patches = f32x8_fma(f32x8_set(0.3), noise_eight(seed + 16, 41, x_m, y_m), patches);
+    float    slope[8], patchy[8], woods[8];
+    unsigned invented = 0;
+    f32x8_store(slope, slopes), f32x8_store(patchy, patches);
+    f32x8_store(woods, noise_eight(seed + 17, 2300, x_m, y_m));
+    for (int k = 0; k < 8; k++) {
+        if (!(lanes >> k & 1)) continue;
+        const double z_m = elevation_height(&landscape->elevation, x_m[k], y_m[k], NULL);
+        surface[k] = (int32_t)unmapped_surface(cover, x_m[k], y_m[k], z_m, (double)slope[k], (double)patchy[k],
+                                               (double)woods[k]);
+        if (surface[k] == SURFACE_NONE) invented |= 1u << k;
+    }
+    if (!invented) return;
+    SlowFields slow;
+    invented_fields(&slow, &cover->invented, x_m, y_m, slopes);
+    invented_surfaces(surface, &cover->invented, x_m, y_m, &slow, invented);
+}
+
+/* ---- both ----------------------------------------------------------------------------------- */
+
+/* Fills lanes of the sea and its beaches; returns the others. */
+static unsigned coast_surfaces(int32_t surface[8], const Coast *coast, const double x_m[8], const double y_m[8],
+                               unsigned lanes)
+{
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int       k = __builtin_ctz(left);
+        const CoastKind kind = coast_at(coast, x_m[k], y_m[k]);
+        if (kind == COAST_LAND) continue;
+        surface[k] = kind == COAST_SEA ? SURFACE_WATER : SURFACE_SAND;
+        lanes &= ~(1u << k);
+    }
+    return lanes;
+}
+
+/* nodes: NULL, or about the places. */
+static void find_surfaces(uint8_t *surface, const Landscape *landscape, const SlowNodes *nodes, int count, const double *x_m,
+                          const double *y_m)
+{
+    const Cover *cover = landscape->cover;
+    for (int first = 0; first < count; first += 8) {
+        double     x[8], y[8];
+        int32_t    found[8] = {0};
+        SlowFields slow;
+        const int  some = count - first < 8 ? count - first : 8;
+        for (int k = 0; k < 8; k++) x[k] = k < some ? x_m[first + k] : NAN, y[k] = k < some ? y_m[first + k] : NAN;
+        unsigned lanes = cover ? invented_grounded(&landscape->elevation, x, y) : 0;
+        if (lanes && cover->invented.coast.sea_count)
+            lanes = coast_surfaces(found, &cover->invented.coast, x, y, lanes);
+        if (lanes && cover->real) {
+            real_surfaces(found, landscape, x, y, lanes);
+        } else if (lanes) {
+            if (nodes && nodes->known) invented_between(&slow, nodes, x, y);
+            else invented_fields(&slow, &cover->invented, x, y, invented_slopes(&landscape->elevation, x, y, lanes));
+            invented_surfaces(found, &cover->invented, x, y, &slow, lanes);
+        }
+        for (int k = 0; k < some; k++) surface[first + k] = (uint8_t)found[k];
+    }
+}
+
+void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
+{
+    find_surfaces(surface, landscape, NULL, count, x_m, y_m);
+}
+
+/* Whether a place of a square is looked up first: a quarter of them in a regular pattern, half of few. */
+static bool looks_first(int side, int row, int column)
+{
+    return side < 8 ? (row + column) % 2 == 0 : row % 2 == 0 && (column + row / 2) % 2 == 0;
+}
+
+void landscape_surfaces_square(uint8_t *surface, const Landscape *landscape, int side, const double *x_m, const double *y_m)
+{
+    const Cover *cover = landscape->cover;
+    double    x[landscape_square_most], y[landscape_square_most];
+    uint8_t   found[landscape_square_most];
+    int       place[landscape_square_most], differ = 0;
+    SlowNodes nodes = {.known = false};
+    assert(side * side <= landscape_square_most);
+    if (landscape_is_synthetic(landscape))
+        invented_nodes(&nodes, &cover->invented, &landscape->elevation, side * side, x_m, y_m);
+    for (int pass = 0; pass == 0 || (pass == 1 && differ); pass++) {
+        int count = 0;
+        for (int k = 0; k < side * side; k++)
+            if (looks_first(side, k / side, k % side) == (pass == 0)) place[count] = k, x[count] = x_m[k], y[count++] = y_m[k];
+        find_surfaces(found, landscape, &nodes, count, x, y);
+        for (int k = 0; k < count; k++) surface[place[k]] = found[k], differ |= found[k] != found[0];
+    }
+    for (int k = 0; k < side * side && !differ; k++) surface[k] = found[0];
+}
+
+SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m)
+{
+    uint8_t surface;
+    landscape_surfaces(&surface, landscape, 1, &x_m, &y_m);
+    return (SurfaceClass)surface;
+}
+
+void cover_free(Cover *cover)
+{
+    if (!cover) return;
+    cover_grid_free(cover->grid);
+    photo_free(&cover->photo);
+    invented_ground_free(&cover->invented);
+    if (cover->store.map) munmap(cover->store.map, cover->store.octets);
+    free(cover->store.path);
+    free(cover);
+}
+
+bool landscape_seed(uint64_t *out, const Landscape *landscape)
+{
+    const Cover *cover = landscape->cover;
+    *out = cover ? cover->invented.seed : 0;
+    return cover != NULL;
+}
+
+bool landscape_is_synthetic(const Landscape *landscape)
+{
+    const Cover *cover = landscape->cover;
+    return cover && !cover->real;
+}
+
+/* ---- photograph ----------------------------------------------------------------------------- */
+
+void landscape_photo_cells(float cell_m[8], const Landscape *landscape, const double x_m[8], const double y_m[8],
+                           unsigned lanes)
+{
+    const Photo *photo = &((const Cover *)landscape->cover)->photo;
+    for (int k = 0; k < 8; k++) {
+        cell_m[k] = 0;
+        if (photo->mips > 0 && lanes >> k & 1 && photo_cover_at(photo, x_m[k], y_m[k]) > 0.5)
+            cell_m[k] = (float)photo->cell_m;
+    }
+}
+
+void cover_measure_photo(Landscape *landscape)
+{
+    /* classes of few pixels lean on the mean of all: a class of a single dark pixel would amplify the others */
+    static const double enough = 200, most = 400e3;
+    Cover *cover = landscape->cover;
+    Photo *p = &cover->photo;
+    if (p->mips == 0) return;
+    int k = 0;
+    while (k < p->mips - 1 && (double)p->nx[k] * p->ny[k] > most) k++;
+    const double cell_m = p->cell_m * exp2(k);
+    double       sum[SURFACE_COUNT][photo_channels] = {{0}}, count[SURFACE_COUNT] = {0}, all[photo_channels] = {0},
+        total = 0;
+    for (int j = 0; j < p->ny[k]; j++)
+        for (int i = 0; i < p->nx[k]; i++) {
+            const double x_m = p->x0_m + (i + 0.5) * cell_m, y_m = p->y0_m + (j + 0.5) * cell_m;
+            double       linear[photo_channels];
+            const double share = photo_at(linear, p, x_m, y_m, cell_m);
+            if (!(share > 0)) continue;
+            const SurfaceClass surface = landscape_surface(landscape, x_m, y_m);
+            for (int c = 0; c < photo_channels; c++) {
+                sum[surface][c] += share * linear[c];
+                all[c] += share * linear[c];
+            }
+            count[surface] += share;
+            total += share;
+        }
+    for (int s = 0; s < SURFACE_COUNT; s++)
+        for (int c = 0; c < photo_channels; c++) {
+            const double mean_all = total > 0 ? all[c] / total : 1;
+            p->mean[s][c] = (float)fmax((sum[s][c] + enough * mean_all) / (count[s] + enough), 1e-4);
+        }
+}
+
+bool landscape_has_photo(const Landscape *landscape)
+{
+    const Cover *cover = landscape->cover;
+    return cover && cover->photo.mips > 0;
+}
+
+void landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,
+                      double y_m, double footprint_m)
+{
+    static const double brightest = 6; /* of a class's mean: a white roof in a dark wood */
+    const Cover *cover = landscape->cover;
+    double       linear[photo_channels], share = 0, all = 0;
+    for (int c = 0; c < albedo_channels; c++) factor[c] = 1;
+    if (!cover || cover->photo.mips == 0 || !(surface > SURFACE_NONE && surface < SURFACE_COUNT)) return;
+    share = photo_at(linear, &cover->photo, x_m, y_m, footprint_m);
+    if (!(share > 0)) return;
+    for (int c = 0; c < photo_channels; c++) {
+        const double ratio = fmin(linear[c] / (double)cover->photo.mean[surface][c], brightest);
+        factor[c] = (float)(1 + share * (ratio - 1));
+        all += factor[c] / photo_channels;
+    }
+    factor[albedo_all] = (float)all;
+}

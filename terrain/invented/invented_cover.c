@@ -1,0 +1,376 @@
+/* terrain/invented/invented_cover.c: the invented land cover: irregular fields, tracks and hedges between some of
+ * them, scrub and rock on steep or uncultivated ground, wet grass in hollows; over them roads, streams and villages
+ * (ways.c). A pure function of the position, eight positions at once. */
+#include "terrain/invented/invented_eight.h"
+
+#include "terrain/invented/ways_private.h"
+
+unsigned invented_grounded(const Elevation *elevation, const double x_m[8], const double y_m[8])
+{
+    if (elevation->level_count == 0) return 0;
+    const ElevationLevel *level = &elevation->level[elevation->level_count - 1];
+    const double          per_m = 1 / level->spacing_m, nx = level->nx - 1, ny = level->ny - 1;
+    unsigned              lanes = 0;
+    for (int k = 0; k < 8; k++) {
+        const double fx = (x_m[k] - level->x0_m) * per_m, fy = (y_m[k] - level->y0_m) * per_m;
+        lanes |= (unsigned)((fx >= 0) & (fy >= 0) & (fx <= nx) & (fy <= ny)) << k;
+    }
+    return lanes;
+}
+
+/* ---- slope ---------------------------------------------------------------------------------- */
+
+static const double arm_m = 10;
+
+/* Slope over some 20 m, so that what grows does not follow the edges of single triangles. 0 at the very rim. */
+static double slope_about(const Elevation *elevation, double x_m, double y_m)
+{
+    const double dx =
+        elevation_height(elevation, x_m + arm_m, y_m, NULL) - elevation_height(elevation, x_m - arm_m, y_m, NULL);
+    const double dy =
+        elevation_height(elevation, x_m, y_m + arm_m, NULL) - elevation_height(elevation, x_m, y_m - arm_m, NULL);
+    const double slope = sqrt(dx * dx + dy * dy) / (2 * arm_m);
+    return isfinite(slope) ? slope : 0;
+}
+
+/* Places in a level's own cells; far off and NaN: outside. */
+static Lattice level_cells(const double x_m[8], double x0_m, double per_m)
+{
+    const F64x4 x0 = f64x4_set(x0_m), most = f64x4_set(1 << 20), least = f64x4_set(-(1 << 20));
+    double        cells[8];
+    for (int k = 0; k < 8; k += 4) {
+        const F64x4 g = (f64x4_loadu(x_m + k) - x0) * f64x4_set(per_m);
+        f64x4_storeu(cells + k, f64x4_min(f64x4_max(g, least), most));
+    }
+    return lattice_of(cells, 1);
+}
+
+/* Moved by some of a cell. */
+static Lattice moved(Lattice at, F32x8 by)
+{
+    const F32x8 share = at.share + by, whole = f32x8_floor(share);
+    return (Lattice){i32x8_add(at.cell, i32x8_truncate(whole)), share - whole};
+}
+
+/* Tiles of lanes within the level's cells. */
+static I32x8 tiles_of(const ElevationLevel *level, Lattice x, Lattice y)
+{
+    enum { bits = 6 };
+    _Static_assert(elevation_tile_cells == 1 << bits, "cells to tiles by shifts");
+    return i32x8_add(i32x8_mul(i32x8_shift_right(y.cell, bits), i32x8_set(level->tiles_x)),
+                     i32x8_shift_right(x.cell, bits));
+}
+
+/* One of the two values of each lane's tile. */
+static I32x8 of_tiles(const int32_t *value, I32x8 tile, I32x8 mask)
+{
+    return _mm256_mask_i32gather_epi32(i32x8_set(0), value, tile, mask, sizeof(ElevationTile));
+}
+
+/* Heights above `about` in the level's own steps, of lanes within its cells. Two posts of a row take one load;
+ * differences are formed of whole steps. */
+static inline F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattice y, F32x8 lanes, I32x8 about)
+{
+    const I32x8 post = i32x8_set(0xffff), none = i32x8_set(0), mask = _mm256_castps_si256(lanes);
+    const I32x8 inside = i32x8_set(elevation_tile_cells - 1), tile = tiles_of(level, x, y);
+    const I32x8 row = i32x8_mul(i32x8_and(y.cell, inside), i32x8_set(elevation_tile_side));
+    const I32x8 at = i32x8_add(i32x8_mul(tile, i32x8_set(elevation_tile_posts)),
+                               i32x8_add(row, i32x8_and(x.cell, inside)));
+    const uint16_t *north_of = level->stored + elevation_tile_side;
+    const I32x8 south = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)level->stored, at, mask, 2);
+    const I32x8 north = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)north_of, at, mask, 2);
+    I32x8       sw = i32x8_and(south, post), se = i32x8_shift_right(south, 16);
+    I32x8       nw = i32x8_and(north, post), ne = i32x8_shift_right(north, 16);
+    if (!level->plain) {
+        const I32x8 base = i32x8_sub(of_tiles(&level->tile->base, tile, mask), about);
+        const I32x8 shift = of_tiles(&level->tile->shift, tile, mask);
+        sw = i32x8_add(base, _mm256_sllv_epi32(sw, shift)), se = i32x8_add(base, _mm256_sllv_epi32(se, shift));
+        nw = i32x8_add(base, _mm256_sllv_epi32(nw, shift)), ne = i32x8_add(base, _mm256_sllv_epi32(ne, shift));
+    }
+    const F32x8 east_s = f32x8_of_ints(i32x8_sub(se, sw)), north_s = f32x8_of_ints(i32x8_sub(ne, se));
+    const F32x8 east_n = f32x8_of_ints(i32x8_sub(ne, nw)), north_n = f32x8_of_ints(i32x8_sub(nw, sw));
+    const F32x8 south_east = f32x8_fma(x.share, east_s, y.share * north_s);
+    const F32x8 north_west = f32x8_fma(x.share, east_n, y.share * north_n);
+    return f32x8_of_ints(sw) + f32x8_select(f32x8_less(x.share, y.share), north_west, south_east);
+}
+
+/* Slope about eight places, of those whose arms end on one level together; the others' are evaluated one by one. Within
+ * 1e-5 of slope_about. */
+static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
+{
+    const I32x8 outside = i32x8_set(-1);
+    F32x8          slope = f32x8_set(0);
+    unsigned       left = lanes, alone = 0; /* not yet found; on the seam of two levels */
+    for (int n = 0; n < elevation->level_count && left; n++) {
+        const ElevationLevel *level = &elevation->level[n];
+        const double          per_m = 1 / level->spacing_m;
+        const F32x8           arm = f32x8_set(arm_m * per_m), back = f32x8_set(-arm_m * per_m);
+        const Lattice         x = level_cells(x_m, level->x0_m, per_m), y = level_cells(y_m, level->y0_m, per_m);
+        const Lattice         west = moved(x, back), east = moved(x, arm);
+        const Lattice         south = moved(y, back), north = moved(y, arm);
+        const I32x8        nx = i32x8_set(level->nx), ny = i32x8_set(level->ny), one = i32x8_set(1);
+        /* cells 0 .. n - 2; about them and the outline */
+        F32x8 in = f32x8_and(i32x8_greater(west.cell, outside), i32x8_greater(south.cell, outside));
+        in = f32x8_and(in, i32x8_greater(i32x8_sub(nx, one), east.cell));
+        in = f32x8_and(in, i32x8_greater(i32x8_sub(ny, one), north.cell));
+        F32x8 by = f32x8_and(i32x8_greater(east.cell, i32x8_set(-2)), i32x8_greater(north.cell, i32x8_set(-2)));
+        by = f32x8_and(by, i32x8_greater(nx, west.cell));
+        by = f32x8_and(by, i32x8_greater(ny, south.cell));
+        const unsigned here = f32x8_bits(in) & left;
+        const unsigned near = f32x8_bits(by) & left;
+        alone |= near & ~here;
+        left &= ~(near | here);
+        if (!here) continue;
+        const F32x8 found = f32x8_mask(here);
+        const I32x8 about = level->plain ? i32x8_set(0) : of_tiles(&level->tile->base, tiles_of(level, x, y),
+                                                                   _mm256_castps_si256(found));
+        const F32x8 dx =
+            level_heights(level, east, y, found, about) - level_heights(level, west, y, found, about);
+        const F32x8 dy =
+            level_heights(level, x, north, found, about) - level_heights(level, x, south, found, about);
+        const F32x8 rise = f32x8_sqrt(f32x8_fma(dx, dx, dy * dy)) * f32x8_set(level->step_m / (2 * arm_m));
+        slope = f32x8_select(found, rise, slope);
+    }
+    if (alone) {
+        float one[8];
+        f32x8_store(one, slope);
+        for (; alone; alone &= alone - 1) {
+            const int k = __builtin_ctz(alone);
+            one[k] = (float)slope_about(elevation, x_m[k], y_m[k]);
+        }
+        slope = f32x8_load(one);
+    }
+    return slope;
+}
+
+/* Beyond some tens of kilometres the tilt of the plane itself would count as a slope; it is not visible there. */
+F32x8 invented_slopes(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
+{
+    const F32x8 x = f32x8_of_doubles(x_m), y = f32x8_of_doubles(y_m);
+    const F32x8 lean = f32x8_sqrt(f32x8_fma(x, x, y * y)) * f32x8_set(1 / 6371e3);
+    return f32x8_max(slopes_about(elevation, x_m, y_m, lanes) - lean, f32x8_set(0));
+}
+
+/* ---- borders that wander ---------------------------------------------------------------------- */
+
+/* -1 .. 1 over wavelengths of some metres down to 0.1 m: only places whose class it can change need it. */
+static F32x8 wander_eight(uint64_t seed, const double x_m[8], const double y_m[8])
+{
+    static const double wave_m[] = {2.7, 1.2, 0.53, 0.24, 0.11}, share[] = {0.42, 0.26, 0.16, 0.10, 0.06};
+    F32x8               sum = f32x8_set(0);
+    for (int n = 0; n < 5; n++)
+        sum = f32x8_fma(f32x8_set(share[n]), noise_eight(seed + 30 + (uint64_t)n, wave_m[n], x_m, y_m), sum);
+    return sum;
+}
+
+/* ---- synthetic cover ------------------------------------------------------------------------ */
+
+static const double track_half_m = 2, hedge_half_m = 1.5, hedge_beyond_m = 3.6, border_wander_m = 0.6;
+
+/* Cover on the border of two fields, at a position near one; SURFACE_NONE: nothing of its own. crop: of the field that
+ * the position is in once the border has wandered. */
+static SurfaceClass border_surface(int32_t *crop, PlotCell *cell, uint64_t seed, int site, int other, float x_m,
+                                   float y_m, float wander)
+{
+    const PlotBorder border = plot_border(cell, seed, site, other, x_m, y_m);
+    *crop = cell->crop[site];
+    const double off_m = border_wander_m * (double)wander;
+    double       here_m = border.away_m + (border.first ? off_m : -off_m);
+    if (here_m < 0) *crop = cell->crop[other], here_m = -here_m;
+    const double edge_m = 0.5 * off_m; /* edges wander less */
+    if (border.track && here_m + edge_m < track_half_m) return SURFACE_TRACK;
+    if (border.hedge && border.track && here_m > track_half_m && here_m + edge_m < hedge_beyond_m) return SURFACE_SCRUB;
+    if (border.hedge && !border.track && here_m + edge_m < hedge_half_m) return SURFACE_SCRUB;
+    if (border.track && here_m + edge_m < track_half_m + 0.7) return SURFACE_GRASS;
+    return SURFACE_NONE;
+}
+
+/* Lanes within reach of a border to another field than their own; other: site beyond the nearest border. Distances to
+ * perpendicular bisectors are compared by their squares, without divisions. */
+static unsigned near_border(I32x8 *other, const PlotCell *cell, F32x8 x, F32x8 y, I32x8 site, F32x8 least)
+{
+    const F32x8  own_x = f32x8_gather(cell->x_m, site), own_y = f32x8_gather(cell->y_m, site);
+    const I32x8  own = plot_look(cell->field, site);
+    const double reach_m = 2 * (hedge_beyond_m + border_wander_m);
+    F32x8        best = f32x8_set(reach_m * reach_m * 1.01), best_apart = f32x8_set(1); /* margin for rounding */
+    F32x8        near = f32x8_set(0);
+    I32x8        found = i32x8_set(0);
+    for (int n = 0; n < plot_sites; n++) {
+        const F32x8 sx = f32x8_set((double)cell->x_m[n]), sy = f32x8_set((double)cell->y_m[n]);
+        const F32x8 dx = x - sx, dy = y - sy, ax = sx - own_x, ay = sy - own_y;
+        const F32x8 more = f32x8_fma(dx, dx, dy * dy) - least, apart = f32x8_fma(ax, ax, ay * ay);
+        const F32x8 square = more * more, same = i32x8_equal(own, i32x8_set(cell->field[n]));
+        const F32x8 nearer = f32x8_and_not(f32x8_less(square * best_apart, best * apart), same);
+        best = f32x8_select(nearer, square, best);
+        best_apart = f32x8_select(nearer, apart, best_apart);
+        found = i32x8_select(nearer, i32x8_set(n), found);
+        near = f32x8_or(near, nearer);
+    }
+    *other = found;
+    return f32x8_bits(near);
+}
+
+void invented_fields(SlowFields *out, const InventedGround *ground, const double x_m[8], const double y_m[8],
+                     F32x8 slope)
+{
+    const uint64_t seed = ground->seed;
+    out->middle = noise_eight(seed + 11, 83, x_m, y_m), out->patch = noise_eight(seed + 12, 17, x_m, y_m);
+    out->wet    = ground->ways ? ways_wet(ground->ways, x_m, y_m) : f32x8_set(0);
+    out->large  = noise_eight(seed + 10, 310, x_m, y_m);
+    out->slope  = slope;
+    plot_bend_by(&out->bend_x, &out->bend_y, seed, x_m, y_m);
+}
+
+void invented_surfaces(int32_t surface[8], const InventedGround *ground, const double x_m[8],
+                              const double y_m[8], const SlowFields *slow, unsigned lanes)
+{
+    static const double wild_wander = 0.02; /* some metres of the patches' borders */
+    const uint64_t      seed = ground->seed;
+    const F32x8         zero = f32x8_set(0), step = f32x8_set(wild_wander);
+    /* wild patches, wider where it is steep; rock shows through in their hearts and on worn crests, scrub and wet
+     * grass grow in hollows */
+    const F32x8 middle = slow->middle, patch = slow->patch, wet = slow->wet, slope = slow->slope;
+    F32x8       wild = f32x8_fma(f32x8_set(0.5), middle, slow->large);
+    wild = f32x8_fma(f32x8_set(0.14), patch, wild);
+    wild = f32x8_fma(f32x8_set(4), slope, wild);
+    F32x8       grown = f32x8_fma(f32x8_set(0.2), f32x8_max(wet, zero), wild) - f32x8_set(0.88);
+    F32x8       stony = f32x8_fma(f32x8_set(-0.3), wet, wild) - f32x8_set(1.24);
+    stony = f32x8_fma(f32x8_set(0.12), f32x8_clamp(slope * f32x8_set(5), 0, 1), stony);
+    F32x8       marsh = f32x8_fma(f32x8_set(0.35), middle, wet) - f32x8_set(0.92);
+    marsh = f32x8_fma(f32x8_set(0.22), patch, marsh);
+    const F32x8 dry_from = f32x8_set(-0.1), soil_from = f32x8_set(-0.16);
+
+    double   i[8], j[8], bent_x[8], bent_y[8];
+    float    in_x[8], in_y[8], wander_of[8], patch_of[8];
+    int32_t  site_of[8], other_of[8], found[8], cell_of[8];
+    F32x8    x, y;
+    I32x8    class = i32x8_set(SURFACE_NONE), sites = i32x8_set(0), others = i32x8_set(0);
+    unsigned near = 0, touched = 0;
+    plot_bent(bent_x, bent_y, seed, x_m, y_m, slow->bend_x, slow->bend_y);
+    plot_cells_of(i, j, &x, &y, bent_x, bent_y);
+    for (unsigned left = lanes, same; left; left &= ~same) {
+        same = plot_cell_lanes(i, j, left);
+        const int       first = __builtin_ctz(left);
+        const PlotCell *cell = plot_cell_at(seed, (int64_t)i[first], (int64_t)j[first]);
+        I32x8           site, other;
+        const F32x8     least = plot_nearest(&site, cell, x, y), here = f32x8_mask(same);
+        class = i32x8_select(here, plot_look(cell->crop, site), class);
+        sites = i32x8_select(here, site, sites);
+        near |= near_border(&other, cell, x, y, site, least) & same;
+        others = i32x8_select(here, other, others);
+    }
+    if (ground->ways) {
+        const I32x8 touches = ways_cells(ground->ways, x_m, y_m);
+        touched = f32x8_bits(i32x8_greater(touches, i32x8_set(-1))) & lanes;
+        if (touched) i32x8_store(cell_of, touches);
+    }
+
+    /* the finest wander, where it matters */
+    F32x8 close = f32x8_less(f32x8_abs(grown), step);
+    close = f32x8_or(close, f32x8_less(f32x8_abs(grown - dry_from), step));
+    close = f32x8_or(close, f32x8_less(f32x8_abs(stony), step));
+    close = f32x8_or(close, f32x8_less(f32x8_abs(stony - soil_from), step));
+    close = f32x8_or(close, f32x8_less(f32x8_abs(marsh), step));
+    const unsigned wanders = (f32x8_bits(close) | near | touched) & lanes;
+    if (wanders) {
+        const F32x8 wander = f32x8_and(wander_eight(seed, x_m, y_m), f32x8_mask(wanders));
+        grown = f32x8_fma(step, wander, grown);
+        stony = f32x8_fma(step, wander, stony);
+        marsh = f32x8_fma(step, wander, marsh);
+        f32x8_store(wander_of, wander);
+    }
+    const F32x8 rock = f32x8_greater(stony, zero);
+    if (near & ~f32x8_bits(rock)) {
+        i32x8_store(site_of, sites), i32x8_store(other_of, others);
+        i32x8_store(found, class);
+        f32x8_store(in_x, x), f32x8_store(in_y, y);
+    }
+    SurfaceClass on_border[8];
+    unsigned     bordered = 0;
+    for (unsigned left = near & ~f32x8_bits(rock); left; left &= left - 1) {
+        const int       k = __builtin_ctz(left);
+        PlotCell *cell = plot_cell_at(seed, (int64_t)i[k], (int64_t)j[k]);
+        on_border[k] = border_surface(&found[k], cell, seed, site_of[k], other_of[k], in_x[k], in_y[k], wander_of[k]);
+        if (on_border[k] != SURFACE_NONE) bordered |= 1u << k;
+    }
+    if (near & ~f32x8_bits(rock)) class = i32x8_load(found);
+
+    class = i32x8_select(f32x8_greater(grown, dry_from), i32x8_set(SURFACE_DRY_GRASS), class);
+    class = i32x8_select(f32x8_greater(marsh, zero), i32x8_set(SURFACE_WETLAND), class);
+    class = i32x8_select(f32x8_greater(grown, zero), i32x8_set(SURFACE_SCRUB), class);
+    const F32x8 worn = f32x8_less(wet, f32x8_set(-0.2));
+    class = i32x8_select(f32x8_and(worn, f32x8_greater(stony, soil_from)), i32x8_set(SURFACE_BARE_SOIL), class);
+    class = i32x8_select(rock, i32x8_set(SURFACE_ROCK), class);
+    i32x8_store(found, class);
+    for (; bordered; bordered &= bordered - 1)
+        found[__builtin_ctz(bordered)] = (int32_t)on_border[__builtin_ctz(bordered)];
+    if (touched) f32x8_store(patch_of, patch);
+    for (; touched; touched &= touched - 1) {
+        const int k = __builtin_ctz(touched);
+        found[k] = (int32_t)ways_surface(ground->ways, cell_of[k], x_m[k], y_m[k], (SurfaceClass)found[k], wander_of[k],
+                                         patch_of[k]);
+    }
+    for (int k = 0; k < 8; k++)
+        if (lanes >> k & 1) surface[k] = found[k];
+}
+
+/* ---- a few metres --------------------------------------------------------------------------- */
+
+/* Longest side and shorter side of the places: the linear field of 17 m is within 0.04 of the true one there. */
+static const double slow_long_m = 12, slow_short_m = 4;
+
+static void span_of(double *low, double *high, int count, const double *v_m)
+{
+    *low = INFINITY, *high = -INFINITY;
+    for (int k = 0; k < count; k++) *low = v_m[k] < *low ? v_m[k] : *low, *high = v_m[k] > *high ? v_m[k] : *high;
+}
+
+void invented_nodes(SlowNodes *out, const InventedGround *ground, const Elevation *elevation, int count,
+                    const double *x_m, const double *y_m)
+{
+    static const double margin_m = 0.01;
+    double low[2], high[2], x[8], y[8];
+    *out = (SlowNodes){.known = false};
+    span_of(&low[0], &high[0], count, x_m);
+    span_of(&low[1], &high[1], count, y_m);
+    const double wide_m = high[0] - low[0] + 2 * margin_m, high_m = high[1] - low[1] + 2 * margin_m;
+    out->east = wide_m > high_m;
+    if (!(fmax(wide_m, high_m) <= slow_long_m && fmin(wide_m, high_m) <= slow_short_m)) return;
+    out->x0_m    = low[0] - margin_m, out->y0_m = low[1] - margin_m;
+    out->per_x_m = (out->east ? 3 : 1) / wide_m, out->per_y_m = (out->east ? 1 : 3) / high_m;
+    for (int k = 0; k < 8; k++) {
+        const int along = k & 3, across = k >> 2;
+        x[k] = out->x0_m + (out->east ? along : across) / out->per_x_m;
+        y[k] = out->y0_m + (out->east ? across : along) / out->per_y_m;
+    }
+    if (invented_grounded(elevation, x, y) != 0xff) return;
+    out->known = true;
+    invented_fields(&out->field, ground, x, y, invented_slopes(elevation, x, y, 0xff));
+}
+
+static inline F32x8 between_nodes(F32x8 node, I32x8 cell, F32x8 along, F32x8 across)
+{
+    const I32x8 one = i32x8_set(1), four = i32x8_set(4);
+    const F32x8 near = f32x8_lerp(_mm256_permutevar8x32_ps(node, cell),
+                                  _mm256_permutevar8x32_ps(node, i32x8_add(cell, one)), along);
+    const F32x8 far  = f32x8_lerp(_mm256_permutevar8x32_ps(node, i32x8_add(cell, four)),
+                                  _mm256_permutevar8x32_ps(node, i32x8_add(cell, i32x8_add(four, one))), along);
+    return f32x8_lerp(near, far, across);
+}
+
+void invented_between(SlowFields *out, const SlowNodes *nodes, const double x_m[8], const double y_m[8])
+{
+    double along[8], across[8];
+    for (int k = 0; k < 8; k++) {
+        const double x = (x_m[k] - nodes->x0_m) * nodes->per_x_m, y = (y_m[k] - nodes->y0_m) * nodes->per_y_m;
+        along[k] = nodes->east ? x : y, across[k] = nodes->east ? y : x;
+    }
+    const F32x8 at = f32x8_clamp(f32x8_of_doubles(along), 0, 2.999f), whole = f32x8_floor(at);
+    const F32x8 u = at - whole, v = f32x8_clamp(f32x8_of_doubles(across), 0, 1);
+    const I32x8 cell = i32x8_truncate(whole);
+    const SlowFields *f = &nodes->field;
+    *out = (SlowFields){between_nodes(f->large, cell, u, v),  between_nodes(f->middle, cell, u, v),
+                        between_nodes(f->patch, cell, u, v),  between_nodes(f->slope, cell, u, v),
+                        between_nodes(f->wet, cell, u, v),    between_nodes(f->bend_x, cell, u, v),
+                        between_nodes(f->bend_y, cell, u, v)};
+}

@@ -1,0 +1,98 @@
+/* terrain/invented/ways_private.h: what ways are made of, and the spatial index of them.
+ *
+ * ways.c          the index, the nearest way, the class of a place
+ * ways_streams.c  streams, ponds and gullies; how wet and how worn the ground is
+ * ways_roads.c    roads between villages, tracks along the routes of vehicles
+ * ways_villages.c villages, lanes, plots */
+#ifndef TERRAIN_INVENTED_WAYS_PRIVATE_H
+#define TERRAIN_INVENTED_WAYS_PRIVATE_H
+
+#include "terrain/invented/invented_eight.h"
+#include "terrain/invented/invented_private.h"
+
+enum { pond_radii = 32, ways_most_villages = 64, clear_radius_m = 8 };
+
+/* Places are from the south-west corner of the ways' square. */
+typedef struct WaySegment {
+    float    x_m, y_m, dx, dy; /* start, and unit vector along it */
+    float    length_m, along_m;
+    float    half_m, widens;   /* half the width at its start, and its growth a metre */
+    uint16_t way;
+    uint8_t  kind;
+} WaySegment;
+
+typedef struct Pond {
+    float x_m, y_m, most_m;
+    float radius_m[pond_radii];
+} Pond;
+
+typedef struct ClearPlace {
+    float x_m, y_m;
+} ClearPlace;
+
+typedef enum WayItem { WAY_ITEM_SEGMENT, WAY_ITEM_POND, WAY_ITEM_PLOT, WAY_ITEM_CLEAR } WayItem;
+
+struct Ways {
+    double      x0_m, y0_m, side_m[2];
+    double      index_m;            /* side of an index cell */
+    int         nx, ny;
+    int32_t    *start;              /* [nx ny + 1] first of each cell in item */
+    uint32_t   *item;               /* WayItem << 28 | number */
+    int         segments, ponds, plots, clears, ways, villages;
+    int         segments_room, ponds_room, plots_room, clears_room;
+    WaySegment *segment;
+    Pond       *pond;
+    HousePlot  *plot;
+    ClearPlace *clear;
+    NearGrid    clear_near;         /* of the clear places, while ways are laid */
+    NearGrid    stream_near;        /* of the starts of streams' segments, while roads are laid */
+    double      village[ways_most_villages][2];
+    /* coarse grid: how wet (hollows, valleys) or worn (crests) the ground is, -127 .. 127: the four corners of a cell */
+    double      coarse_m;
+    int         cx, cy;             /* posts */
+    uint32_t   *wet;                /* [cy][cx] corners SW, SE, NW, NE from the lowest octet */
+    /* while ways are laid */
+    float      *height;             /* [cy][cx] above the ellipsoid's curve */
+    float      *flow;               /* [cy][cx] cells that drain through this one */
+    int32_t    *road_vertex;        /* [cy][cx] a segment of a road in this cell, -1: none */
+};
+
+Status ways_lay_streams(Ways *ways, const WaysGround *ground);
+/* After the streams: villages, roads, lanes, plots, tracks. */
+Status ways_lay_roads(Ways *ways, const WaysGround *ground);
+
+/* Villages: on gentle dry land without vehicles, one in most squares of this side, chosen before there are roads; and,
+ * once roads join them, their lanes and plots. */
+static const double ways_village_grid_m = 2600;
+Status ways_choose_villages(Ways *ways, const WaysGround *ground);
+Status ways_lay_villages(Ways *ways, const WaysGround *ground);
+
+/* A line from the square's corner. */
+typedef struct WayLine {
+    double (*p)[2];
+    int    count, room;
+} WayLine;
+
+Status ways_line_add(WayLine *line, double x, double y);
+/* A cubic B-spline about control points, through the first and the last, with a vertex every some metres. */
+Status ways_draw_spline(WayLine *out, const WayLine *control);
+/* As ways, but not where a vehicle was reported: they end before and go on after. */
+Status ways_lay_line(Ways *ways, WayKind kind, WayLine *line, double half_m);
+
+/* Appends a way along points from the square's corner; half widths at its ends. */
+Status ways_append(Ways *ways, WayKind kind, const double (*p)[2], int count, double half_m, double half_end_m);
+Status ways_reserve(void **rows, int *room, int count, size_t size);
+/* Height over the curve of the Earth; NaN beyond the terrain. From the square's corner. */
+double ways_height(const Ways *ways, const WaysGround *ground, double x_m, double y_m);
+/* Whether a reported vehicle is that near; from the square's corner. near_m: at most 96. */
+bool ways_vehicle_near(const Ways *ways, double x_m, double y_m, double near_m);
+
+/* The index cells that eight places are in: -1 where no way touches them. */
+I32x8 ways_cells(const Ways *ways, const double x_m[8], const double y_m[8]);
+/* The class at a place in a touched cell. wander: -1 .. 1, of the borders; patch: -1 .. 1, of what grows beside. */
+SurfaceClass ways_surface(const Ways *ways, int32_t cell, double x_m, double y_m, SurfaceClass field, float wander,
+                          float patch);
+/* How wet eight places are, -1 .. 1. */
+F32x8 ways_wet(const Ways *ways, const double x_m[8], const double y_m[8]);
+
+#endif

@@ -1,0 +1,51 @@
+/* terrain/store/store_writer_private.h: a store being written, and its landscape: shared by the files of this folder.
+ *
+ * store_write.c   the file, the plan, rasters, and the end
+ * store_rows.c    rows of posts to tiles; rows of a photograph to blocks and mips */
+#ifndef TERRAIN_STORE_STORE_WRITER_PRIVATE_H
+#define TERRAIN_STORE_STORE_WRITER_PRIVATE_H
+
+#include "terrain/store/store_format.h"
+
+/* Rows of one level that are not in tiles yet. */
+typedef struct PostRows {
+    int      done;       /* rows given */
+    int      first;      /* row of the buffer's first one: a multiple of elevation_tile_cells */
+    int      count, capacity;
+    int      shaped;     /* rows of tiles that have base and shift */
+    int32_t *row;        /* [capacity][nx] */
+    int      seam_shift;
+} PostRows;
+
+/* Rows of one mip, up to four: a row of blocks. */
+typedef struct MipRows {
+    int      done;       /* rows given */
+    uint8_t *row;        /* [4][nx][4] */
+} MipRows;
+
+struct StoreWriter {
+    char         *path, *part;
+    int           file;
+    uint8_t      *map;
+    uint64_t      map_octets, end; /* end: of the crowns so far */
+    Pool         *pool;
+    StoreHeader  *header;          /* header_octets, with its texts */
+    uint64_t      seed, crowns;
+    Elevation     elevation;       /* in the map */
+    PostRows      posts[elevation_max_levels];
+    Photo         photo;           /* in the map */
+    MipRows       mip[ground_image_mips];
+    uint8_t      *halved;          /* a row of the next mip */
+    int           surface_rows[cover_windows], canopy_height_rows, canopy_cover_rows;
+};
+
+Status store_posts_begin(StoreWriter *writer, int level, int seam_shift);
+void   store_posts_end(StoreWriter *writer);
+Status store_albedo_begin(StoreWriter *writer);
+void   store_albedo_end(StoreWriter *writer);
+
+/* The landscape of an attached store, for its reader and its writer. Borrows from the store, whose frame is set; takes
+ * over map, where not NULL. */
+Status store_landscape(Landscape *out, const TerrainStore *store, uint64_t seed, const LandscapeMap *map);
+
+#endif
