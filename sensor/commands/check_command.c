@@ -99,8 +99,9 @@ static bool sheets_are_valid(const Check *c, const char *paths, const char *key,
     for (int i = 0; i < set.count && status == STATUS_OK; i++)
         for (int k = 0; k < set.raster[i].sheet_count && status == STATUS_OK; k++) {
             const RasterSheet *sheet = &set.raster[i].sheet[k];
-            status = raster_read(piece, &set.raster[i], 1, sheet->x0 + sheet->width / 2 - side / 2,
-                                 sheet->y0 + sheet->height / 2 - side / 2, side, side, key);
+            status = raster_read(piece, &set.raster[i], 1,
+                                 (RasterWindow){sheet->x0 + sheet->width / 2 - side / 2,
+                                                sheet->y0 + sheet->height / 2 - side / 2, side, side}, key);
         }
     raster_set_close(&set);
     return status == STATUS_OK || report(c, key, "paths in a configuration file are relative to that file; `gdalinfo "
