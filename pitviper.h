@@ -48,8 +48,9 @@ void log_suppress(bool hushed);
 /* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
  * stderr is no terminal, where information is hidden, and with a sink. Standard output: set it to NULL before. */
 void log_status(const char *text);
-/* Whether --quiet is set: no choices, progress or notices; warnings, errors and requested output stay. */
+/* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and requested output stay. */
 bool log_is_quiet(void);
+bool log_is_verbose(void);
 /* To standard output, output not requested: choices, a summary at the end. Nothing when quiet. */
 void log_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_detail(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -50,6 +50,7 @@ static LogLevel lowest_shown(void)
 }
 
 bool log_is_quiet(void) { return lowest_shown() > LOG_INFO; }
+bool log_is_verbose(void) { return lowest_shown() <= LOG_DETAIL; }
 
 void log_suppress(bool hushed) { suppressed_here = hushed; }
 

@@ -6,7 +6,7 @@
 
 #include "entities/import/model_import.h"
 #include "render/air/atmosphere.h"
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 #include "render/materials/planck.h"
 #include "render/probe_private.h"
 #include "terrain/probe.h"

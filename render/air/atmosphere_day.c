@@ -1,12 +1,12 @@
 /* render/air/atmosphere_day.c: loops over bands and steps where render/air/atmosphere.c evaluates one at a time. The
  * formulas are the same; only loop invariants are hoisted. */
-#include "render/air/atmosphere_day.h"
+#include "render/air/atmosphere.h"
 
 #include "render/air/atmosphere_private.h"
 
 #include <assert.h>
 
-enum { path_steps = 8, sky_steps = 12, steps_room = 16, buckets = 512, shapes_max = 8, azimuths_room = path_max_suns };
+enum { path_steps = 8, sky_steps = 12, steps_room = 16, shapes_max = 8, azimuths_room = path_max_suns };
 
 /* ---- vectorised exponentials -------------------------------------------------------------------- */
 
@@ -37,192 +37,6 @@ static inline double exp_here(double x)
     bits = (bits + 1023) << 52; /* the integer is in the lowest bits */
     memcpy(&scale, &bits, sizeof scale);
     return p * scale;
-}
-
-/* ---- state of a day ----------------------------------------------------------------------------- */
-
-/* Extinction and scattering by height on the nodes of all columns: clear air, and haze of the two tabled
- * visibilities: between them the minimum is evaluated at a point, not at nodes. */
-typedef struct DayColumn {
-    int      nodes;
-    double   top_m, per_bucket_m;
-    double  *height_m;
-    double  *clear[AIR_BAND_COUNT], *clear_sum[AIR_BAND_COUNT], *haze[2][AIR_BAND_COUNT], *haze_sum[2][AIR_BAND_COUNT];
-    double  *clear_scatter[AIR_BAND_COUNT], *haze_scatter[2][AIR_BAND_COUNT];
-    uint16_t start[buckets]; /* interval of each bucket's lower end */
-} DayColumn;
-
-/* ln depth and ln (diffuse / top) of this sun, by the observer's height; of one visibility. */
-typedef struct DaySun {
-    int           nodes;
-    const double *height_m;
-    double        ln_depth[AIR_BAND_COUNT][grid_max_nodes], ln_diffuse[AIR_BAND_COUNT][grid_max_nodes];
-} DaySun;
-
-typedef struct DayTemp {
-    int    low;   /* weight */
-    double share; /* of the next */
-} DayTemp;
-
-struct AirDay {
-    const Atmosphere *atmosphere;
-    Blend             blend;
-    bool              hazes;            /* two different slices */
-    bool              suns_alike;       /* both have the same heights */
-    unsigned          bands, parts;     /* requested; the tabled bands that these are made of */
-    double            sun_zenith_rad, sun_cos, sun_sin, top_m;
-    DayColumn         column;
-    DaySun            sun[2];           /* low, high */
-    double           *ratio[2];         /* scattered: [rows][azimuths][air_tabled_count] */
-    double           *sky[2];           /* sky_scattered: [observer][view][azimuth][air_tabled_count] */
-    int               temps;
-    DayTemp           temp[2][3][day_temps_max]; /* of mwir, lwir; clear, low, high */
-};
-
-static bool wants(unsigned bands, int band) { return bands >> band & 1; }
-static const Slice *slice_of(const AirDay *day, int which) { return which ? day->blend.high : day->blend.low; }
-
-static int merge_nodes(double *out, const AirColumn *const *column, int count)
-{
-    int at[3] = {0}, nodes = 0;
-    for (;;) {
-        double next = INFINITY;
-        for (int c = 0; c < count; c++)
-            if (at[c] < column[c]->nodes) next = fmin(next, column[c]->height_m[at[c]]);
-        if (!(next < INFINITY)) return nodes;
-        for (int c = 0; c < count; c++) at[c] += at[c] < column[c]->nodes && column[c]->height_m[at[c]] == next;
-        out[nodes++] = next;
-    }
-}
-
-static void add_up(double *sum, const double *value, const double *height_m, int nodes)
-{
-    sum[0] = 0;
-    for (int i = 0; i + 1 < nodes; i++)
-        sum[i + 1] = sum[i] + 0.5 * (height_m[i + 1] - height_m[i]) * (value[i] + value[i + 1]);
-}
-
-static Status fill_column(AirDay *day, Arena *arena)
-{
-    const Atmosphere      *a = day->atmosphere;
-    const AirColumn *const from[3] = {&a->clear, &day->blend.low->haze, &day->blend.high->haze};
-    DayColumn             *c = &day->column;
-    c->height_m = arena_alloc(arena, 3 * column_max, sizeof *c->height_m);
-    if (!c->height_m) return STATUS_NO_MEMORY;
-    c->nodes        = merge_nodes(c->height_m, from, 3);
-    c->top_m        = a->clear.height_m[a->clear.nodes - 1];
-    c->per_bucket_m = buckets / (c->height_m[c->nodes - 1] * (1 + 1e-9));
-    for (int k = 0, i = 0; k < buckets; k++) {
-        while (i + 2 < c->nodes && c->height_m[i + 1] * c->per_bucket_m <= k) i++;
-        c->start[k] = (uint16_t)i;
-    }
-    for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
-        if (!wants(day->parts, b)) continue;
-        double **const row[] = {&c->clear[b], &c->clear_sum[b], &c->clear_scatter[b],
-                                &c->haze[0][b], &c->haze_sum[0][b], &c->haze_scatter[0][b],
-                                &c->haze[1][b], &c->haze_sum[1][b], &c->haze_scatter[1][b]};
-        for (size_t k = 0; k < sizeof row / sizeof *row; k++)
-            if (!(*row[k] = arena_alloc(arena, (size_t)c->nodes, sizeof(double)))) return STATUS_NO_MEMORY;
-        for (int i = 0; i < c->nodes; i++) {
-            const double h_m = c->height_m[i];
-            c->clear[b][i]         = column_mean(&a->clear, b, h_m, h_m);
-            c->clear_scatter[b][i] = column_scatter(&a->clear, b, h_m);
-            for (int which = 0; which < 2; which++) {
-                c->haze[which][b][i]         = column_mean(from[1 + which], b, h_m, h_m);
-                c->haze_scatter[which][b][i] = column_scatter(from[1 + which], b, h_m);
-            }
-        }
-        add_up(c->clear_sum[b], c->clear[b], c->height_m, c->nodes);
-        for (int which = 0; which < 2; which++) add_up(c->haze_sum[which][b], c->haze[which][b], c->height_m, c->nodes);
-    }
-    return STATUS_OK;
-}
-
-static void fill_sun(AirDay *day, int which)
-{
-    const Grid *grid = &slice_of(day, which)->sun;
-    DaySun     *sun = &day->sun[which];
-    double      t;
-    const int   j = interval_of(&t, grid->axis[1], grid->nodes[1], slant_x(day->sun_zenith_rad));
-    sun->nodes    = grid->nodes[0];
-    sun->height_m = grid->axis[0];
-    for (int i = 0; i < grid->nodes[0]; i++) {
-        const double *low = grid->value + (i * grid->nodes[1] + j) * grid->values, *high = t > 0 ? low + grid->values : low;
-        for (int k = 0; k < air_tabled_count; k++) {
-            sun->ln_depth[air_tabled[k]][i]   = low[k] + t * (high[k] - low[k]);
-            sun->ln_diffuse[air_tabled[k]][i] = low[k + air_tabled_count] + t * (high[k + air_tabled_count] - low[k + air_tabled_count]);
-        }
-    }
-}
-
-/* Interpolates the sun's axis out of blocks of [suns][inner] values. */
-static double *without_sun(const double *value, size_t blocks, int suns, int inner, int sun, double share, Arena *arena)
-{
-    double *out = arena_alloc(arena, blocks * (size_t)inner, sizeof *out);
-    for (size_t k = 0; out && k < blocks; k++) {
-        const double *low = value + (k * (size_t)suns + (size_t)sun) * (size_t)inner, *high = share > 0 ? low + inner : low;
-        for (int i = 0; i < inner; i++) out[k * (size_t)inner + (size_t)i] = low[i] + share * (high[i] - low[i]);
-    }
-    return out;
-}
-
-static Status fill_scattered(AirDay *day, int which, Arena *arena)
-{
-    const Slice *slice = slice_of(day, which);
-    const double x = slant_x(day->sun_zenith_rad);
-    double       t;
-    int          i = interval_of(&t, slice->scattered.sun_x, slice->scattered.suns, x);
-    day->ratio[which] = without_sun(slice->scattered.value, (size_t)slice->scattered.rows, slice->scattered.suns,
-                                    slice->scattered.azimuths * air_tabled_count, i, t, arena);
-    const Grid *sky = &slice->sky_scattered;
-    i = interval_of(&t, sky->axis[2], sky->nodes[2], x);
-    day->sky[which] = without_sun(sky->value, (size_t)sky->nodes[0] * (size_t)sky->nodes[1], sky->nodes[2],
-                                  sky->nodes[3] * sky->values, i, t, arena);
-    return day->ratio[which] && day->sky[which] ? STATUS_OK : STATUS_NO_MEMORY;
-}
-
-/* As weight_value of atmosphere.c has it. */
-static DayTemp temp_in(const PathTable *table, double temp_k)
-{
-    double t;
-    if (table->weights < 2) return (DayTemp){0, 0};
-    if (table->weights == 2) return (DayTemp){1, 0};
-    const int    i = 1 + interval_of(&t, table->weight_temp_k + 1, table->weights - 1, temp_k);
-    const double a = 1 / table->weight_temp_k[i], b = 1 / table->weight_temp_k[i + 1];
-    return (DayTemp){i, clamp((1 / temp_k - a) / (b - a), 0, 1)};
-}
-
-static const PathTable *table_of(const AirDay *day, AirBand band, int which)
-{
-    return which == 0 ? &day->atmosphere->clear_path[band] : &slice_of(day, which - 1)->path[band];
-}
-
-Status air_day_at(const AirDay **out, const Atmosphere *atmosphere, double visibility_m, double sun_zenith_rad,
-                  unsigned bands, const double *temp_k, int temps, Arena *arena)
-{
-    AirDay *day = arena_alloc(arena, 1, sizeof *day);
-    if (!day) return STATUS_NO_MEMORY;
-    assert(temps <= day_temps_max);
-    const PathTable *heights = &atmosphere->clear_path[AIR_B];
-    *day = (AirDay){.atmosphere = atmosphere, .sun_zenith_rad = sun_zenith_rad, .sun_cos = cos(sun_zenith_rad),
-                    .sun_sin = sin(sun_zenith_rad), .bands = bands, .parts = bands & ~(1u << AIR_PAN), .temps = temps,
-                    .top_m = fmin(heights->axis[0][heights->nodes[0] - 1], heights->axis[1][heights->nodes[1] - 1])};
-    if (wants(bands, AIR_PAN)) day->parts |= 1u << AIR_B | 1u << AIR_G | 1u << AIR_R;
-    blend_at(&day->blend, atmosphere, visibility_m);
-    day->hazes = day->blend.low != day->blend.high;
-    Status status = fill_column(day, arena);
-    for (int which = 0; which <= day->hazes && status == STATUS_OK && sun_zenith_rad <= pi_rad / 2; which++) {
-        fill_sun(day, which);
-        status = fill_scattered(day, which, arena);
-    }
-    day->suns_alike = day->hazes && day->sun[0].nodes == day->sun[1].nodes && day->sun[0].nodes > 0 &&
-                      memcmp(day->sun[0].height_m, day->sun[1].height_m, (size_t)day->sun[0].nodes * sizeof(double)) == 0;
-    for (int b = 0; b < 2; b++)
-        for (int which = 0; which < 3; which++)
-            for (int k = 0; k < temps; k++)
-                day->temp[b][which][k] = temp_in(table_of(day, (AirBand)(AIR_MWIR + b), which), temp_k[k]);
-    if (status == STATUS_OK) *out = day;
-    return status;
 }
 
 /* ---- air by height ------------------------------------------------------------------------------ */
@@ -482,7 +296,7 @@ static void means_of(double out[steps_room], const double *value, const double *
     }
 }
 
-/* scatter_parts of atmosphere_scatter.c, for precomputed steps. ratio: depth over that of the columns. */
+/* scatter_parts of atmosphere_paths.c, for precomputed steps. ratio: depth over that of the columns. */
 static void parts_of(ScatterParts *out, const AirDay *day, AirBand band, const Steps *s, double ratio)
 {
     const DayColumn *c = &day->column;

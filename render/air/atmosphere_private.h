@@ -39,7 +39,6 @@ void   grid_some(double *out, const Grid *grid, const double *at, int first, int
 int interval_of(double *share, const double *ascending, int count, double x);
 /* Distinct values in rising order; -1: more than capacity. axis_find: which is x. */
 int axis_from(double *axis, int capacity, const double *values, int count);
-int axis_find(const double *axis, int count, double x);
 
 /* ---- paths: an observer's height, a target's height or a direction, and for each pair a list of ranges ---- */
 
@@ -205,5 +204,66 @@ void   scatter_parts_sky(ScatterParts *out, const Atmosphere *atmosphere, const 
 /* up: cosine of the view's zenith angle. */
 double scatter_estimate(const ScatterParts *parts, const Atmosphere *atmosphere, AirBand band, double up,
                         double sun_zenith_rad, double rel_azimuth_rad);
+
+/* ---- the air of a day: atmosphere_day.c, opened by atmosphere_day_open.c ---------------------------- */
+
+enum { day_buckets = 512 };
+
+/* Extinction and scattering by height on the nodes of all columns: clear air, and haze of the two tabled
+ * visibilities: between them the minimum is evaluated at a point, not at nodes. */
+typedef struct DayColumn {
+    int      nodes;
+    double   top_m, per_bucket_m;
+    double  *height_m;
+    double  *clear[AIR_BAND_COUNT], *clear_sum[AIR_BAND_COUNT], *haze[2][AIR_BAND_COUNT], *haze_sum[2][AIR_BAND_COUNT];
+    double  *clear_scatter[AIR_BAND_COUNT], *haze_scatter[2][AIR_BAND_COUNT];
+    uint16_t start[day_buckets]; /* interval of each bucket's lower end */
+} DayColumn;
+
+/* ln depth and ln (diffuse / top) of this sun, by the observer's height; of one visibility. */
+typedef struct DaySun {
+    int           nodes;
+    const double *height_m;
+    double        ln_depth[AIR_BAND_COUNT][grid_max_nodes], ln_diffuse[AIR_BAND_COUNT][grid_max_nodes];
+} DaySun;
+
+typedef struct DayTemp {
+    int    low;   /* weight */
+    double share; /* of the next */
+} DayTemp;
+
+struct AirDay {
+    const Atmosphere *atmosphere;
+    Blend             blend;
+    bool              hazes;            /* two different slices */
+    bool              suns_alike;       /* both have the same heights */
+    unsigned          bands, parts;     /* requested; the tabled bands that these are made of */
+    double            sun_zenith_rad, sun_cos, sun_sin, top_m;
+    DayColumn         column;
+    DaySun            sun[2];           /* low, high */
+    double           *ratio[2];         /* scattered: [rows][azimuths][air_tabled_count] */
+    double           *sky[2];           /* sky_scattered: [observer][view][azimuth][air_tabled_count] */
+    int               temps;
+    DayTemp           temp[2][3][day_temps_max]; /* of mwir, lwir; clear, low, high */
+};
+
+static inline bool wants(unsigned bands, int band) { return bands >> band & 1; }
+static inline const Slice *slice_of(const AirDay *day, int which) { return which ? day->blend.high : day->blend.low; }
+
+/* As weight_value of atmosphere.c has it. */
+static inline DayTemp temp_in(const PathTable *table, double temp_k)
+{
+    double t;
+    if (table->weights < 2) return (DayTemp){0, 0};
+    if (table->weights == 2) return (DayTemp){1, 0};
+    const int    i = 1 + interval_of(&t, table->weight_temp_k + 1, table->weights - 1, temp_k);
+    const double a = 1 / table->weight_temp_k[i], b = 1 / table->weight_temp_k[i + 1];
+    return (DayTemp){i, clamp((1 / temp_k - a) / (b - a), 0, 1)};
+}
+
+static inline const PathTable *table_of(const AirDay *day, AirBand band, int which)
+{
+    return which == 0 ? &day->atmosphere->clear_path[band] : &slice_of(day, which - 1)->path[band];
+}
 
 #endif

@@ -1,6 +1,6 @@
 /* render/air/daylight.c: skylight by direction, from the tables of render/air/atmosphere.c, independent of any eye.
  * Totals: daylight_sums.c. */
-#include "render/air/daylight_private.h"
+#include "render/air/air_private.h"
 
 /* ---- the sky as a table -------------------------------------------------------------------- */
 

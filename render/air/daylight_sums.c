@@ -3,7 +3,7 @@
  *
  * The tables cover the sun above the horizon only. Below 5 degrees the sky keeps its shape at 5 degrees and is
  * dimmed as in twilight. */
-#include "render/air/daylight_private.h"
+#include "render/air/air_private.h"
 
 /* Twilight: daylight below an elevation of 5 degrees, over its value there. Straight lines in its logarithm
  * through rounded values for a clear, moonless sky: 0.17 at the horizon, 8e-4 at the end of civil, 2e-6 of

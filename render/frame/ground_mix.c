@@ -5,7 +5,7 @@
  * no further ray is needed: points over the sample's square are projected on the plane of its hit, their surface
  * classes are looked up, and the hit is split into one for each class, at the mean of its points, weighted by their
  * number. */
-#include "render/frame/ground_mix.h"
+#include "render/frame/frame_private.h"
 
 #include <assert.h>
 

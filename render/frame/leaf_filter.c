@@ -1,5 +1,5 @@
 /* render/frame/leaf_filter.c: radiance of plants, smoothed from pixel to pixel. */
-#include "render/frame/leaf_filter.h"
+#include "render/frame/frame_private.h"
 
 enum { halo_side = tile_side_samples + 2, reach_side = halo_side + 2 };
 
@@ -40,7 +40,7 @@ static bool find_leaves(bool leaf[halo_side][halo_side], const Job *job, const T
 /* A pool task: a tile, into Job.smoothed. */
 static void smooth_tile(void *user, int worker, int task)
 {
-    static const float of[9] = {1, 2, 1, 2, 11, 2, 1, 2, 1}; /* leaf_filter.h */
+    static const float of[9] = {1, 2, 1, 2, 11, 2, 1, 2, 1}; /* frame_private.h */
     const Job *job = user;
     const Tile tile = tile_of(job, task);
     const int  width = job->picture->width;

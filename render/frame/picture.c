@@ -91,7 +91,7 @@ void picture_forget_truth(Picture *picture)
     for (int k = 0; k < 3; k++) picture->normal[k] = NULL;
 }
 
-double plane_contrast(const Picture *p, const float *value, int x, int y)
+double picture_contrast(const Picture *p, const float *value, int x, int y)
 {
     const size_t at = (size_t)y * (size_t)p->width + (size_t)x, row = (size_t)p->width;
     const double here = (double)value[at];

@@ -1,18 +1,45 @@
-/* render/frame/picture.h: the output of a frame: radiance planes, truth planes, targets, counters. */
+/* render/frame/picture.h: what is asked of a frame, and what it is: radiance planes, truth planes, targets, counters. */
 #ifndef RENDER_FRAME_PICTURE_H
 #define RENDER_FRAME_PICTURE_H
 
+#include "render/scene/view.h"
 #include "render/air/air.h"
-#include "render/frame/request.h"
 #include "render/scattering/radar_image.h"
-#include "render/visibility/visibility.h"
+#include "render/trace/visibility/visibility.h"
+
+typedef struct RenderRequest {
+    View     view;
+    unsigned bands;          /* 1 << Band, the bands that have consumers */
+    bool     truth;          /* id, part, material, range, normal, temperature planes and target counts */
+    OpticalChannels optical;
+    double   lateral[2]; /* lateral colour of R G B: magnification of R, and of B, over that of G, less 1 */
+    int      sky_samples;    /* directions a hit over which light from sky and surroundings is sampled; 0: the quick
+                              * form */
+    bool     sky_visibility; /* with the quick form: nearby objects hide sky and ground
+                              * (render/light/sky_visibility.h) */
+    int      samples;        /* a side: samples^2 rays a pixel, on a rotated grid, box-averaged. 1 .. 16 */
+    int      edge_samples;   /* the same where neighbours disagree, 2 .. 16; not above samples: nowhere */
+    int      target_samples; /* rays a side over the whole of a target that is small on the image, 8 .. 256; 0: as
+                              * all others */
+    int      hidden_entity;  /* snapshot index of the entity whose parts the eye does not see (they cast shadows);
+                              * -1: none */
+    unsigned skips_off;      /* 1 << Skip (render/trace/visibility/visibility.h): skips to disable; must give the same bits */
+    bool     budget;         /* estimate the error of the planes: Picture.budget */
+    bool     hand_over_cells; /* keep the samples of small targets for a detector behind optics: Picture.small */
+    double   t_s;            /* exercise time: plants sway by it */
+    double   low_plants_m;   /* low plants stand within this of the eye; 0: none */
+    double   profile_near_m, profile_bin_m; /* radar range profile */
+    int      profile_bins;
+} RenderRequest;
+
+/* ---- the picture ----------------------------------------------------------------------------- */
 
 /* Planes that carry radiance. */
 enum { picture_optical, picture_mwir = picture_optical + 3, picture_lwir, picture_radar, picture_plane_count };
 
 /* Error estimate of a frame's planes, made by the frame itself: root of the mean squared error over the picture, in
  * the plane's unit, by source. The planes are the same with and without it. How each figure is made and what it
- * leaves out: render/frame/error_budget.h; how accurate the estimate is: tests/sensor/test_error_budget.c. */
+ * leaves out: render/frame/render.h; how accurate the estimate is: tests/sensor/test_error_budget.c. */
 enum { error_thermal_planes = picture_radar - picture_mwir };
 typedef struct ErrorBudget {
     double mean[picture_plane_count];            /* of the plane, estimated from the candidate pixels */
@@ -156,6 +183,6 @@ Status picture_create(Picture *out, const RenderRequest *request, int entities, 
 void   picture_forget_truth(Picture *picture);
 
 /* Mean squared difference of a pixel to its neighbours, left, right, above and below. */
-double plane_contrast(const Picture *picture, const float *value, int x, int y);
+double picture_contrast(const Picture *picture, const float *value, int x, int y);
 
 #endif

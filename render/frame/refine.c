@@ -1,12 +1,10 @@
 /* render/frame/refine.c: the edges pass: pixels marked by edges.c are sampled again with more samples, which replace
- * their first ones in the planes and in all sums over pixels. Of plants the first samples stay, and all count alike: they
- * are as good as any other there. At a straight edge the grid alone is more accurate than the grid and a sample at the
- * centre. */
-#include "render/frame/refine.h"
+ * their first ones in the planes and in all sums over pixels. Of plants the first samples stay, and all count alike:
+ * they are as good as any other there. At a straight edge the grid alone is more accurate than the grid and a sample
+ * at the centre. */
+#include "render/frame/frame_private.h"
+#include "render/frame/render.h"
 
-#include "render/frame/edges.h"
-#include "render/frame/ground_mix.h"
-#include "render/frame/sampling_variance.h"
 
 #include <stdlib.h>
 
@@ -127,7 +125,7 @@ static void add_variance(const Worker *w, const Job *job, double sum[picture_pla
         for (int p = 0; value && p < block->pixels; p++) {
             const size_t px = pixel_index(job, block->x[p], block->y[p]);
             const double open = job->picture->covered ? 1 - (double)job->picture->covered[px] : 1;
-            sum[plane] += open * open * error_budget_sampling_variance(value + p * samples, block->n);
+            sum[plane] += open * open * render_error_variance(value + p * samples, block->n);
         }
     }
 }
@@ -150,13 +148,13 @@ static void refine_block(Worker *w, const Job *job, const Refinement *how, int l
         recall_ground(w, job);
     } else {
         block_trace(w, job, how->bands, listed);
-        samples_sun(&w->shader, &job->scene, s);
+        shade_samples_sun(&w->shader, &job->scene, s);
         w->counters.rays_edges += (uint64_t)s->rays.count;
     }
     const int  outlines = areas && !ground ? list_outlines(w, job, listed, crowd) : 0;
     const bool step = how->has & refine_step;
     if (step && areas) { /* of the samples as they were shot */
-        samples_smoke(&job->scene, s);
+        shade_samples_smoke(&job->scene, s);
         block_add_areas(w, job, share, w->outline, outlines);
     }
     if (ground) split_ground(w, job, ground_side(job, 1), ground_mix_most);
@@ -174,7 +172,7 @@ static void refine_block(Worker *w, const Job *job, const Refinement *how, int l
     }
     block->n = job->request->samples;
     block_trace(w, job, how->bands, listed);
-    samples_sun(&w->shader, &job->scene, s);
+    shade_samples_sun(&w->shader, &job->scene, s);
     block_light(w, job);
     block_add(w, job, -share);
     if (areas) block_add_areas(w, job, -share, w->outline, outlines);

@@ -1,15 +1,8 @@
 /* render/frame/render.c: a frame: prepares what its passes share, runs them one after the other and sums their
  * results. */
-#include "render/frame/render.h"
 
-#include "render/frame/base.h"
-#include "render/frame/edges.h"
-#include "render/frame/error_estimate.h"
-#include "render/frame/leaf_filter.h"
-#include "render/frame/target_grid.h"
-#include "render/frame/passes.h"
-#include "render/frame/refine.h"
-#include "render/frame/target_boxes.h"
+#include "render/frame/render.h"
+#include "render/frame/frame_private.h"
 #include "render/light/optical.h"
 
 int render_places(int samples, int edge_samples)
@@ -29,7 +22,7 @@ static Status create_worker(Worker **out, const Job *job, Arena *arena)
     w->volume = arena_alloc(arena, (size_t)job->scene.effects.count + 1, sizeof *w->volume);
     w->outline = arena_alloc(arena, (size_t)entities, sizeof *w->outline);
     if (!w->list || !w->outline || !w->volume) return STATUS_NO_MEMORY;
-    const Status status = samples_create(&w->samples, hits_capacity, arena);
+    const Status status = shade_samples_create(&w->samples, hits_capacity, arena);
     return status == STATUS_OK ? target_sums_create(&w->sums, entities, job->request->profile_bins, arena) : status;
 }
 
@@ -232,4 +225,57 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     }
     if (status == STATUS_OK) *out = picture;
     return status;
+}
+
+/* ---- figures of the error estimate ----------------------------------------------------------- */
+
+double render_error_kelvin(const PlanckTable *planck, double mean_w_m2_sr, double rms_w_m2_sr)
+{
+    const double step = 1e-3 * mean_w_m2_sr;
+    if (!(mean_w_m2_sr > 0)) return NAN;
+    return rms_w_m2_sr * (planck_table_temp(planck, mean_w_m2_sr + step) - planck_table_temp(planck, mean_w_m2_sr)) /
+           step;
+}
+
+/* ---- the ground at every second post ----------------------------------------------------------- */
+
+/* A cell of `stride` posts: height at (x, y), and normal. */
+static double cell_height(double n_enu[3], const ElevationLevel *l, double fx, double fy, int i, int j, int stride)
+{
+    const double u = (fx - i) / stride, v = (fy - j) / stride;
+    const double sw = elevation_post_m(l, i, j), se = elevation_post_m(l, i + stride, j);
+    const double nw = elevation_post_m(l, i, j + stride), ne = elevation_post_m(l, i + stride, j + stride);
+    const double du = u >= v ? se - sw : ne - nw, dv = u >= v ? ne - se : nw - sw, s = l->spacing_m * stride;
+    const double length = sqrt(du * du + dv * dv + s * s);
+    n_enu[0] = -du / length, n_enu[1] = -dv / length, n_enu[2] = s / length;
+    return sw + u * du + v * dv;
+}
+
+bool render_error_coarser(double turn_enu[3], double *rise_m, const Elevation *elevation, double x_m, double y_m)
+{
+    for (int n = 0; n < elevation->level_count; n++) {
+        const ElevationLevel *l = &elevation->level[n];
+        const double fx = (x_m - l->x0_m) / l->spacing_m, fy = (y_m - l->y0_m) / l->spacing_m;
+        double       fine[3], coarse[3];
+        if (!(fx >= 0 && fy >= 0 && fx <= l->nx - 1 && fy <= l->ny - 1)) continue;
+        const int i = (int)fx, j = (int)fy;
+        if (i / 2 * 2 + 2 > l->nx - 1 || j / 2 * 2 + 2 > l->ny - 1) return false;
+        *rise_m = cell_height(coarse, l, fx, fy, i / 2 * 2, j / 2 * 2, 2) - cell_height(fine, l, fx, fy, i, j, 1);
+        v3_sub(turn_enu, coarse, fine);
+        return true;
+    }
+    return false;
+}
+
+/* Squared error of a pixel's mean, estimated from its own samples. */
+double render_error_variance(const float *out, int n)
+{
+    double sum = 0;
+    for (int row = 0; row < n; row++)
+        for (int column = 0; column < n; column++) {
+            const double here = (double)out[row * n + column];
+            if (column + 1 < n) sum += (out[row * n + column + 1] - here) * (out[row * n + column + 1] - here);
+            if (row + 1 < n) sum += (out[(row + 1) * n + column] - here) * (out[(row + 1) * n + column] - here);
+        }
+    return mean_variance_factor * sum / ((double)n * n * n * n);
 }

@@ -31,7 +31,7 @@ Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *s
     Visibility *posed = NULL;
     *out = (ShadeScene){.world = world, .snapshot = snapshot, .air = air, .sky_samples = request->sky_samples,
                         .hidden_entity = request->hidden_entity};
-    Status status = effects_scene(&out->effects, snapshot, request->hidden_entity, &world->frame, &request->view, air,
+    Status status = smoke_effects_scene(&out->effects, snapshot, request->hidden_entity, &world->frame, &request->view, air,
                                   world->materials.ground_rho, channels, arena);
     if (status != STATUS_OK) return status;
     int *volume = arena_alloc(arena, (size_t)out->effects.count + 1, sizeof *volume);
@@ -53,7 +53,7 @@ Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *s
 
 void shade_scene_close(ShadeScene *scene) { forest_frame_close(&scene->plants); }
 
-Status samples_create(Samples *out, int capacity, Arena *arena)
+Status shade_samples_create(Samples *out, int capacity, Arena *arena)
 {
     const size_t n = (size_t)capacity;
     bool         ok = capacity >= 1 && capacity <= hits_capacity;
@@ -65,7 +65,7 @@ Status samples_create(Samples *out, int capacity, Arena *arena)
     return ok ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-void samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed)
+void shade_samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed)
 {
     const double t0 = wall_clock_s();
     visibility_first_hit_knowing(&s->hits, scene->visibility, &s->rays, list, listed, scene->hidden_entity, s->known,
@@ -85,7 +85,7 @@ static bool raise_far(double z_m[hits_capacity], Shader *shader, const ShadeScen
     return true;
 }
 
-void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
+void shade_samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const double t0 = wall_clock_s();
     uint8_t      dark[hits_capacity] = {0};
@@ -103,7 +103,7 @@ void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
     shader->shadow_s += wall_clock_s() - t0;
 }
 
-void samples_smoke(const ShadeScene *scene, Samples *s)
+void shade_samples_smoke(const ShadeScene *scene, Samples *s)
 {
     smoke_trace_rays(&s->smoke, scene->effects.volume, s->volume, s->volumes, &s->rays, s->hits.range_m, s->channels);
 }
@@ -316,14 +316,14 @@ static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
     }
 }
 
-void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
+void shade_samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const double      t0 = wall_clock_s();
     const HemisphereScene around = {scene->visibility, scene->air, &scene->world->materials, scene->world->patches,
                                 scene->snapshot};
     resolve_detail(shader, scene, s);
     find_far(shader, scene, s);
-    samples_smoke(scene, s);
+    shade_samples_smoke(scene, s);
     if (scene->sky_samples > 0)
         hemisphere_light(&shader->gathered, &around, &s->hits, s->channels, scene->sky_samples, s->key, &shader->counters);
     shader->any_open = scene->sky && s->channels &&
@@ -339,11 +339,11 @@ void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
     shader->radar_s += wall_clock_s() - t1;
 }
 
-void samples_shade(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed)
+void shade_samples_shade(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed)
 {
-    samples_trace(shader, scene, s, list, listed);
-    samples_sun(shader, scene, s);
-    samples_light(shader, scene, s);
+    shade_samples_trace(shader, scene, s, list, listed);
+    shade_samples_sun(shader, scene, s);
+    shade_samples_light(shader, scene, s);
 }
 
 /* ---- without tables --------------------------------------------------------------------------- */
@@ -379,7 +379,7 @@ static const float *light_around(float room[hits_capacity], const Shader *shader
     return room;
 }
 
-void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, AirPaths direct[AIR_BAND_COUNT])
+void shade_samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, AirPaths direct[AIR_BAND_COUNT])
 {
     const Materials *materials = &scene->world->materials;
     keep_normals(shader, &s->hits);

@@ -6,12 +6,12 @@
 #ifndef RENDER_FRAME_SHADE_H
 #define RENDER_FRAME_SHADE_H
 
-#include "render/frame/request.h"
+#include "render/frame/picture.h"
 #include "render/frame/world.h"
 #include "render/light/hemisphere.h"
 #include "render/light/sky_visibility.h"
 #include "render/light/surface_light.h"
-#include "render/smoke/effects.h"
+#include "render/smoke/smoke.h"
 
 /* The scene of a frame, shared by its threads. */
 typedef struct ShadeScene {
@@ -62,7 +62,7 @@ typedef struct Samples {
 } Samples;
 
 /* Allocates arrays of `capacity` samples, at most hits_capacity. STATUS_NO_MEMORY: of the arena. */
-Status samples_create(Samples *out, int capacity, Arena *arena);
+Status shade_samples_create(Samples *out, int capacity, Arena *arena);
 
 /* A thread's own working memory. */
 typedef struct Shader {
@@ -89,19 +89,19 @@ typedef struct Shader {
 } Shader;
 
 /* First hits of the rays; list: entities that they may meet (visibility_block_entities), count -1: any. */
-void samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed);
+void shade_samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed);
 /* Rays to the sun from the hits, where a channel shows shadows. */
-void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s);
-/* Smoke and dust before the hits; samples_light calls it, too. */
-void samples_smoke(const ShadeScene *scene, Samples *s);
+void shade_samples_sun(Shader *shader, const ShadeScene *scene, Samples *s);
+/* Smoke and dust before the hits; shade_samples_light calls it, too. */
+void shade_samples_smoke(const ShadeScene *scene, Samples *s);
 /* Temperatures, and the light of every channel, for hits whose sun share is already known. */
-void samples_light(Shader *shader, const ShadeScene *scene, Samples *s);
+void shade_samples_light(Shader *shader, const ShadeScene *scene, Samples *s);
 /* All steps: from the rays to their light. */
-void samples_shade(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed);
+void shade_samples_shade(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed);
 
-/* After samples_light: the same light without tables: the air computed path by path (air_paths_directly), in double
+/* After shade_samples_light: the same light without tables: the air computed path by path (air_paths_directly), in double
  * (optical_shade, thermal_shade). Replaces radiance; direct: memory for it. */
-void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, AirPaths direct[AIR_BAND_COUNT]);
+void shade_samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, AirPaths direct[AIR_BAND_COUNT]);
 
 /* Share of a sample's light that smoke absorbs in a channel, 0 .. 1; 0 for channels that were not requested. */
 static inline double samples_smoke_taken(const Samples *s, int channel, int i)

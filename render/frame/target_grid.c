@@ -11,7 +11,7 @@
  * fills.
  *
  * Beside a silhouette the pixel's mean is used: exact where the ground is uniform over a pixel. */
-#include "render/frame/target_grid_private.h"
+#include "render/frame/frame_private.h"
 
 #include <stdlib.h>
 
@@ -372,8 +372,8 @@ static void light_cells(const TargetGrid *f, Worker *w, const Job *job, const in
     for (int i = 0; i < s->hits.count && job->scene.sky_samples > 0; i++) w->key[i] = cell_key(f, cell[i]);
     s->key     = w->key;
     s->per_rad = job->request->view.focal_px;
-    samples_sun(&w->shader, &job->scene, s);
-    samples_light(&w->shader, &job->scene, s);
+    shade_samples_sun(&w->shader, &job->scene, s);
+    shade_samples_light(&w->shader, &job->scene, s);
 }
 
 /* Light of the cells that something hides, into the pixels that show some of the target. */
@@ -459,7 +459,7 @@ static void sample_cells(TargetGrid *f, Worker *w, const Job *job, int first_cel
     keep_amodal(cell, f, w, job, first_cell);
     w->shader.visibility_s += wall_clock_s() - t0;
     s->known = skips(job->request->skips_off, SKIP_CELL) ? &w->known : NULL;
-    samples_trace(&w->shader, &job->scene, s, w->list, listed);
+    shade_samples_trace(&w->shader, &job->scene, s, w->list, listed);
     s->known = NULL;
     if (job->picture->target) count_hidden(f, w, job, cell);
     int       before[hits_capacity];

@@ -1,8 +1,8 @@
 /* render/frame/target_grid_picture.c: composites the sampled small targets over the finished pixels, estimates their
  * errors and adds them to the targets of the picture. */
-#include "render/frame/target_grid_private.h"
+#include "render/frame/frame_private.h"
+#include "render/frame/render.h"
 
-#include "render/frame/sampling_variance.h"
 
 void target_grids_cover(Job *job)
 {
@@ -65,7 +65,7 @@ static double hidden_ground(const TargetGrid *f, const Job *job, const float *va
             const size_t px = pixel_index(job, x, y);
             const double own = own_share(job, px), share = own * (1 - own);
             if (job->coverer[px] == f->entity && share > 0)
-                sum += share * share * plane_contrast(job->picture, value, x, y);
+                sum += share * share * picture_contrast(job->picture, value, x, y);
         }
     return sum;
 }

@@ -3,14 +3,14 @@
 #define RENDER_FRAME_WORLD_H
 
 #include "render/air/air.h"
-#include "render/forest/forest.h"
-#include "render/heat/heat_scene.h"
+#include "render/trace/plants/forest.h"
+#include "render/heat/heat.h"
 #include "render/heat/part_table.h"
-#include "render/heat/patch_set.h"
+#include "render/heat/vehicle_heat.h"
 #include "render/light/canopy.h"
 #include "render/light/far_woods.h"
 #include "render/scattering/radar_image.h"
-#include "render/visibility/visibility.h"
+#include "render/trace/visibility/visibility.h"
 #include "terrain/detail/detail.h"
 #include "terrain/weather/weather.h"
 
@@ -34,7 +34,7 @@ typedef struct World {
     struct HeatDrive *drive;         /* of heat */
     PartTable        parts;          /* what is behind the skin of parts */
     PatchSet        *patches;        /* of the models that have been seen with temperatures */
-    struct SkyKept  *sky;            /* what frames leave for the next (render/light/sky_kept.h) */
+    struct SkyKept  *sky;            /* what frames leave for the next (render/light/sky_visibility.h) */
 } World;
 
 /* frame: the landscape's, or any where there is none. */
@@ -47,7 +47,6 @@ Status world_plant(World *world, const Woods *woods, const ForestConfig *config,
 Status world_warm(World *world, WeatherCourse *course, const HeatConfig *config, double shadow_m, Pool *pool);
 /* The same for a clear day of the atmosphere's own temperature: what benches and pictures of models stand on. */
 Status world_warm_clear(World *world, const HeatConfig *config, double shadow_m, Pool *pool);
-void   world_cool(World *world); /* the opposite */
 /* The ground's heat at a time, in the arena; *out NULL where the world is not warm. marks: may be NULL. */
 Status world_heat_at(HeatScene **out, const World *world, const GroundMarks *marks, double unix_s, Arena *arena);
 /* The patches of a snapshot's models. One thread at a time. */
@@ -55,5 +54,44 @@ Status world_need_patches(const World *world, const Snapshot *snapshot);
 /* Air temperature at ground level then, K; NaN: the world is not warm. */
 double world_air_k(const World *world, double unix_s);
 void   world_close(World *world);
+
+/* ---- what drives the ground's heat: the weather's course with the sun and sky of the atmosphere  */
+
+/* Heat keeps a pointer to it, and it to these: they outlive the heat. */
+typedef struct HeatDrive {
+    const WeatherCourse *course;
+    AirSource            source;
+    Geodetic             place;
+    double               exercise_s; /* Unix time of exercise time 0 */
+} HeatDrive;
+
+/* HeatWeather; user: a HeatDrive. Thermometer at 2 m, anemometer at 10 m. Beyond 1900 .. 2100 there is no sun. */
+void   world_heat_weather(GroundWeather *out, double unix_s, const void *drive);
+
+/* ---- entities: vehicle_heat.h with the weather's course, and the heat of the world's ground -- */
+
+typedef struct WorldVehicles WorldVehicles;
+
+/* Of a node: VehicleHeatConfig.window_us. At ten frames a second or more no frame pays for more. */
+static const double vehicle_window_us = 3300;
+
+typedef struct WorldVehiclesConfig {
+    double step_s;            /* of entities whose drives do not change */
+    double window_us;         /* VehicleHeatConfig */
+    int    past_parts;        /* VehicleHeatConfig; 0: 1 */
+    const GivenHeat *given;   /* VehicleHeatWorld; so is: */
+    const KeptHeat  *kept;
+} WorldVehiclesConfig;
+
+/* The world must be warm, and outlive it. */
+Status world_vehicles_create(WorldVehicles **out, const World *world, const WorldVehiclesConfig *config);
+void   world_vehicles_destroy(WorldVehicles *vehicles); /* accepts NULL */
+/* Of VehicleHeat: ticks in order of time; the frame's snapshot after those up to its time. */
+Status world_vehicles_tick(WorldVehicles *vehicles, const Snapshot *snapshot);
+Status world_vehicles_show(const WorldVehicles *vehicles, Snapshot *snapshot, Arena *arena);
+const VehicleHeat *world_vehicles_heat(const WorldVehicles *vehicles);
+
+/* Temperatures of a snapshot that has no past: as entities begin. What benches and pictures of models need. */
+Status world_warm_snapshot(Snapshot *snapshot, const World *world, Arena *arena);
 
 #endif

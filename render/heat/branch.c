@@ -1,9 +1,9 @@
-/* render/heat/branch.c: see branch.h. */
-#include "render/heat/branch.h"
+/* render/heat/branch.c: heat of trunks and branches (heat.h). */
+#include "render/heat/heat.h"
 
 static const double upright_m = 0.03;
 
-double branch_film_w_m2k(double radius_m, double wind_mps)
+double heat_branch_film_w_m2k(double radius_m, double wind_mps)
 {
     static const double viscosity_m2s = 1.5e-5, prandtl = 0.71, air_w_mk = 0.025, least_wind_mps = 0.3;
     const double re = fmax(wind_mps, least_wind_mps) * 2 * radius_m / viscosity_m2s;
@@ -12,7 +12,7 @@ double branch_film_w_m2k(double radius_m, double wind_mps)
     return nu * air_w_mk / (2 * radius_m);
 }
 
-void branch_start(Branch *out, const BranchKind *kind, double radius_m, double temp_k)
+void heat_branch_start(Branch *out, const BranchKind *kind, double radius_m, double temp_k)
 {
     *out = (Branch){.kind = kind, .radius_m = radius_m};
     for (int i = 0; i < branch_rings; i++) out->part[0][i] = temp_k;
@@ -64,7 +64,7 @@ static void exchange(Exchange *out, const Branch *b, const GroundWeather *w, dou
     const BranchKind *k = b->kind;
     const bool   upright = b->radius_m > upright_m;
     const double surface_k = b->face_k[0], t3 = surface_k * surface_k * surface_k;
-    const double film = branch_film_w_m2k(b->radius_m, w->air.wind_mps), direct = w->sun_d_enu[2] > 0 ? sun * w->direct_w_m2 : 0;
+    const double film = heat_branch_film_w_m2k(b->radius_m, w->air.wind_mps), direct = w->sun_d_enu[2] > 0 ? sun * w->direct_w_m2 : 0;
     const double ground_w_m2 = stefan_w_m2k4 * ground_k * ground_k * ground_k * ground_k;
     const double below = 0.15 * (direct * fmax(w->sun_d_enu[2], 0) + w->diffuse_w_m2); /* that the ground returns */
     const double sky = k->absorptance * w->diffuse_w_m2 + k->emissivity * w->longwave_w_m2;
@@ -81,7 +81,7 @@ static void exchange(Exchange *out, const Branch *b, const GroundWeather *w, dou
     out->twice_w_m2[1] = narrow > 0 ? narrow * 2 * w->sun_d_enu[0] * w->sun_d_enu[1] / (flat * flat) : 0;
 }
 
-void branch_step(Branch *b, const GroundWeather *after, double sun, double ground_k, double dt_s)
+void heat_branch_step(Branch *b, const GroundWeather *after, double sun, double ground_k, double dt_s)
 {
     const int parts = (int)fmax(1, ceil(dt_s / 300 - 1e-9));
     for (int p = 0; p < parts; p++) {
@@ -93,7 +93,7 @@ void branch_step(Branch *b, const GroundWeather *after, double sun, double groun
     }
 }
 
-void branch_sides(BranchSides *out, const Branch *b)
+void heat_branch_sides(BranchSides *out, const Branch *b)
 {
     const double *k = b->face_k;
     *out = (BranchSides){(float)k[0], {(float)k[1], (float)k[2], (float)k[3]}, {(float)k[4], (float)k[5]}};

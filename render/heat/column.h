@@ -1,4 +1,5 @@
-/* render/heat/column.h: heat conduction into layers, in one dimension, under a surface that exchanges heat as it likes.
+/* render/heat/column.h: heat conduction into layers, in one dimension, under a surface that exchanges heat as it
+ * likes.
  *
  *     rho c dT/dt = d/dz (k dT/dz),  0 <= z <= depth;  -k dT/dz = flux(T, t) at z = 0;  no flux, or one through a
  *     conductance to a given temperature, at the bottom

@@ -1,7 +1,7 @@
-/* render/heat/ground_column.c: see ground_column.h. */
-#include "render/heat/ground_column.h"
+/* render/heat/ground_column.c: kinds of ground under the weather: their rows of etc/ground_heat.csv, their soil, their
+ * balance. */
 
-#include "render/heat/soil.h"
+#include "render/heat/ground_column.h"
 
 Status ground_layers(Column *out, const GroundKind *kind, const GroundGrid *grid)
 {
@@ -14,8 +14,8 @@ Status ground_layers(Column *out, const GroundKind *kind, const GroundGrid *grid
     }
     const bool soil = kind->porosity > 0;
     layer[layers++] = (ColumnLayer){fmax(grid->depth_m - above_m, 0.5),
-                                    soil ? soil_conductivity_w_mk(kind->porosity, kind->quartz, kind->saturation) : kind->rock_w_mk,
-                                    soil ? soil_capacity_j_m3k(kind->porosity, kind->saturation) : kind->rock_j_m3k};
+                                    soil ? ground_soil_conductivity_w_mk(kind->porosity, kind->quartz, kind->saturation) : kind->rock_w_mk,
+                                    soil ? ground_soil_capacity_j_m3k(kind->porosity, kind->saturation) : kind->rock_j_m3k};
     return column_create(out, layer, layers, grid->first_m, grid->growth);
 }
 
@@ -25,7 +25,12 @@ void ground_column_start(GroundColumn *out, const GroundKind *kind, const Column
     column_start(&out->state, layers, temp_k);
 }
 
-double ground_absorbed_w_m2(const GroundColumn *c, const GroundWeather *w, const GroundExposure *e)
+/* Reflectance of wet soil over that of dry soil: 1 - saturation / 2 (Idso et al., J. Appl. Meteorol. 14, 1975: 0.30 of
+ * dry loam, 0.14 of wet). */
+static double soil_darkening(double saturation) { return 1 - 0.5 * saturation; }
+
+/* What it absorbs, W/m2. */
+static double ground_absorbed_w_m2(const GroundColumn *c, const GroundWeather *w, const GroundExposure *e)
 {
     const GroundKind *k = c->kind;
     const double up = 0.5 * (1 + e->n_enu[2]), sky = up * e->sky;
@@ -42,6 +47,10 @@ static double leaves_s_m(double full_sun_s_m, double sun_w_m2)
     const double f = 0.55 * sun_w_m2 / 100 * (2.0 / 3);
     return full_sun_s_m * (1 + f) / (f + full_sun_s_m / 5000);
 }
+
+/* Resistance of the topmost soil to the vapour that leaves it, s/m: exp(8.206 - 4.255 saturation) (Sellers et al., J.
+ * Geophys. Res. 97, 1992). */
+static double soil_resistance_s_m(double saturation) { return exp(8.206 - 4.255 * saturation); }
 
 void ground_flux(SurfaceFlux *out, const GroundColumn *c, const GroundWeather *w, const GroundExposure *e)
 {
@@ -79,6 +88,17 @@ static void law_between(void *law, double share, const void *user)
     if (p->resistance_s_m < INFINITY) out->resistance_s_m += share * (q->resistance_s_m - p->resistance_s_m);
 }
 
+/* Water at the top after dt_s: rain and evaporation (kg/(m2 s)) change it, water from below restores it within a day
+ * (force-restore: Deardorff, J. Geophys. Res. 83, 1978). Saturations, 0 .. 1. */
+static double soil_water_step(double top, double deep, double porosity, double rain_kg_m2s, double evaporates_kg_m2s, double dt_s)
+{
+    static const double depth_m = 0.1, day_s = 86400, restores = 0.9;
+    const double c1 = top >= 0.75 ? 0.5 : top <= 0.15 ? 14 : 14 - 22.5 * (top - 0.15);
+    const double gain = c1 * (rain_kg_m2s - evaporates_kg_m2s) / (1000 * depth_m * porosity);
+    const double back = exp(-restores * dt_s / day_s), held = deep + gain * day_s / restores;
+    return clamp(held + (top - held) * back, 0.01, 1);
+}
+
 void ground_column_step(GroundColumn *c, double tolerance_k, const GroundWeather *before, const GroundWeather *after,
                         const GroundExposure *exposure, double dt_s)
 {
@@ -96,4 +116,136 @@ void ground_column_step(GroundColumn *c, double tolerance_k, const GroundWeather
     const double evaporates = 0.5 * (surface_latent_w_m2(&between.from, begun_k) + surface_latent_w_m2(&between.to, c->state.temp_k[0]));
     const double rain = 0.5 * (before->rain_kg_m2s + after->rain_kg_m2s);
     c->saturation = soil_water_step(c->saturation, c->kind->saturation, c->kind->porosity, rain, evaporates / vapour_j_kg, dt_s);
+}
+
+/* ---- soil ------------------------------------------------------------------------------------ */
+
+double ground_soil_conductivity_w_mk(double porosity, double quartz, double saturation)
+{
+    const double density = (1 - porosity) * 2700;
+    const double dry = (0.135 * density + 64.7) / (2700 - 0.947 * density);
+    const double solids = pow(7.7, quartz) * pow(quartz < 0.2 ? 3 : 2, 1 - quartz);
+    const double wet = pow(solids, 1 - porosity) * pow(0.57, porosity);
+    const double kersten = saturation > 0.1 ? fmax(log10(saturation) + 1, 0) : 0;
+    return dry + kersten * (wet - dry);
+}
+
+double ground_soil_capacity_j_m3k(double porosity, double saturation)
+{
+    return (1 - porosity) * 2.0e6 + porosity * saturation * 4.18e6;
+}
+
+/* ---- what the ground of each surface class is made of ---------------------------------------- */
+
+static const char *ground_kind_name(int kind)
+{
+    return kind == ground_forest_floor ? "forest_floor" : kind == ground_burnt ? "burnt" : surface_name((SurfaceClass)kind);
+}
+
+int ground_kind_find(const char *name)
+{
+    for (int k = 1; k < ground_kinds; k++)
+        if (strcmp(ground_kind_name(k), name) == 0) return k;
+    return -1;
+}
+
+static const struct {
+    const char *name;
+    size_t      offset;
+    double      low, high;
+} column[] = {
+    {"top_m", offsetof(GroundKind, layer[0].thickness_m), 0, 10},
+    {"top_w_mk", offsetof(GroundKind, layer[0].conductivity_w_mk), 0, 1e4},
+    {"top_j_m3k", offsetof(GroundKind, layer[0].capacity_j_m3k), 0, 1e7},
+    {"under_m", offsetof(GroundKind, layer[1].thickness_m), 0, 10},
+    {"under_w_mk", offsetof(GroundKind, layer[1].conductivity_w_mk), 0, 1e4},
+    {"under_j_m3k", offsetof(GroundKind, layer[1].capacity_j_m3k), 0, 1e7},
+    {"porosity", offsetof(GroundKind, porosity), 0, 0.95},
+    {"quartz", offsetof(GroundKind, quartz), 0, 1},
+    {"saturation", offsetof(GroundKind, saturation), 0, 1},
+    {"rock_w_mk", offsetof(GroundKind, rock_w_mk), 0, 100},
+    {"rock_j_m3k", offsetof(GroundKind, rock_j_m3k), 0, 1e7},
+    {"roughness_m", offsetof(GroundKind, roughness_m), 1e-5, 3},
+    {"leaf_s_m", offsetof(GroundKind, resistance_s_m), 0, 5000},
+};
+enum { columns = sizeof column / sizeof *column };
+
+static Status read_vapour(GroundKind *out, const Table *table, int row, int at)
+{
+    static const char *const name[] = {"dry", "soil", "leaves", "water"};
+    for (int v = 0; v < 4; v++)
+        if (strcmp(table_text(table, row, at), name[v]) == 0) {
+            out->vapour = (GroundVapour)v;
+            return STATUS_OK;
+        }
+    log_error("ground heat: vapour is dry, soil, leaves or water: file=%s line=%d vapour=%s", table->path,
+              table->line[row + 1], table_text(table, row, at));
+    return STATUS_BAD_VALUE;
+}
+
+/* Layers that are there, and none of them without its figures. */
+static bool layers_fit(GroundKind *kind)
+{
+    kind->layers = 0;
+    for (int l = 0; l < 2; l++) {
+        const ColumnLayer *at = &kind->layer[l];
+        if (at->thickness_m == 0) return l == 1 || kind->layer[1].thickness_m == 0;
+        if (!(at->conductivity_w_mk > 0) || !(at->capacity_j_m3k > 0)) return false;
+        kind->layers++;
+    }
+    return true;
+}
+
+static Status read_row(GroundKinds *out, const Table *table, int row, const int at[], const Materials *materials)
+{
+    const char *name = table_text(table, row, at[columns]), *sun = table_text(table, row, at[columns + 2]);
+    const int   k = ground_kind_find(name);
+    if (k < 0 || *out->kind[k].name) {
+        log_error("ground heat: %s: file=%s line=%d surface=%s", k < 0 ? "no such surface" : "surface repeated",
+                  table->path, table->line[row + 1], name);
+        return STATUS_BAD_VALUE;
+    }
+    GroundKind     *kind = &out->kind[k];
+    const Material *m = &materials->material[materials->surface[k < SURFACE_COUNT ? k : SURFACE_BARE_SOIL]];
+    for (int c = 0; c < columns; c++)
+        if (table_number((double *)((char *)kind + column[c].offset), table, row, at[c], column[c].low, column[c].high) != STATUS_OK)
+            return STATUS_BAD_VALUE;
+    if (read_vapour(kind, table, row, at[columns + 1]) != STATUS_OK) return STATUS_BAD_VALUE;
+    kind->absorptance = (double)m->solar_absorptance;
+    kind->emissivity  = 1 - (double)m->rho_lwir;
+    kind->melts_k     = k == SURFACE_SNOW ? 273.15 : INFINITY;
+    if (*sun && table_number(&kind->absorptance, table, row, at[columns + 2], 0, 1) != STATUS_OK) return STATUS_BAD_VALUE;
+    if (!layers_fit(kind) || (kind->porosity == 0 && !(kind->rock_w_mk > 0 && kind->rock_j_m3k > 0))) {
+        log_error("ground heat: a layer needs conductivity and capacity, and ground without pores rock_w_mk and "
+                  "rock_j_m3k: file=%s line=%d", table->path, table->line[row + 1]);
+        return STATUS_BAD_VALUE;
+    }
+    snprintf(kind->name, sizeof kind->name, "%s", name);
+    return STATUS_OK;
+}
+
+Status ground_kinds_open(GroundKinds *out, const char *path, const Materials *materials)
+{
+    Table       table = {0};
+    int         at[columns + 3];
+    const char *const text[] = {"surface", "vapour", "absorptance"};
+    *out = (GroundKinds){0};
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+    for (int c = 0; c < columns + 3; c++) {
+        const char *name = c < columns ? column[c].name : text[c - columns];
+        at[c] = table_column(&table, name);
+        if (at[c] >= 0) continue;
+        log_error("ground heat: column missing: file=%s column=%s", path, name);
+        status = STATUS_BAD_VALUE;
+    }
+    for (int row = 0; row < table.rows && status == STATUS_OK; row++) status = read_row(out, &table, row, at, materials);
+    table_close(&table);
+    for (int k = 1; k < ground_kinds && status == STATUS_OK; k++)
+        if (!*out->kind[k].name) {
+            log_error("ground heat: no row: file=%s surface=%s", path, ground_kind_name(k));
+            status = STATUS_BAD_VALUE;
+        }
+    out->kind[SURFACE_NONE] = out->kind[SURFACE_BARE_SOIL];
+    return status;
 }

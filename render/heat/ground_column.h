@@ -1,9 +1,12 @@
-/* render/heat/ground_column.h: one kind of ground under the weather: its layers, its water, its balance at the surface. */
+/* render/heat/ground_column.h: one kind of ground under the weather: its layers, its water, its balance at the
+ * surface. */
 #ifndef RENDER_HEAT_GROUND_COLUMN_H
 #define RENDER_HEAT_GROUND_COLUMN_H
 
 #include "render/heat/column.h"
 #include "render/heat/surface_flux.h"
+#include "render/materials/materials.h"
+#include "pitviper.h"
 
 typedef enum GroundVapour { GROUND_DRY, GROUND_SOIL, GROUND_LEAVES, GROUND_WATER } GroundVapour;
 
@@ -57,9 +60,36 @@ void   ground_column_start(GroundColumn *out, const GroundKind *kind, const Colu
 /* From before to after; both exposures the same piece of ground. */
 void   ground_column_step(GroundColumn *column, double tolerance_k, const GroundWeather *before,
                           const GroundWeather *after, const GroundExposure *exposure, double dt_s);
-/* What it absorbs, W/m2. */
-double ground_absorbed_w_m2(const GroundColumn *column, const GroundWeather *weather, const GroundExposure *exposure);
 /* Its balance there and then. */
 void   ground_flux(SurfaceFlux *out, const GroundColumn *column, const GroundWeather *weather, const GroundExposure *exposure);
+
+/* ---- what the ground of each surface class is made of (etc/ground_heat.csv) ------------------ */
+
+/* A SurfaceClass is its own kind; ground that only heat knows follows. */
+enum { ground_forest_floor = SURFACE_COUNT, ground_burnt, ground_kinds };
+
+typedef struct GroundKinds {
+    GroundKind kind[ground_kinds]; /* [SURFACE_NONE] is as bare soil */
+} GroundKinds;
+
+/* path: etc/ground_heat.csv. Every kind must have its row; failures are logged with file, line, column and range. */
+Status      ground_kinds_open(GroundKinds *out, const char *path, const Materials *materials);
+/* Soil and what grows on it, that tracks and wheels tear open. */
+static inline bool ground_kind_loosens(int kind)
+{
+    return (kind >= SURFACE_GRASS && kind <= SURFACE_TRACK) || kind == SURFACE_SCRUB || kind == SURFACE_WETLAND ||
+           kind == ground_forest_floor;
+}
+int         ground_kind_find(const char *name); /* -1: none */
+
+/* ---- soil ------------------------------------------------------------------------------------ */
+
+/* Conductivity and heat capacity of soils by their water, and what the water at the top does. */
+
+/* porosity: 0.3 .. 0.9 of the volume; quartz: of the solids, 0 .. 1; saturation: of the pores with water, 0 .. 1.
+ * Johansen (1975), as in Peters-Lidard et al., J. Atmos. Sci. 55, 1998: W/(m K), within 25 % of most soils. */
+double ground_soil_conductivity_w_mk(double porosity, double quartz, double saturation);
+/* Of the volume, J/(m3 K): 2.0e6 of minerals, 4.18e6 of water (de Vries 1963). */
+double ground_soil_capacity_j_m3k(double porosity, double saturation);
 
 #endif

@@ -1,5 +1,5 @@
 /* render/heat/heat.c: see heat.h. */
-#include "render/heat/heat.h"
+#include "render/heat/heat_private.h"
 
 #include "pitviper_simd.h"
 
@@ -11,57 +11,6 @@ HeatConfig heat_default_config(void)
 }
 
 static const double day_s = 86400, slot_s = 1800;
-enum { history = 2048 }; /* steps whose surface is remembered: 34 h of 60 s */
-
-/* One kind: its columns, facet by facet, then by n_up in the shade, without sun, and one that sees no sky. */
-typedef struct KindState {
-    GroundColumn *column;
-    float         falls_w_m2k[history]; /* of the level column, by step */
-} KindState;
-
-typedef struct Sky { /* of one step of the past */
-    double direct_w_m2, diffuse_w_m2, loss_w_m2; /* loss: of a black level plane of air temperature to the sky */
-} Sky;
-
-typedef struct Interval {
-    int64_t from, to; /* times of the grid, from < to */
-} Interval;
-
-/* The next step, as far as it has been worked at. */
-typedef struct Ahead {
-    int           part, intervals;
-    GroundWeather after;
-    Interval      interval[heat_past];
-    HeatPast      past;
-} Ahead;
-
-struct Heat {
-    GroundKinds   kinds;
-    HeatConfig    config;
-    Column        layers[ground_kinds];
-    ColumnFactors factors[2][ground_kinds]; /* of step_s, and of half hours */
-    int           columns;              /* a kind */
-    KindState     state[ground_kinds];
-    GroundColumn  level[2][ground_kinds]; /* level ground at the times of the tables */
-    Ahead        *ahead;
-    GroundColumn *begun;                /* all columns at the beginning of the exercise */
-    float         begun_falls[ground_kinds][history];
-    Sky           sky[history], begun_sky[history];
-    int64_t       index, begun_index;   /* time of the columns: unix = index * step_s */
-    int64_t       shown;                /* of table[1]; the columns may be a step ahead of it */
-    int64_t       first;                /* of the spin-up */
-    GroundWeather weather[2];           /* at the columns' time, and a step before */
-    GroundHeatTable *table;             /* [2]: a step before, and at shown; past alike */
-    HeatPast     *past;
-    int           slots, slot_of[heat_day_slots]; /* place of each half hour of UTC; -1: night */
-    float         slot_d_enu[3][heat_day_slots];
-    int           kind_of[SURFACE_COUNT];
-    int           branches;
-    BranchKind    branch_kind[branch_most_kinds];
-    Branch        branch[branch_most_kinds][branch_radii][2], begun_branch[branch_most_kinds][branch_radii][2];
-    double        spent_s;
-    int           steps;
-};
 
 /* ---- columns ----------------------------------------------------------------------------------- */
 
@@ -103,8 +52,6 @@ static GroundWeather no_sun(const GroundWeather *w)
     return out;
 }
 
-/* Place of a time of the grid, before 1970 too, in what is remembered. */
-static int place_of(int64_t index) { return (int)((index % history + history) % history); }
 
 /* In steps. */
 static int64_t half_hour(const Heat *h) { return (int64_t)fmax(1, round(slot_s / h->config.step_s)); }
@@ -140,7 +87,7 @@ static void step_branches(Heat *h, const GroundWeather *after, double dt_s)
     const double grass_k = h->state[SURFACE_GRASS].column[h->config.facets * h->config.facets / 2].state.temp_k[0];
     for (int k = 0; k < h->branches; k++)
         for (int r = 0; r < branch_radii; r++)
-            for (int shade = 0; shade < 2; shade++) branch_step(&h->branch[k][r][shade], after, shade ? 0 : 1, grass_k, dt_s);
+            for (int shade = 0; shade < 2; shade++) heat_branch_step(&h->branch[k][r][shade], after, shade ? 0 : 1, grass_k, dt_s);
 }
 
 static void run(const Heat *h, PoolTask *task, void *user)
@@ -182,106 +129,11 @@ static void advance(Heat *h, int steps)
     remember(h, steps);
 }
 
-/* ---- responses --------------------------------------------------------------------------------- */
-
-typedef struct Linear {
-    double falls_w_m2k;
-} Linear;
-static const double pulse_base_k = 1000; /* a linear law knows no zero; so that no temperature falls below it */
-
-static double linear_flux(double *falls, double temp_k, const void *law)
-{
-    const Linear *l = law;
-    *falls = l->falls_w_m2k;
-    return -l->falls_w_m2k * (temp_k - pulse_base_k);
-}
-static void linear_law(void *law, double share, const void *user)
-{
-    (void)share;
-    *(Linear *)law = *(const Linear *)user;
-}
-
-/* Intervals of the past, newest first: ten minutes for three hours, half hours to six, hours to a day and more; no less
- * than a step. */
-static int past_intervals(Interval out[heat_past], const Heat *h)
-{
-    const double step_s = h->config.step_s;
-    int64_t      to = h->index;
-    int          count = 0;
-    while (count < heat_past) {
-        const double  age_s = (double)(h->index - to) * step_s;
-        const double  wide_s = age_s < 3 * 3600 ? 600 : age_s < 6 * 3600 ? 1800 : 3600;
-        const int64_t wide = (int64_t)fmax(1, round(wide_s / step_s));
-        if (age_s >= 30 * 3600 || to - wide < h->first || h->index - to + wide >= history) break;
-        out[count++] = (Interval){to - wide, to};
-        to -= wide;
-    }
-    return count;
-}
-
-typedef struct PastJob {
-    Heat           *heat;
-    const Interval *interval;
-    int             count;
-    HeatPast       *past;
-} PastJob;
-
-/* K now for 1 W/m2 over each interval: what a pulse of heat, marched back in time, gives off through the surface. */
-static void respond(void *user, int worker, int kind)
-{
-    const PastJob *job = user;
-    const Heat    *h = job->heat;
-    const Column  *c = &h->layers[kind];
-    const GroundKind *k = &h->kinds.kind[kind];
-    ColumnState    state;
-    (void)worker;
-    if (kind == SURFACE_NONE) return;
-    column_start(&state, c, pulse_base_k);
-    const double pulse_j_m2 = 1e4;
-    state.temp_k[0] += pulse_j_m2 / c->capacity_j_m2k[0];
-    for (int i = 0; i < job->count; i++) {
-        const Interval *p = &job->interval[i];
-        double          falls = 0, direct = 0, diffuse = 0, loss = 0;
-        const double    count = (double)(p->to - p->from + 1);
-        for (int64_t t = p->from; t <= p->to; t++) {
-            const Sky *sky = &h->sky[place_of(t)];
-            falls += (double)h->state[kind].falls_w_m2k[place_of(t)] / count;
-            direct += sky->direct_w_m2 / count, diffuse += sky->diffuse_w_m2 / count, loss += sky->loss_w_m2 / count;
-        }
-        const double dt_s = (double)(p->to - p->from) * h->config.step_s;
-        const ColumnBoundary b = {linear_flux, linear_law, &(Linear){falls}, 0, 1e-4 * pulse_j_m2 / c->capacity_j_m2k[0]};
-        const double before = state.heat_j_m2;
-        column_step(&state, c, NULL, &b, dt_s);
-        const double per_w_m2 = (before - state.heat_j_m2) / falls / pulse_j_m2;
-        job->past->watt_k[kind][i] = (float)per_w_m2;
-        job->past->sun_k[kind][i] = (float)(per_w_m2 * k->absorptance * direct);
-        job->past->sky_k[kind][i] = (float)(per_w_m2 * (k->absorptance * diffuse - k->emissivity * loss));
-    }
-}
-
-/* All but the responses. */
-static int begin_past(Heat *h, HeatPast *out, Interval interval[heat_past])
-{
-    const int count = past_intervals(interval, h);
-    *out = (HeatPast){.count = count};
-    for (int i = 0; i < count; i++) {
-        const Interval *p = &interval[i];
-        out->unix_s[i] = 0.5 * (double)(p->from + p->to) * h->config.step_s;
-        out->span_s[i] = (double)(p->to - p->from) * h->config.step_s;
-        GroundWeather w;
-        h->config.weather(&w, out->unix_s[i], h->config.user);
-        memcpy(out->sun_d_enu[i], w.sun_d_enu, sizeof w.sun_d_enu);
-    }
-    for (int k = 1; k < ground_kinds; k++) /* of the first element: its half and its conductance have the same size */
-        out->effusivity[k] = (float)sqrt(2 * h->layers[k].capacity_j_m2k[0] * h->layers[k].conductance_w_m2k[0]);
-    return count;
-}
-
 static void fill_past(Heat *h, HeatPast *out)
 {
     Interval  interval[heat_past];
-    const int count = begin_past(h, out, interval);
-    run(h, respond, &(PastJob){h, interval, count, out});
+    const int count = heat_past_begin(h, out, interval);
+    run(h, heat_past_respond, &(PastJob){h, interval, count, out});
 }
 
 /* ---- tables ------------------------------------------------------------------------------------ */
@@ -304,7 +156,7 @@ static void fill_table(Heat *h, GroundHeatTable *out, const HeatPast *past)
     }
     for (int k = 0; k < h->branches; k++)
         for (int r = 0; r < branch_radii; r++)
-            for (int shade = 0; shade < 2; shade++) branch_sides(&out->branch[k][r][shade], &h->branch[k][r][shade]);
+            for (int shade = 0; shade < 2; shade++) heat_branch_sides(&out->branch[k][r][shade], &h->branch[k][r][shade]);
     for (int i = 0; i < past->count; i++) {
         /* by halves of an hour: what is longer falls on several */
         const int parts = (int)fmax(1, round(past->span_s[i] / slot_s));
@@ -335,9 +187,9 @@ static void work_ahead(Heat *h, int parts)
             h->weather[0] = h->weather[1];
             h->weather[1] = a->after;
             remember(h, 1);
-            a->intervals = begin_past(h, &a->past, a->interval);
+            a->intervals = heat_past_begin(h, &a->past, a->interval);
         } else {
-            respond(&(PastJob){h, a->interval, a->intervals, &a->past}, 0, a->part - ground_kinds - 1);
+            heat_past_respond(&(PastJob){h, a->interval, a->intervals, &a->past}, 0, a->part - ground_kinds - 1);
         }
     }
     h->spent_s += wall_clock_s() - begun_s;
@@ -406,7 +258,7 @@ static void start_columns(Heat *h)
     }
     for (int k = 0; k < h->branches; k++)
         for (int r = 0; r < branch_radii; r++)
-            for (int shade = 0; shade < 2; shade++) branch_start(&h->branch[k][r][shade], &h->branch_kind[k], branch_radius_m[r], air_k);
+            for (int shade = 0; shade < 2; shade++) heat_branch_start(&h->branch[k][r][shade], &h->branch_kind[k], branch_radius_m[r], air_k);
 }
 
 static void keep_begun(Heat *h)

@@ -1,4 +1,61 @@
-/* render/heat/heat.h: temperatures of the ground over an exercise: what stays of sun, shade and wind of the hours before.
+/* render/heat/heat.h: the heat of the ground in a frame: its columns, trunks and branches, shade of the hours before,
+ * marks. */
+#ifndef RENDER_HEAT_HEAT_H
+#define RENDER_HEAT_HEAT_H
+
+#include "render/heat/ground_column.h"
+#include "terrain/elevation/elevation.h"
+#include "entities/table/snapshot.h"
+#include "terrain/earth/geodesy.h"
+
+/* ---- trunks and branches --------------------------------------------------------------------- */
+
+/* Heat of trunks and branches: conduction in a round body by its diameter and side.
+ *
+ * Temperature over the sides of a cylinder in three parts, each of which conducts by itself: the mean, the side towards
+ * the sun or sky (cosine), and how much narrower the sunlit side is than that (cosine of twice the angle, of upright
+ * trunks). Rings of the radius, backward Euler. Thin branches are taken to point everywhere, those thicker than 30 mm to
+ * stand upright. The film is that of a cylinder across the wind (Churchill & Bernstein, J. Heat Transfer 99, 1977).
+ *
+ * Error: test_branch.c, against finite volumes over rings and sides. */
+
+enum { branch_radii = 5, branch_rings = 8, branch_most_kinds = 24 };
+static const double branch_radius_m[branch_radii] = {0.004, 0.012, 0.04, 0.12, 0.3};
+
+/* Wood under its bark. */
+typedef struct BranchKind {
+    int    material; /* row of the table of materials: how hits name it */
+    double conductivity_w_mk, capacity_j_m3k, absorptance, emissivity;
+} BranchKind;
+
+/* Temperature of a side: mean + side . n + twice[0] (nx^2 - ny^2) + twice[1] 2 nx ny, K. */
+typedef struct BranchSides {
+    float mean_k, side_k[3], twice_k[2];
+} BranchSides;
+
+typedef struct Branch {
+    const BranchKind *kind;
+    double radius_m;
+    double part[6][branch_rings]; /* mean, side, twice; outermost ring first */
+    double face_k[6];             /* of the bark's face */
+} Branch;
+
+void heat_branch_start(Branch *out, const BranchKind *kind, double radius_m, double temp_k);
+/* sun: share of the direct sun that it gets; ground_k: of what it sees below. */
+void heat_branch_step(Branch *branch, const GroundWeather *after, double sun, double ground_k, double dt_s);
+void heat_branch_sides(BranchSides *out, const Branch *branch);
+
+static inline double branch_side_k(const BranchSides *s, const double n[3])
+{
+    return (double)s->mean_k + (double)s->side_k[0] * n[0] + (double)s->side_k[1] * n[1] + (double)s->side_k[2] * n[2] +
+           (double)s->twice_k[0] * (n[0] * n[0] - n[1] * n[1]) + (double)s->twice_k[1] * 2 * n[0] * n[1];
+}
+/* W/(m2 K) */
+double heat_branch_film_w_m2k(double radius_m, double wind_mps);
+
+/* ---- the ground over an exercise ------------------------------------------------------------- */
+
+/* Temperatures of the ground over an exercise: what stays of sun, shade and wind of the hours before.
  *
  * Columns. Each kind of ground is conduction in layers (ground_column.h) under the weather, for normals over the whole
  * upper hemisphere: in the open, in the shade of the direct sun, without any sun, and beneath something that hides the sky.
@@ -12,11 +69,6 @@
  * that shade all day is exactly the column in the shade, so that only the order of the hours is linear.
  *
  * Errors: rows of `bench precision` (step, elements, facets, hours of the past), tests/render/test_heat.c. */
-#ifndef RENDER_HEAT_HEAT_H
-#define RENDER_HEAT_HEAT_H
-
-#include "render/heat/branch.h"
-#include "render/heat/ground_kinds.h"
 
 /* Normals: octahedral, a square of facets x facets nodes of which the middle is level and the edge are walls. ups:
  * equal steps of n_up for what the sun's side does not change. */
@@ -107,5 +159,88 @@ void   heat_scales(double *sun, double *sky, const HeatNow *now, int kind);
 
 /* Share of the past direct sun on a normal that shade took: shadow[slot], 0 .. 255, are the shares of each slot. */
 double heat_taken(const HeatNow *now, int kind, const double n_enu[3], const uint8_t *shadow);
+
+/* ---- shade of relief and plants -------------------------------------------------------------- */
+
+/* Where relief and standing plants shade the ground, at every half hour of a day.
+ *
+ * A grid over the finest level of the terrain. For each direction to the sun the height below which it is shaded is
+ * carried from cell to cell away from the sun (one pass over the grid, straight between two cells of the row before);
+ * among plants, the direct light that their leaves let through is added up along the ray. Shares of a cell, so that edges
+ * are as soft as a cell is wide: narrower shadows, of single trunks and boulders, are not in it. */
+
+typedef struct ShadowMap ShadowMap;
+
+/* Plants of a place: leaf area index between base and top over the ground, 0: none; and the share of an even sky that
+ * reaches the ground. */
+typedef struct ShadowStand {
+    float leaf_area, base_m, top_m, open;
+} ShadowStand;
+typedef void ShadowPlants(ShadowStand *out, const void *user, double x_m, double y_m);
+
+enum { shadow_most_slots = 48, shadow_most_cells = 4000000 };
+
+/* cell_m: made larger where the grid would have more than shadow_most_cells. d_enu: towards the sun, d_enu[2] > 0. plants:
+ * NULL: none. pool: NULL: one thread; the same bits either way. */
+Status heat_shadow_create(ShadowMap **out, const Elevation *elevation, double cell_m, int slots,
+                         float d_enu[3][shadow_most_slots], ShadowPlants *plants, const void *user, Pool *pool);
+void   heat_shadow_destroy(ShadowMap *map); /* accepts NULL */
+/* Shares in the shade at a place, of 255, shadow[slots, padded to a multiple of 8 with 0]; and the share of its sky that
+ * is open past plants. Beyond the grid: open. */
+void   heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const ShadowMap *map, double x_m, double y_m);
+size_t heat_shadow_bytes(const ShadowMap *map);
+double heat_shadow_cell_m(const ShadowMap *map);
+
+/* ---- marks ----------------------------------------------------------------------------------- */
+
+/* What entities left in the ground's heat: shadows of those that stood there, trails, burnt ground.
+ *
+ * A stand hid the sun along its box's shadow, and sky, while it stood: each past interval of HeatPast that it overlaps
+ * gives kelvins by the kind's response, scaled as the shade of heat.h is: sun hidden all day, or all of the sky hidden, are the
+ * columns that see none. A track was rubbed warm once, by a pulse of heat that the same response lets
+ * fade, and lies loosened: some of the way to ploughed ground, for good. A burst burnt its ground but for the crater, which is loose soil,
+ * and left heat.
+ * The exhaust of what stands warms the ground that it reaches (vehicle_load.h, in still air: what reaches the ground does so within
+ * metres of the outlet, before a wind bends it): a flux by the film of its speed (vehicle_heat.h) that falls as the ground warms, through
+ * the kind's response; ground that the sun has made warmer than the gas is not cooled, and the gas' radiation is left out.
+ * Estimates: the loosened share (0.6 of tracks, 0.3 of wheels), the burnt edge. */
+
+typedef struct MarkHeat MarkHeat;
+
+/* Of the snapshot's marks, in the arena. exercise_s: Unix time of exercise time 0. *out NULL: there are none. */
+Status heat_marks_create(MarkHeat **out, const GroundMarks *marks, const LocalFrame *frame, double exercise_s, double unix_s,
+                        const HeatNow *now, Arena *arena);
+
+/* At a place of the ground: its kind may be mixed with another, and its temperature changed. */
+typedef struct MarkedGround {
+    double add_k;      /* to the temperature of the kind */
+    double loose;      /* share of ploughed ground */
+    double burnt;      /* share of burnt ground */
+} MarkedGround;
+
+/* lit: share of the past sun that relief and plants left. False: no marks near; out is zero then. */
+bool heat_marks_at(MarkedGround *out, const MarkHeat *marks, int kind, const double p_enu[3], const double n_enu[3], double lit);
+
+/* ---- the ground in one frame ----------------------------------------------------------------- */
+
+typedef struct HeatScene {
+    const HeatNow   *now;
+    const ShadowMap *shadow; /* NULL: nothing shaded it */
+    const MarkHeat  *marks;  /* NULL: none */
+} HeatScene;
+
+/* Places of the ground side by side: class, place, normal, and absorptance over that of the kind. */
+typedef struct GroundPlaces {
+    int    surface[heat_lanes];
+    double p_enu[3][heat_lanes], n_enu[3][heat_lanes], dark[heat_lanes];
+} GroundPlaces;
+
+/* Temperatures of the ground, K, at the height of the weather's thermometer, and how far the sun of the past lifted them. A
+ * lane's depends on its place alone. */
+void heat_scene_grounds_k(double temp_k[heat_lanes], double lifted_k[heat_lanes], const HeatScene *scene, const GroundPlaces *at);
+
+/* The same of one place. */
+double heat_scene_ground_k(double *lifted_k, const HeatScene *scene, int surface, const double p_enu[3], const double n_enu[3],
+                           double dark);
 
 #endif

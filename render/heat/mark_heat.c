@@ -1,7 +1,7 @@
-/* render/heat/mark_heat.c: see mark_heat.h. */
-#include "render/heat/mark_heat.h"
+/* render/heat/mark_heat.c: see heat.h. */
+#include "render/heat/heat.h"
 
-#include "render/heat/jet_path.h"
+#include "render/heat/vehicle_load.h"
 #include "render/heat/surface_flux.h"
 
 static const double cell_m = 32, least_sun = 0.1; /* lower suns cast no lasting shadow */
@@ -156,7 +156,7 @@ static void take_burn(MarkHeat *m, const GroundBurn *b, const LocalFrame *frame,
     if (near_enough(out->p_enu)) put_square(m, m->stands + m->tracks + m->burns++, out->p_enu, out->radius_m);
 }
 
-Status mark_heat_create(MarkHeat **out, const GroundMarks *marks, const LocalFrame *frame, double exercise_s, double unix_s,
+Status heat_marks_create(MarkHeat **out, const GroundMarks *marks, const LocalFrame *frame, double exercise_s, double unix_s,
                         const HeatNow *now, Arena *arena)
 {
     const int64_t all = (int64_t)marks->stands + marks->tracks + marks->burns;
@@ -311,7 +311,7 @@ static void add_burn(MarkedGround *out, const MarkHeat *m, const Burn *b, const 
     out->add_k += share * pulse_k(&m->now->past[1], SURFACE_PLOUGHED, b->heat_j_m2, m->unix_s - b->t_s);
 }
 
-bool mark_heat_at(MarkedGround *out, const MarkHeat *m, int kind, const double p_enu[3], const double n_enu[3], double lit)
+bool heat_marks_at(MarkedGround *out, const MarkHeat *m, int kind, const double p_enu[3], const double n_enu[3], double lit)
 {
     const int32_t x = (int32_t)floor(p_enu[0] / cell_m), y = (int32_t)floor(p_enu[1] / cell_m);
     const double  from_enu[3] = {p_enu[0] + 0.02 * n_enu[0], p_enu[1] + 0.02 * n_enu[1], p_enu[2] + 0.02 * n_enu[2]};

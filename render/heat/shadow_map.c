@@ -1,5 +1,5 @@
-/* render/heat/shadow_map.c: see shadow_map.h. */
-#include "render/heat/shadow_map.h"
+/* render/heat/shadow_map.c: see heat.h. */
+#include "render/heat/heat.h"
 
 #include <stdlib.h>
 
@@ -139,7 +139,7 @@ static void run(Pool *pool, int count, PoolTask *task, void *user)
         for (int i = 0; i < count; i++) task(user, 0, i);
 }
 
-Status shadow_map_create(ShadowMap **out, const Elevation *elevation, double cell_m, int slots,
+Status heat_shadow_create(ShadowMap **out, const Elevation *elevation, double cell_m, int slots,
                          float d_enu[3][shadow_most_slots], ShadowPlants *plants, const void *user, Pool *pool)
 {
     if (elevation->level_count < 1 || !(cell_m > 0) || slots < 0 || slots > shadow_most_slots) return STATUS_BAD_VALUE;
@@ -170,11 +170,11 @@ Status shadow_map_create(ShadowMap **out, const Elevation *elevation, double cel
     free(m->stand);
     m->z_m = NULL, m->stand = NULL;
     if (status == STATUS_OK) *out = m;
-    else shadow_map_destroy(m);
+    else heat_shadow_destroy(m);
     return status;
 }
 
-void shadow_map_destroy(ShadowMap *m)
+void heat_shadow_destroy(ShadowMap *m)
 {
     if (!m) return;
     free(m->z_m);
@@ -184,7 +184,7 @@ void shadow_map_destroy(ShadowMap *m)
     free(m);
 }
 
-void shadow_map_at(uint8_t shadow[shadow_most_slots], double *open, const ShadowMap *m, double x_m, double y_m)
+void heat_shadow_at(uint8_t shadow[shadow_most_slots], double *open, const ShadowMap *m, double x_m, double y_m)
 {
     const double x = (x_m - m->x0_m) / m->cell_m, y = (y_m - m->y0_m) / m->cell_m;
     if (!(x >= 0 && y >= 0 && x <= m->nx - 1 && y <= m->ny - 1)) {
@@ -202,5 +202,5 @@ void shadow_map_at(uint8_t shadow[shadow_most_slots], double *open, const Shadow
     *open = (m->open[cell] * w00 + m->open[cell + 1] * w01 + m->open[above] * w10 + m->open[above + 1] * w11) / (255.0 * 256);
 }
 
-size_t shadow_map_bytes(const ShadowMap *m) { return (size_t)m->nx * (size_t)m->ny * (size_t)(m->stride + 1); }
-double shadow_map_cell_m(const ShadowMap *m) { return m->cell_m; }
+size_t heat_shadow_bytes(const ShadowMap *m) { return (size_t)m->nx * (size_t)m->ny * (size_t)(m->stride + 1); }
+double heat_shadow_cell_m(const ShadowMap *m) { return m->cell_m; }

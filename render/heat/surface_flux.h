@@ -1,5 +1,5 @@
-/* render/heat/surface_flux.h: heat into a surface in the open: what it absorbs, less what it radiates, gives to the air and
- * evaporates.
+/* render/heat/surface_flux.h: heat into a surface in the open: what it absorbs, less what it radiates, gives to the
+ * air and evaporates.
  *
  * Air: bulk transfer between roughness and the height of measurement, with stability after Louis, Tiedtke & Geleyn
  * (ECMWF workshop on planetary boundary layer parameterization, 1982); roughness for heat after Zilitinkevich (1995)

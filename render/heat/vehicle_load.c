@@ -1,7 +1,6 @@
 /* render/heat/vehicle_load.c: see vehicle_load.h. */
 #include "render/heat/vehicle_load.h"
 
-#include "render/heat/jet_path.h"
 #include "render/heat/surface_flux.h"
 
 static const double leak_s = 25000;        /* engine that has stopped, and a cabin: to the air through its bay; estimate */
@@ -163,7 +162,7 @@ static void add_gas(VehicleMoment *m, const JetPath *path)
 {
     for (int i = 0; i < m->shape->patches->count; i++) {
         float gas_k, gas_mps;
-        patch_view_gas(&gas_k, &gas_mps, &m->pose, i, path);
+        vehicle_view_gas(&gas_k, &gas_mps, &m->pose, i, path);
         if (gas_k > m->gas_k[i]) m->gas_k[i] = gas_k, m->gas_mps[i] = gas_mps;
     }
 }
@@ -223,5 +222,5 @@ void vehicle_links(const VehicleShape *shape, const EntityDrives *d)
         shape->conductance_w_k[skin->inside_link] = w_m2k * skin->area_m2;
     }
     if (shape->fuel_link >= 0) shape->conductance_w_k[shape->fuel_link] = shape->machine.fuel_w_k * (double)d->engine;
-    network_conductances(shape->network, shape->conductance_w_k);
+    heat_network_conductances(shape->network, shape->conductance_w_k);
 }

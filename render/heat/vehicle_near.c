@@ -1,13 +1,14 @@
-/* render/heat/vehicle_near.c: see vehicle_near.h. */
-#include "render/heat/vehicle_near.h"
+/* render/heat/vehicle_near.c: what neighbours do to the heat of an entity (vehicle_state.h). */
 
+#include "render/heat/vehicle_state.h"
 #include "render/heat/surface_flux.h"
+#include "render/heat/vehicle_load.h"
 
 #include <stdlib.h>
 
 static const double jet_radii = 400; /* of an outlet, how far jet_path goes at most */
 
-void near_scene_bodies(NearScene *scene)
+void vehicle_near_bodies(NearScene *scene)
 {
     for (int i = 0; i < scene->count; i++) {
         const SnapshotEntity *e = &scene->snapshot->entity[scene->state[i]->index];
@@ -78,7 +79,7 @@ Status vehicle_near_check(bool *changed, int *left_out, const NearScene *scene, 
     const int     patches = scene->shape[s->model].patches->count;
     Neighbours    found;
     NearKey       key[near_most];
-    neighbours_find(&found, scene->body, scene->count, me, sun_d_enu, false);
+    vehicle_neighbours_find(&found, scene->body, scene->count, me, sun_d_enu, false);
     *left_out = found.left_out;
     *changed  = false;
     if (found.count == 0) {
@@ -150,7 +151,7 @@ void vehicle_near_look(VehicleState *s, const VehicleMoment *m, const PatchPose 
 {
     VehicleNear *near = s->near;
     const int    patches = m->shape->patches->count;
-    patch_view_near(&near->next[near->looked], &m->pose, near->looked, pose, near->next_seen);
+    vehicle_view_near(&near->next[near->looked], &m->pose, near->looked, pose, near->next_seen);
     if (++near->looked < patches) return;
     memcpy(near->view, near->next, (size_t)patches * sizeof *near->view);
     memcpy(near->id, near->next_id, sizeof near->id);
@@ -224,7 +225,7 @@ Status vehicle_near_moment(NearWork *work, VehicleMoment *m, const NearScene *sc
                            Arena *arena)
 {
     Neighbours found;
-    neighbours_find(&found, scene->body, scene->count, me, m->place.sun_d_enu, past);
+    vehicle_neighbours_find(&found, scene->body, scene->count, me, m->place.sun_d_enu, past);
     Status status = shine(m, scene, scene->state[me], t_s, past, arena);
     *work = (NearWork){0};
     m->jets = m->shades = 0;

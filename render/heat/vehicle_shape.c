@@ -1,5 +1,5 @@
-/* render/heat/vehicle_shape.c: see vehicle_shape.h. */
-#include "render/heat/vehicle_shape.h"
+/* render/heat/vehicle_shape.c: see vehicle_load.h. */
+#include "render/heat/vehicle_load.h"
 
 #include <stdlib.h>
 
@@ -156,7 +156,7 @@ Status vehicle_shape_create(VehicleShape *out, const Patches *patches, const Mod
         add_fuel(&s);
         find_prints(&s);
         find_guns(&s);
-        status = network_create(&s.network, &(NetworkShape){s.nodes, s.links, 0, s.capacity_j_k, s.link, NULL});
+        status = heat_network_create(&s.network, &(NetworkShape){s.nodes, s.links, 0, s.capacity_j_k, s.link, NULL});
     }
     if (status == STATUS_OK) *out = s;
     else vehicle_shape_destroy(&s);
@@ -165,7 +165,7 @@ Status vehicle_shape_create(VehicleShape *out, const Patches *patches, const Mod
 
 void vehicle_shape_destroy(VehicleShape *s)
 {
-    network_destroy(s->network);
+    heat_network_destroy(s->network);
     free(s->capacity_j_k);
     free(s->link);
     free(s->conductance_w_k);

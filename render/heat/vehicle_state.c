@@ -124,7 +124,7 @@ static void ahead_in_enu(double ahead_enu[3], const double r_enu_from_body[9])
 
 bool vehicle_state_sees(const VehicleState *s, const VehicleMoment *m)
 {
-    static const double near_m = 0.3, high_m = 1.5; /* above it nothing is under it: patch_view.c */
+    static const double near_m = 0.3, high_m = 1.5; /* above it nothing is under it: heat_patches.c */
     double              up_body[3];
     up_in_body(up_body, m->pose.r_enu_from_body);
     const double above_m = fmin(m->place.above_m, high_m), viewed_m = fmin(s->view_above_m, high_m);

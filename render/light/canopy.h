@@ -23,7 +23,7 @@
 
 #include "render/air/air.h"
 #include "render/materials/materials.h"
-#include "render/plants/plants.h"
+#include "render/trace/plants/plants.h"
 #include "render/scene/hits.h"
 #include "terrain/woods/woods.h"
 

@@ -1,9 +1,9 @@
 /* render/light/far_woods.c: see far_woods.h. */
 #include "render/light/far_woods.h"
 
-#include "render/heat/heat_scene.h"
+#include "render/heat/heat.h"
 #include "render/light/optical.h"
-#include "render/light/plant_heat.h"
+#include "render/light/thermal.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,7 +45,7 @@ Status far_woods_create(FarWoods **out, const Woods *woods, const Forest *forest
     FarWoods *far = calloc(1, sizeof *far);
     Status    status = far ? STATUS_OK : STATUS_NO_MEMORY;
     for (int k = 0; k < far_stands * far_densities && status == STATUS_OK; k++)
-        status = stand_create(&far->stand[k / far_densities][k % far_densities], class_of[k / far_densities],
+        status = far_stand_create(&far->stand[k / far_densities][k % far_densities], class_of[k / far_densities],
                               density_of[k % far_densities], forest, materials, leaves, pool);
     if (status == STATUS_OK) status = add_rows(far, materials);
     if (status == STATUS_OK) far->woods = woods, *out = far;
@@ -56,7 +56,7 @@ Status far_woods_create(FarWoods **out, const Woods *woods, const Forest *forest
 void far_woods_destroy(FarWoods *far)
 {
     if (!far) return;
-    for (int k = 0; k < far_stands * far_densities; k++) stand_destroy(far->stand[k / far_densities][k % far_densities]);
+    for (int k = 0; k < far_stands * far_densities; k++) far_stand_destroy(far->stand[k / far_densities][k % far_densities]);
     free(far);
 }
 
@@ -110,7 +110,7 @@ static Look look_of(const Sunlight *s, const WoodStand *stand, int view, int azi
 {
     Look            look = {.stand = stand, .view = &stand->view[view]};
     const double    x = s->air->light.sun_d_enu[0], y = s->air->light.sun_d_enu[1];
-    const double    towards_rad = atan2(y, x) + stand_azimuth(azimuth); /* the eye */
+    const double    towards_rad = atan2(y, x) + far_stand_azimuth(azimuth); /* the eye */
     const StandLit *a = &stand->lit[view][s->sun][azimuth], *b = &stand->lit[view][s->sun + 1][azimuth];
     const double share = s->sun_share, past = past_thickets(s->sin_sun);
     look.lit = (StandLit){past * between(a->leaf, b->leaf, share), past * between(a->leaf_front, b->leaf_front, share),
@@ -180,7 +180,7 @@ static double ground_k(const Look *l, const Air *air, int surface)
     if (!air->heat->shadow) return heat_ground_k(now, kind, level, 0, 1, 1);
     for (int k = 0; k < now->slots; k++) {
         double    share;
-        const int at = stand_at_sun(&share, asin(clamp((double)now->slot_d_enu[2][k], 0, 1)));
+        const int at = far_stand_at_sun(&share, asin(clamp((double)now->slot_d_enu[2][k], 0, 1)));
         shadow[k] = (uint8_t)lround(255 * (1 - between(l->view->ground_through[at], l->view->ground_through[at + 1], share)));
     }
     return heat_ground_k(now, kind, level, heat_taken(now, kind, level, shadow), l->view->ground_open, 1);
@@ -208,7 +208,7 @@ static Warm warm_of(const Look *l, const Air *air, int surface, bool sunlit)
     Warm         w = {.bark_k = air_k};
     w.leaf[1] = sunlit && air->light.sun_d_enu[2] > 0 ? l->lit.leaf : 0;
     w.leaf[0] = l->view->leaf.share - w.leaf[1];
-    for (int k = 0; k < 2; k++) w.leaf_k[k] = leaf_temp_k(&air->light, &l->stand->leaf, air_k, l->view->leaf.open, k);
+    for (int k = 0; k < 2; k++) w.leaf_k[k] = thermal_leaf_k(&air->light, &l->stand->leaf, air_k, l->view->leaf.open, k);
     if (air->heat && air->heat->now->branches > 0) w.bark_k = bark_k(l, air->heat->now);
     w.ground_k = ground_k(l, air, surface);
     return w;
@@ -276,7 +276,7 @@ Status far_woods_frame(FarWoodsFrame **out, const FarWoods *far, const Air *air,
     FarWoodsFrame *f = arena_alloc(arena, 1, sizeof *f);
     if (!f) return STATUS_NO_MEMORY;
     Sunlight s = {.air = air, .materials = materials, .sin_sun = fmax(air->light.sun_d_enu[2], 0)};
-    s.sun = stand_at_sun(&s.sun_share, asin(clamp(air->light.sun_d_enu[2], 0, 1)));
+    s.sun = far_stand_at_sun(&s.sun_share, asin(clamp(air->light.sun_d_enu[2], 0, 1)));
     f->far = far;
     for (int c = 0; c < optical_channel_count; c++)
         f->sky_w_m2[c] = air->light.sky_w_m2[c], f->sun_w_m2[c] = air->light.sun_w_m2[c] * s.sin_sun;
@@ -321,7 +321,7 @@ static void look_there(FarNode *out, const FarWoodsFrame *f, int stand, float de
 {
     double up_share, azimuth_share;
     const double from_sun_rad = remainder(atan2(-rays->d_enu[1][i], -rays->d_enu[0][i]) - f->sun_azimuth_rad, 2 * pi_rad);
-    const int    v = stand_at_view(&up_share, asin(clamp(to_eye, 0, 1))), a = stand_at_azimuth(&azimuth_share, fabs(from_sun_rad));
+    const int    v = far_stand_at_view(&up_share, asin(clamp(to_eye, 0, 1))), a = far_stand_at_azimuth(&azimuth_share, fabs(from_sun_rad));
     const int    g = hits->surface[i] != class_of[stand];
     const float  u = (float)up_share, w = (float)azimuth_share;
     *out = (FarNode){0};

@@ -1,11 +1,78 @@
-/* render/light/far_woods.h: ground of woods whose plants were left out, shown as their canopy: its reflectance, emissivity
- * and temperature, not its height.
+/* render/light/far_woods.h: ground of woods whose plants were left out, shown as their canopy. */
+#ifndef RENDER_LIGHT_FAR_WOODS_H
+#define RENDER_LIGHT_FAR_WOODS_H
+
+#include "render/trace/plants/forest.h"
+#include "render/light/canopy.h"
+#include "render/air/air.h"
+
+/* ---- a stand --------------------------------------------------------------------------------- */
+
+/* A stand of one class of forest, as it is seen from above: the shares of leaves, bark and ground, how
+ * they face, what of sky and sun reaches them. Numbers of its shape alone, for every height of eye and sun.
  *
- * Two stands of each class of forest, sparse and dense, are learnt once (stand.h): what of leaves, bark and ground is seen from a depression, and
+ * Traced once: rays from stand_views depressions, stand_rays each, through 26 ha of the plants of etc/woods.csv, everywhere as
+ * dense, of which a view's hits are asked for the sun at stand_suns heights and stand_azimuths angles from behind the eye: so the clumping of
+ * leaves in crowns and of crowns in patches, and that what the eye sees from the sun's side is lit (the hot spot, as wide as
+ * the steps of the table), are those of the plants themselves. Statistical error of a share at a node: 0.025. */
+
+enum { stand_views = 6, stand_suns = 6, stand_azimuths = 5, stand_rays = 512 };
+
+/* Of what one organ shows a view: sums over its hits, by the number of all rays. */
+typedef struct StandOrgan {
+    double share;                     /* of the view's rays */
+    double bright;                    /* weighted by albedo, as what follows */
+    double front_up, front_down;      /* shares of sky and ground on the side that is seen, times what that faces of them */
+    double back_up, back_down;        /* on the other one */
+    double n[2];                      /* normal: towards the eye's azimuth, up; not weighted */
+    double open, radius_m;            /* not weighted; of radii the geometric mean */
+} StandOrgan;
+
+typedef struct StandView {
+    StandOrgan  leaf, bark;
+    double      ground, ground_up, ground_open;             /* share; of that the sky's that reaches it; by the heat's map */
+    double      ground_through[stand_suns];                 /* of the sun, by the heat's map */
+    double      sees_leaves;                                /* sum over plants: of other leaves; for the means of */
+    CanopyPlace among[stand_suns], on_ground[stand_suns];   /* places over plants, by what they see of leaves; over the ground */
+} StandView;
+
+/* Of the sun: shares that it reaches, and those times the cosine to it, by the number of all rays. */
+typedef struct StandLit {
+    double leaf, leaf_front, leaf_back, bark_front, ground;
+} StandLit;
+
+typedef struct WoodStand {
+    Canopy   *canopy;
+    Material  leaf, bark;      /* means of what is seen */
+    int       bark_row;        /* the most frequent */
+    double    top_m;           /* height of the crowns that are seen, about */
+    StandView view[stand_views];
+    StandLit  lit[stand_views][stand_suns][stand_azimuths];
+} WoodStand;
+
+/* surface: a class of forest; density: over its mean. forest: whose prototypes stand in it; leaves: as that has. pool: may be
+ * NULL; the same bits either way. */
+Status far_stand_create(WoodStand **out, SurfaceClass surface, double density, const Forest *forest, const Materials *materials,
+                    bool leaves, Pool *pool);
+void   far_stand_destroy(WoodStand *stand); /* accepts NULL */
+
+/* Nodes: elevation of eye or sun over the ground, and azimuth of the sun from that of the eye, rad. */
+double far_stand_azimuth(int node);
+/* Place among the nodes: the lower one, and the share of the upper. */
+int    far_stand_at_view(double *share, double elevation_rad);
+int    far_stand_at_sun(double *share, double elevation_rad);
+int    far_stand_at_azimuth(double *share, double azimuth_rad);
+
+/* ---- far woods ------------------------------------------------------------------------------- */
+
+/* Ground of woods whose plants were left out has the reflectance, emissivity and temperature of their canopy, not its
+ * height.
+ *
+ * Two stands of each class of forest, sparse and dense, are learnt once (WoodStand): what of leaves, bark and ground is seen from a depression, and
  * what of it the sun reaches. Once a frame the light of this sun and sky on them becomes a table over the eye's angle to the
  * ground and its azimuth from the sun, of level ground that has the same radiance: a reflectance by channel, a share of
  * direct sun for the channels of heat, a temperature. The light is that of plants (render/light/surface_light.h, canopy.h) and
- * the temperatures those of leaves, bark and shaded ground (plant_heat.h, render/heat), each of the mean of its organ; the
+ * the temperatures those of leaves, bark and shaded ground (thermal.h, render/heat), each of the mean of its organ; the
  * temperature of all is that of their radiance in 8-12 um, so 3-5 um differ by what is hotter than its mean.
  *
  * Between the densities, open ground included, by the share of it that is open to the eye: exp(-2.5 density / sine of its height). So glades and thickets
@@ -16,11 +83,6 @@
  * Errors beside the same woods planted (tests/render/test_far_woods.c: means over 1.2 km; eye at 15 to 60 degrees, sun at 9 to
  * 63): optical channels 8 % rms, within 12 % (near infrared 18 %), with the sun behind the eye within 12 degrees 18 %; 0.7 K
  * apparent in 3-5 um, 0.6 K in 8-12 um. Without leaves 14 % rms, within 23 %; 2.1 K, 1.6 K. */
-#ifndef RENDER_LIGHT_FAR_WOODS_H
-#define RENDER_LIGHT_FAR_WOODS_H
-
-#include "render/light/stand.h"
-#include "render/air/air.h"
 
 enum { far_stands = 2 /* broadleaf, conifer */, far_densities = 2, far_grounds = 2 /* of its own class; scrub */ };
 

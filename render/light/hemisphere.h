@@ -10,8 +10,8 @@
 #define RENDER_LIGHT_HEMISPHERE_H
 
 #include "render/air/air.h"
-#include "render/heat/patch_set.h"
-#include "render/visibility/visibility.h"
+#include "render/heat/vehicle_heat.h"
+#include "render/trace/visibility/visibility.h"
 
 enum { hemisphere_samples_max = 4096 };
 
@@ -23,7 +23,7 @@ typedef struct HemisphereScene {
     const Snapshot   *snapshot;
 } HemisphereScene;
 
-struct SkyNotes; /* render/light/sky_kept.h */
+struct SkyNotes; /* render/light/sky_visibility.h */
 
 typedef struct HemisphereLight {
     float w_m2[AIR_BAND_COUNT][hits_capacity]; /* irradiance on the hit's own shading normal; 0 for sky. Of leaves: and
@@ -48,7 +48,7 @@ enum { hemisphere_change_bounces = 3 };
 /* out[hits->count]. At each bounce only what is nearer than reach_m counts, and of the listed entities alone, which must
  * include all that bounces times that far; points on the ground are sampled only towards entities within whose own reach, list_reach_m[listed]
  * beyond their sphere, they lie. From points on the ground the ground is not traced: only parts change their light.
- * notes: where meetings are kept (render/light/sky_kept.h), the same bits; NULL: nowhere.
+ * notes: where meetings are kept (render/light/sky_visibility.h), the same bits; NULL: nowhere.
  * Three bounces; the open form is subtracted direction by direction, so that points with an unobstructed sky get 0,
  * without noise. The bright ring about the sun has separate directions, since it would cause most of the noise. */
 void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits, unsigned bands, int samples,

@@ -1,8 +1,8 @@
 /* render/light/hemisphere_change.c: change of the light at a point by what is near, see hemisphere.h. */
 #include "render/light/hemisphere_private.h"
 
-#include "render/light/sky_kept.h"
-#include "render/parts/parts.h"
+#include "render/light/sky_visibility.h"
+#include "render/trace/parts/parts.h"
 
 /* Whether a ray may meet the box of a listed entity within reach. */
 static bool may_meet(const HemisphereScene *scene, const double o_enu[3], const double d_enu[3], double reach_m,

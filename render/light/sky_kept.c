@@ -1,7 +1,7 @@
-/* render/light/sky_kept.c: a table of sample points with what their paths met; see sky_kept.h. */
-#include "render/light/sky_kept.h"
+/* render/light/sky_kept.c: a table of sample points with what their paths met; see sky_visibility.h. */
+#include "render/light/sky_visibility.h"
 
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include <stdatomic.h>
 
 #include "render/light/sky_visibility.h"
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 
 enum {
     known_slots   = 1 << 15,   /* of a block: more than 1024 hits x 4 places x 4 levels */

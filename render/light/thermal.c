@@ -5,11 +5,12 @@
  * Radiance = emissivity Planck(T) + (1 - emissivity) surroundings + sunlight, each attenuated by the air path
  * according to its own spectrum. In a closed isothermal cavity every surface has the radiance Planck(T), whatever
  * its material (tests/render/test_thermal.c). */
-#include "render/light/thermal.h"
 
-#include "render/heat/heat_scene.h"
-#include "render/light/plant_heat.h"
+#include "render/light/thermal.h"
+#include "render/heat/heat.h"
 #include "pitviper_simd.h"
+#include "pitviper.h"
+#include "terrain/weather/weather.h"
 
 /* ---- temperature -------------------------------------------------------------------------- */
 
@@ -41,7 +42,7 @@ static double plant_k(const Air *air, const Material *m, int material, double ai
 {
     const double n[3] = {(double)hits->n_enu[0][i], (double)hits->n_enu[1][i], (double)hits->n_enu[2][i]};
     const double open = (double)hits->open_up[i];
-    if (material_is_leaf(m)) return leaf_temp_k(&air->light, m, air_k, open, sun ? (double)sun[i] : open);
+    if (material_is_leaf(m)) return thermal_leaf_k(&air->light, m, air_k, open, sun ? (double)sun[i] : open);
     if (!air->heat || air->heat->now->branches == 0) return air_k;
     return heat_branch_k(air->heat->now, material, (double)hits->radius_m[i], n, open) + air_k - air->light.weather.air_temp_k;
 }
@@ -185,4 +186,50 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
         out[i] = (float)(emitted * v->transmittance[i] + reflected * v->air_transmittance[i] +
                          sunlit * v->sun_transmittance[i] + v->added_w_m2_sr[i]);
     }
+}
+
+/* ---- heat losses of a surface warmer than the air in a steady balance ------------------------ */
+
+/* Heat losses of a surface warmer than the air in a steady balance: the air's film
+ * (McAdams, Heat Transmission, 1954: 5.7 + 3.8 v W/(m2 K), plates below 5 m/s; used above that too) and longwave
+ * emission (4 e sigma T^3, 5 W/(m2 K) at 288 K). */
+
+/* wind_mps >= 0 */
+static inline double film_w_m2_k(double wind_mps) { return 5.7 + 3.8 * wind_mps; }
+
+static inline double emission_w_m2_k(double emissivity, double temp_k)
+{
+    return 4 * emissivity * 5.670374419184429e-8 * temp_k * temp_k * temp_k;
+}
+
+/* ---- leaves ---------------------------------------------------------------------------------- */
+
+static const double heat_j_mol_k = 29.3, vapour_j_mol = 44000; /* of air; of water's evaporation */
+static const double pressure_pa = 101325;
+static const double leaf_m = 0.05, least_wind_mps = 0.3;       /* free convection takes over below */
+
+/* Saturation over water, Pa, and its slope, Pa/K: Tetens, as in Campbell & Norman (1998), eq. 3.8. */
+static double vapour_pa(double *slope, double temp_k)
+{
+    const double c = temp_k - 273.15, e = weather_saturation_pa(temp_k);
+    *slope = e * 17.502 * 240.97 / ((240.97 + c) * (240.97 + c));
+    return e;
+}
+
+double thermal_leaf_k(const Daylight *light, const Material *m, double air_temp_k, double open, double lit)
+{
+    const double wind_mps = fmax(light->weather.wind_mps, least_wind_mps);
+    const double layer = 1.4 * 0.135 * sqrt(wind_mps / (0.72 * leaf_m)); /* mol/(m2 s), one side */
+    const double sun_w_m2 = lit * 0.5 * light->solar_direct_w_m2 * (light->sun_d_enu[2] > 0) + open * light->solar_diffuse_w_m2;
+    const double humidity = light->weather.humidity;
+    const double stomata = 0.2 * (0.05 + 0.95 * fmin(sun_w_m2 / 250, 1)); /* full by half of full sunlight */
+    const double vapour = 1 / (1 / stomata + 1 / (1.09 * layer));
+    double       slope;
+    const double e = vapour_pa(&slope, air_temp_k);
+    const double emissivity = 1 - (double)m->rho_lwir - (double)m->tau_lwir;
+    const double gain = (double)m->solar_absorptance * sun_w_m2 - emissivity * light->longwave_loss_w_m2 * open -
+                        vapour_j_mol * vapour * (1 - humidity) * e / pressure_pa;
+    const double loss = 2 * heat_j_mol_k * layer + 2 * emission_w_m2_k(emissivity, air_temp_k) +
+                        vapour_j_mol * vapour * slope / pressure_pa;
+    return air_temp_k + gain / loss;
 }

@@ -2,11 +2,20 @@
 #ifndef RENDER_LIGHT_THERMAL_H
 #define RENDER_LIGHT_THERMAL_H
 
+#include "render/heat/vehicle_heat.h"
+#include "render/trace/visibility/visibility.h"
 #include "entities/table/snapshot.h"
 #include "render/air/air.h"
-#include "render/light/part_temps.h"
 #include "render/scene/hits.h"
 #include "render/scene/view.h"
+#include "render/materials/materials.h"
+
+/* Where the temperatures of entities' surfaces come from, in one frame. */
+typedef struct PartTemps {
+    const Snapshot   *snapshot;
+    const PatchSet   *patches;    /* all models of snapshot.patch_k have been needed */
+    const Visibility *visibility; /* of the same snapshot: poses */
+} PartTemps;
 
 /* Temperature of each hit, K: parts from the patches of the snapshot (parts; NULL: as warm as the air), ground by what the hours
  * before left in it (air->heat; NULL: that of the air), noise (warmth_k) and photograph (its brightness over the class's;
@@ -25,5 +34,18 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
                    const float *around_w_m2, const AirPaths *veils, const Facing *facing);
 /* One ray that met nothing: ground beyond the terrain's edge, or sky. */
 float thermal_beyond(Band band, const Air *air, const double d_enu[3], const AirPaths *veils, int hit);
+
+/* ---- leaves ---------------------------------------------------------------------------------- */
+
+/* A leaf: the steady balance of what it absorbs of sun and sky with what it radiates, gives to the air and transpires;
+ * leaves follow within a minute. open: share of the sky that its place in the crown receives, lit: of the direct sun, 0 ..
+ * 1: by the ray that the picture's light uses too. Leaves of a place have every tilt: half of the direct sun on average. Its
+ * two sides together face all of the sky, whatever its tilt.
+ *
+ *   boundary layer  0.135 sqrt(wind / d) mol/(m2 s) each side, d = 0.72 of a leaf 5 cm wide, 1.4 in turbulent wind
+ *   stomata         0.2 mol/(m2 s) in full sun, a twentieth in the dark: broad leaves well supplied with water
+ * Source: Campbell & Norman, An Introduction to Environmental Biophysics (1998), chapters 7 and 14. Linear about the air's
+ * temperature: within 0.1 K of the full balance, for leaves 2 K below to 5 K above the air (test_plant_heat.c). */
+double thermal_leaf_k(const Daylight *light, const Material *m, double air_temp_k, double open, double lit);
 
 #endif

@@ -8,7 +8,7 @@
 #define RENDER_SCATTERING_RADAR_IMAGE_H
 
 #include "render/air/air.h"
-#include "render/visibility/visibility.h"
+#include "render/trace/visibility/visibility.h"
 
 enum { radar_bounces = 3 /* that are reported */, radar_mirrors = 6 /* that are followed */ };
 

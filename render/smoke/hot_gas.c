@@ -1,5 +1,5 @@
 /* render/smoke/hot_gas.c: sums of grey gases for CO2 and H2O, and what cold air leaves of the 4.3 um band. */
-#include "render/smoke/hot_gas.h"
+#include "render/smoke/smoke.h"
 
 const double hot_gas_co2_molar_kg = 0.04401, hot_gas_h2o_molar_kg = 0.018015;
 
@@ -93,7 +93,7 @@ static int place(double *share, const double *node, int count, double x, bool by
     return i;
 }
 
-void hot_gas_weights(double out[2][hot_gas_terms], HotGasBand band, double temp_k)
+void smoke_gas_weights(double out[2][hot_gas_terms], HotGasBand band, double temp_k)
 {
     double    share;
     const int t = place(&share, at_temp_k, temps, temp_k, false);
@@ -108,7 +108,7 @@ static inline double absorbed(double depth)
     return depth > 1e-3 ? 1 - exp(-depth) : depth * (1 - depth * (0.5 - depth * (1.0 / 6 - depth * (1.0 / 24))));
 }
 
-void hot_gas_start(HotGasRay *ray)
+void smoke_gas_start(HotGasRay *ray)
 {
     for (int g = 0; g < 2; g++) {
         ray->taken[g] = 0;
@@ -116,7 +116,7 @@ void hot_gas_start(HotGasRay *ray)
     }
 }
 
-double hot_gas_through(HotGasRay *ray, HotGasBand band, HotGasColumn column, const double w[2][hot_gas_terms])
+double smoke_gas_through(HotGasRay *ray, HotGasBand band, HotGasColumn column, const double w[2][hot_gas_terms])
 {
     const double atm_m[2] = {column.co2_atm_m, column.h2o_atm_m};
     for (int g = 0; g < 2; g++) {
@@ -132,16 +132,16 @@ double hot_gas_through(HotGasRay *ray, HotGasBand band, HotGasColumn column, con
     return ray->taken[0] + ray->taken[1] - ray->taken[0] * ray->taken[1];
 }
 
-double hot_gas_emissivity(HotGasBand band, HotGasColumn column, double temp_k)
+double smoke_gas_emissivity(HotGasBand band, HotGasColumn column, double temp_k)
 {
     HotGasRay ray;
     double    w[2][hot_gas_terms];
-    hot_gas_start(&ray);
-    hot_gas_weights(w, band, temp_k);
-    return hot_gas_through(&ray, band, column, (const double(*)[hot_gas_terms])w);
+    smoke_gas_start(&ray);
+    smoke_gas_weights(w, band, temp_k);
+    return smoke_gas_through(&ray, band, column, (const double(*)[hot_gas_terms])w);
 }
 
-void hot_gas_passed_at(double at[hot_gas_passed_nodes], double temp_k, double range_m)
+void smoke_gas_passed_at(double at[hot_gas_passed_nodes], double temp_k, double range_m)
 {
     double    s_temp, s_path;
     const int t = place(&s_temp, at_temp_k, temps, temp_k, false);
@@ -155,21 +155,21 @@ void hot_gas_passed_at(double at[hot_gas_passed_nodes], double temp_k, double ra
     }
 }
 
-double hot_gas_passed_of(const double at[hot_gas_passed_nodes], double co2_atm_m)
+double smoke_gas_passed_of(const double at[hot_gas_passed_nodes], double co2_atm_m)
 {
     double    share;
     const int c = place(&share, at_column_atm_m, cold_columns, fmax(co2_atm_m, 1e-9), true);
     return at[c] + share * (at[c + 1] - at[c]);
 }
 
-double hot_gas_passed(double co2_atm_m, double temp_k, double range_m)
+double smoke_gas_passed(double co2_atm_m, double temp_k, double range_m)
 {
     double at[hot_gas_passed_nodes];
-    hot_gas_passed_at(at, temp_k, range_m);
-    return hot_gas_passed_of(at, co2_atm_m);
+    smoke_gas_passed_at(at, temp_k, range_m);
+    return smoke_gas_passed_of(at, co2_atm_m);
 }
 
-double hot_gas_atm_m(double kg_m2, double molar_kg, double temp_k)
+double smoke_gas_atm_m(double kg_m2, double molar_kg, double temp_k)
 {
     static const double gas_j_mol_k = 8.314462618, pa_per_atm = 101325;
     return kg_m2 / molar_kg * gas_j_mol_k * temp_k / pa_per_atm;

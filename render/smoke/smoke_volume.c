@@ -1,6 +1,6 @@
 /* render/smoke/smoke_volume.c: spheroids along a ray. Scaling space along its axis maps a spheroid to a unit ball;
  * along a ray the squared distance from the centre is then a parabola, and the density (1 - q^2)^2 a quartic. */
-#include "render/smoke/smoke_volume.h"
+#include "render/smoke/smoke.h"
 
 #include <stdlib.h>
 
@@ -203,7 +203,7 @@ static const int gas_band[2] = {smoke_bands - 2, smoke_bands - 1}; /* [HotGasBan
 
 static void enter_gas(Passed *p)
 {
-    for (int which = 0; which < 2; which++) hot_gas_start(&p->gas[which]), p->gas_depth[which] = 0;
+    for (int which = 0; which < 2; which++) smoke_gas_start(&p->gas[which]), p->gas_depth[which] = 0;
     for (int k = 0; k < hot_gas_passed_nodes; k++) p->air[k] = 0;
     p->co2_atm_m = 0;
     p->in_gas = true;
@@ -233,7 +233,7 @@ static double air_passes(const Passed *p, int which)
     double mean[hot_gas_passed_nodes];
     if (which == HOT_GAS_LWIR || !(p->co2_atm_m > 0)) return 1;
     for (int k = 0; k < hot_gas_passed_nodes; k++) mean[k] = p->air[k] / p->co2_atm_m;
-    return hot_gas_passed_of(mean, p->co2_atm_m);
+    return smoke_gas_passed_of(mean, p->co2_atm_m);
 }
 
 /* Optical depth that the gas of a segment adds to that of the gas before it. */
@@ -243,7 +243,7 @@ static double gas_adds(Passed *p, Segment *s, int which)
     const double per[2] = {1 / fmax(s->column.co2_atm_m, least), 1 / fmax(s->column.h2o_atm_m, least)};
     for (int g = 0; g < 2; g++)
         for (int j = 0; j < hot_gas_terms; j++) s->weighed[which][g][j] *= per[g];
-    const double emissivity = hot_gas_through(&p->gas[which], (HotGasBand)which, s->column,
+    const double emissivity = smoke_gas_through(&p->gas[which], (HotGasBand)which, s->column,
                                               (const double(*)[hot_gas_terms])s->weighed[which]);
     const double depth = -log1p(-fmin(emissivity * air_passes(p, which), most));
     const double adds = fmax(depth - p->gas_depth[which], 0);

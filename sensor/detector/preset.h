@@ -14,7 +14,7 @@ typedef struct SensorPreset {
     const SpectralChannel *channel;    /* the one it is for; NULL: the visible ones, or all of the band */
     OpticalChannels optical;           /* its response in the optical band */
     double         width_px, height_px, hfov_deg;
-    double         lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/scene/lens.h); R and B over G, less 1 */
+    double         lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/scene/view.h); R and B over G, less 1 */
     PhotonDetector photons;            /* low_m, high_m: the band's; dark_e for integration_s; of one stage */
     double         tdi;                /* stages whose electrons are summed; 0 or 1: no TDI */
     double         obscuration, footprint, jitter_px;

@@ -66,7 +66,7 @@ Status frame_world_warm(World *world, const Config *config, double unix_s, Pool 
     status = world_warm(world, course, &heat, config->heat.shadow_m, pool);
     if (status == STATUS_OK)
         log_detail("heat: ground warmed up over two days in %.0f ms, %.1f MB, %.1f MB of shadows", 1e3 * (wall_clock_s() - begun_s),
-                   1e-6 * (double)heat_bytes(world->heat), world->shadow ? 1e-6 * (double)shadow_map_bytes(world->shadow) : 0.0);
+                   1e-6 * (double)heat_bytes(world->heat), world->shadow ? 1e-6 * (double)heat_shadow_bytes(world->shadow) : 0.0);
     return status;
 }
 

@@ -158,7 +158,7 @@ static json_t *counters_json(const RunRecord *r)
     set_count(skipped, "ray_entity_pairs", v->skipped_parts);
     set_count(skipped, "sun_ray_entity_pairs", v->skipped_sun_parts);
     set_count(skipped, "tiles_without_entities", r->render.tiles_without_entities);
-    for (int k = 0; k < SKIP_COUNT; k++) set_count(skipped, skip_name((Skip)k), v->skipped[k]);
+    for (int k = 0; k < SKIP_COUNT; k++) set_count(skipped, visibility_skip_name((Skip)k), v->skipped[k]);
     json_object_set_new(counters, "skipped", skipped);
     return counters;
 }

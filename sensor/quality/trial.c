@@ -2,7 +2,7 @@
 #include "sensor/quality/trial.h"
 
 #include "entities/motion/dead_reckoning.h"
-#include "render/scene/upright.h"
+#include "render/scene/view.h"
 #include "sensor/settings/config.h"
 
 /* ---- entities ----------------------------------------------------------------------------- */
@@ -96,7 +96,7 @@ View trial_view(const TrialScene *scene, double back_m, double above_m, double h
     double d_enu[3];
     v3_sub(d_enu, aim, view.p_enu);
     v3_scale(d_enu, 1 / v3_length(d_enu), d_enu);
-    camera_upright(view.r_enu_from_cam, d_enu);
+    view_upright(view.r_enu_from_cam, d_enu);
     return view;
 }
 

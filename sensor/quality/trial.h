@@ -4,7 +4,7 @@
 
 #include "entities/table/entity_table.h"
 #include "render/frame/render.h"
-#include "render/frame/world_vehicles.h"
+#include "render/frame/world.h"
 #include "sensor/truth/truth.h"
 #include "sensor/frame/plane.h"
 

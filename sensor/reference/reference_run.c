@@ -2,12 +2,12 @@
 #include "sensor/reference/reference.h"
 
 #include "dis/pdu/pdu.h"
-#include "render/scene/skip.h"
+#include "render/trace/visibility/visibility.h"
 #include "sensor/node/session/session.h"
 
 static const char *drop(int i) { return i < DIS_DROP_COUNT ? dis_drop_name((DisDrop)i) : NULL; }
-static const char *skip(int i) { return i < SKIP_COUNT ? skip_name((Skip)i) : NULL; }
-static const char *what_skip(int i) { return skip_what((Skip)i); }
+static const char *skip(int i) { return i < SKIP_COUNT ? visibility_skip_name((Skip)i) : NULL; }
+static const char *what_skip(int i) { return visibility_skip_what((Skip)i); }
 static const char *kind(int i) { return i < PLANT_STANDING ? plant_name((PlantKind)i) : NULL; }
 static const char *stage(int i) { return i < session_stages ? session_stage_name[i] : NULL; }
 

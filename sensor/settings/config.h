@@ -30,7 +30,7 @@ typedef struct Config {
         char   preset[96];         /* none, or names of etc/sensors.csv, comma separated */
         char   table[1024];        /* a sensor's sheet (sensor/detector/preset.h), or a .csv of sensors; empty: none */
         double lens_k1, lens_k2, lens_k3, lens_p1,
-            lens_p2; /* of the image (render/scene/lens.h); NaN: of the preset */
+            lens_p2; /* of the image (render/scene/view.h); NaN: of the preset */
         double lateral_r, lateral_b;
     } sensor;
     struct {

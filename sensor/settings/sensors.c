@@ -106,7 +106,7 @@ static Status choose_lens(Sensors *s, Choices *choices, const Config *config, co
     for (int k = 0; k < 2; k++) value[5 + k] = first ? first->lateral[k] : 0;
     for (int k = 0; k < 7; k++) over(&value[k], given[k], 1);
     memcpy(s->lateral, value + 5, sizeof s->lateral);
-    if (lens_make(&s->lens, value, value + 3, half) != STATUS_OK) {
+    if (view_lens_make(&s->lens, value, value + 3, half) != STATUS_OK) {
         log_error(
             "replay: the distortion of the lens (k1=%g, k2=%g, k3=%g, p1=%g, p2=%g) is not invertible within a field "
             "of view of %.4g x "
@@ -116,7 +116,7 @@ static Status choose_lens(Sensors *s, Choices *choices, const Config *config, co
         return STATUS_BAD_VALUE;
     }
     double corner[2] = {half[0], half[1]};
-    if (s->lens.reach > 0) lens_back(corner, &s->lens, half[0], half[1]);
+    if (s->lens.reach > 0) view_lens_back(corner, &s->lens, half[0], half[1]);
     if (s->lens.reach > 0)
         choice_add(choices,
                    "lens: k1=%.4g k2=%.4g k3=%.4g p1=%.4g p2=%.4g: %+.2f %% at the corner (sensor.lens_k1 ...)",

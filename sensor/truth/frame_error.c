@@ -3,7 +3,7 @@
 #include "sensor/truth/frame_error.h"
 #include "render/heat/vehicle_heat.h"
 #include "dis/pdu/pdu.h"
-#include "render/frame/error_budget.h"
+#include "render/frame/render.h"
 #include "render/scattering/signatures/signature.h"
 
 /* ---- the spread of errors over pixels, and what a displaced target does to those near it --------- */
@@ -170,7 +170,7 @@ static double ground_way_m(const World *world, const SnapshotEntity *e, const Mo
     if (!world->landscape || e->type.kind != dis_kind_platform || e->type.domain != dis_domain_land) return 0;
     enu_from_ecef(p_enu, &world->frame, e->p_ecef);
     for (int k = 0; k < 4; k++)
-        if (!error_budget_coarser(turn_enu, &rise_m[k], &world->landscape->elevation, p_enu[0] + half_m * place[k][0],
+        if (!render_error_coarser(turn_enu, &rise_m[k], &world->landscape->elevation, p_enu[0] + half_m * place[k][0],
                                   p_enu[1] + half_m * place[k][1]))
             return 0;
     /* the mean error of the points raises its centre; their differences tilt its outline, at the same distance from
@@ -289,7 +289,7 @@ bool frame_error(FrameError *out, const FrameErrorOf *of, Target *target, int ta
                                  .clamped = of->clamped, .band = b, .value = picture_plane(picture, k), .planck = planck};
         PlaneSums          all = {0};
         if (!in.value || !(budget->mean[k] > 0)) continue;
-        const double kelvin = planck ? error_budget_kelvin(planck, budget->mean[k], 1) : NAN; /* for 1 W/(m2 sr) */
+        const double kelvin = planck ? render_error_kelvin(planck, budget->mean[k], 1) : NAN; /* for 1 W/(m2 sr) */
         in.tables_k2 = square(kelvin * budget->tables[k]);
         for (int i = 0; i < targets; i++) add_target(&all, &target[i], &in);
         const double square_of_mean = square(budget->mean[k]);
@@ -315,7 +315,7 @@ bool frame_error(FrameError *out, const FrameErrorOf *of, Target *target, int ta
             out->share[b][s]  = planes[b] > 0 ? sqrt(sums[b][s] / planes[b]) : NAN;
             out->kelvin[b][s] =
                 planes[b] > 0 && (b == BAND_MWIR || b == BAND_LWIR)
-                    ? error_budget_kelvin(planck, budget->mean[plane], out->share[b][s] * budget->mean[plane])
+                    ? render_error_kelvin(planck, budget->mean[plane], out->share[b][s] * budget->mean[plane])
                     : NAN;
         }
     }

@@ -63,7 +63,7 @@ static inline double pixel_share_of(const Picture *p, const TargetPixels *px, ui
  * is right within a factor of 2 in three of four cases, limited by the unknown path of a single vehicle; over many
  * frames in nine of ten (tests/sensor/test_frame_error.c). Facets of models lie within models.sag_m of the surface,
  * two thirds of it in the mean, and shift outlines likewise; and a ground-clamped entity rises and tilts with the
- * error of the ground (render/frame/error_budget.h).
+ * error of the ground (render/frame/render.h).
  *
  * Heat. Temperatures of the ground are off by what its elements, its steps of time and its facets leave out: 0.03 K and
  * 0.5 % of how far a place is from the air (tests/sensor/test_error_budget.c: within a factor of 2); those of parts by their steps

@@ -1,7 +1,7 @@
 /* sensor/truth/truth.c: truth of the targets in a frame, and where the image meets the ground. */
 #include "sensor/truth/truth.h"
 #include "terrain/earth/geodesy.h"
-#include "render/ground/ground.h"
+#include "render/trace/ground/ground.h"
 
 /* Earth's rate, rad/s. Source: IERS Conventions 2010, table 1.2 (nominal mean angular velocity). */
 static const double earth_rate_rps = 7.292115e-5;

@@ -356,7 +356,7 @@ void woods_destroy(Woods *woods)
 
 double woods_trunk_m(const Plant *plant)
 {
-    /* of the prototypes: 1 to 3 hundredths of the height (render/plants/plants_tree.c) */
+    /* of the prototypes: 1 to 3 hundredths of the height (render/trace/plants/plants_grow.c) */
     static const double share[PLANT_TREES] = {0.016, 0.014, 0.011, 0.028, 0.024, 0.024, 0.030};
     return plant_is_tree((PlantKind)plant->kind) ? share[plant->kind] * plant_height_m(plant) * plant->width / 128 : 0;
 }

@@ -7,7 +7,7 @@
 #include "entities/catalog/catalog.h"
 #include "entities/traces/effect_puffs.h"
 #include "render/heat/given_heat.h"
-#include "render/heat/kept_heat.h"
+#include "render/heat/vehicle_heat.h"
 #include "render/heat/part_table.h"
 #include "render/materials/materials.h"
 #include "render/scattering/paths/attenuation.h"
@@ -125,10 +125,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         Materials    materials;
         GivenHeat   *given;
         KeptHeat    *kept;
-        if (table_column(&table, "node_k") >= 0 && kept_heat_open(&kept, path) == STATUS_OK) {
-            const KeptNodes *nodes = kept_heat_find(kept, (DisEntityId){1, 1, 7}, "tank", 2);
+        if (table_column(&table, "node_k") >= 0 && heat_kept_open(&kept, path) == STATUS_OK) {
+            const KeptNodes *nodes = heat_kept_find(kept, (DisEntityId){1, 1, 7}, "tank", 2);
             if (nodes && !(nodes->temp_k[1] >= 0.5 && nodes->temp_k[1] <= 1e4)) abort();
-            kept_heat_close(kept);
+            heat_kept_close(kept);
         }
         if (table_column(&table, "temp_k") >= 0 && given_heat_open(&given, path) == STATUS_OK) {
             static ModelPart part = {.name = "hull", .role = HEAT_HULL};

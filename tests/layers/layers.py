@@ -217,7 +217,7 @@ def twins():
         entities/models/model.c render/frame/render.h   render/frame/render.c entities/table/entity_table.h
         render/frame/render.c dis/pdu/decode.h        render/frame/render.c sensor/detector/detector.h
         tests/dis/test_pdu.c entities/models/model.h    tests/render/test_render.c sensor/frame/plane.h
-        sensor/node/loop.c render/parts/parts_private.h sensor/node/loop.c loop.h
+        sensor/node/loop.c render/trace/parts/parts_private.h sensor/node/loop.c loop.h
         dis/pdu/pdu.c tests/check.h                         entities/models/model.c <GeographicLib/Geocentric.hpp>
         sensor/truth/truth.c <jansson.h>                terrain/earth/geoid.c <gdal.h>
         sensor/detector/line_scan.c <fftw3.h>                entities/import/sidecar.c <assimp/scene.h>

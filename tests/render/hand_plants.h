@@ -3,7 +3,7 @@
 #ifndef TESTS_RENDER_HAND_PLANTS_H
 #define TESTS_RENDER_HAND_PLANTS_H
 
-#include "render/forest/forest.h"
+#include "render/trace/plants/forest.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
  * them. labels: physics */
 #include "tests/check.h"
 
-#include "render/air/atmosphere_day.h"
+#include "render/air/atmosphere.h"
 
 /* Both round some hundred times in a row of products and sums of positive numbers, and exp of up to 70 magnifies an ulp
  * of its argument: 100 * 70 * 1e-16. Measured 3e-13. */

@@ -15,7 +15,7 @@ static void disc_step(Disc *d, double radius_m, const GroundWeather *w, double s
 {
     static Disc  old;
     const double dr = radius_m / rings, turn = 2 * pi_rad / sides, k = pine.conductivity_w_mk, c = pine.capacity_j_m3k;
-    const double film = branch_film_w_m2k(radius_m, w->air.wind_mps);
+    const double film = heat_branch_film_w_m2k(radius_m, w->air.wind_mps);
     old = *d;
     for (int s = 0; s < sides; s++) {
         const double n[3] = {cos(s * turn), sin(s * turn), 0}, along = w->sun_d_enu[2] > 0 ? fmax(v3_dot(n, w->sun_d_enu), 0) : 0;
@@ -53,7 +53,7 @@ static void sides_of_a_trunk(void **state)
             disc.face_k[s] = 288;
             for (int r = 0; r < rings; r++) disc.t_k[r][s] = 288;
         }
-        branch_start(&branch, &pine, radius_m[k], 288);
+        heat_branch_start(&branch, &pine, radius_m[k], 288);
         const double days = radius_m[k] < 0.1 ? 1.2 : 2;
         double       t_s = 0;
         for (int step = 0; step < (int)(days * 144); step++) {
@@ -63,10 +63,10 @@ static void sides_of_a_trunk(void **state)
                 disc_step(&disc, radius_m[k], &w, 1, 288, dt_s);
             }
             paper_weather(&w, paper_unix_s + t_s, &paper_summer);
-            branch_step(&branch, &w, 1, 288, 600);
+            heat_branch_step(&branch, &w, 1, 288, 600);
             if (t_s < (days - 1) * 86400) continue;
             BranchSides b;
-            branch_sides(&b, &branch);
+            heat_branch_sides(&b, &branch);
             for (int s = 0; s < sides; s++) {
                 const double n[3] = {cos(s * 2 * pi_rad / sides), sin(s * 2 * pi_rad / sides), 0};
                 const double miss = branch_side_k(&b, n) - disc.face_k[s];
@@ -86,22 +86,22 @@ static void thin_and_thick(void **state)
 {
     (void)state;
     Branch thin, thick, shaded;
-    branch_start(&thin, &pine, branch_radius_m[0], 288);
-    branch_start(&thick, &pine, branch_radius_m[branch_radii - 1], 288);
-    branch_start(&shaded, &pine, branch_radius_m[branch_radii - 1], 288);
+    heat_branch_start(&thin, &pine, branch_radius_m[0], 288);
+    heat_branch_start(&thick, &pine, branch_radius_m[branch_radii - 1], 288);
+    heat_branch_start(&shaded, &pine, branch_radius_m[branch_radii - 1], 288);
     double at_h[2] = {0}, most[2] = {0};
     for (int step = 0; step < 288; step++) {
         GroundWeather w;
         paper_weather(&w, paper_unix_s + 600 * (step + 1), &paper_summer);
-        branch_step(&thin, &w, 1, 288, 600);
-        branch_step(&thick, &w, 1, 288, 600);
-        branch_step(&shaded, &w, 0, 288, 600);
+        heat_branch_step(&thin, &w, 1, 288, 600);
+        heat_branch_step(&thick, &w, 1, 288, 600);
+        heat_branch_step(&shaded, &w, 0, 288, 600);
         const Branch *both[2] = {&thin, &thick};
         for (int k = 0; k < 2 && step >= 144; k++)
             if (both[k]->face_k[0] > most[k]) most[k] = both[k]->face_k[0], at_h[k] = (step + 1 - 144) / 6.0;
         if (step == 144 + 60) { /* ten: the sun in the south east */
             BranchSides lit, dark;
-            branch_sides(&lit, &thick), branch_sides(&dark, &shaded);
+            heat_branch_sides(&lit, &thick), heat_branch_sides(&dark, &shaded);
             const double south_east[3] = {0.7, -0.7, 0}, north_west[3] = {-0.7, 0.7, 0};
             CHECK(branch_side_k(&lit, south_east) > branch_side_k(&lit, north_west) + 5);
             CHECK(fabs(branch_side_k(&dark, south_east) - branch_side_k(&dark, north_west)) < 1e-6);
@@ -120,7 +120,7 @@ static void film_of_a_cylinder(void **state)
         for (int w = 0; w < 3; w++) {
             const double re = wind_mps[w] * 2 * radius_m[r] / 1.5e-5;
             const double nu = re < 1000 ? 0.51 * sqrt(re) * pow(0.71, 0.37) : re < 2e5 ? 0.26 * pow(re, 0.6) * pow(0.71, 0.37) : 0.076 * pow(re, 0.7) * pow(0.71, 0.37);
-            CHECK_NEAR(branch_film_w_m2k(radius_m[r], wind_mps[w]) / (nu * 0.025 / (2 * radius_m[r])), 1, 0.25);
+            CHECK_NEAR(heat_branch_film_w_m2k(radius_m[r], wind_mps[w]) / (nu * 0.025 / (2 * radius_m[r])), 1, 0.25);
         }
 }
 

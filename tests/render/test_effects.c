@@ -1,8 +1,7 @@
 /* Puffs in the picture: what a flash shines with, what a cloud hides, and that nothing changes where there is none. */
 #include "tests/check.h"
 
-#include "render/smoke/effects.h"
-#include "render/smoke/hot_gas.h"
+#include "render/smoke/smoke.h"
 #include "render/frame/render.h"
 
 static Catalog    *catalog;
@@ -107,7 +106,7 @@ static void boresight(double transmittance[effect_band_count], double added[effe
 
     arena_reset(arena);
     const float ground_rho[optical_channel_count] = {0};
-    CHECK(effects_scene(&scene, &snapshot, -1, &world.frame, &view, air, ground_rho, all_bands, arena) == STATUS_OK);
+    CHECK(smoke_effects_scene(&scene, &snapshot, -1, &world.frame, &view, air, ground_rho, all_bands, arena) == STATUS_OK);
     CHECK(scene.count == 1);
     scene.volume[0].billow = 0;
     rays.count = 1;
@@ -123,7 +122,7 @@ static void boresight(double transmittance[effect_band_count], double added[effe
     }
 }
 
-/* Gas through its middle: seen emissivity times a grey body's radiance there, as hot_gas.h gives it; far less in 8 ..
+/* Gas through its middle: seen emissivity times a grey body's radiance there, as smoke.h gives it; far less in 8 ..
  * 12 um; nothing in the optical bands; and as warm as the air it can not be told from the air beside it. */
 static void gas_shines_by_its_bands(void **state)
 {
@@ -136,10 +135,10 @@ static void gas_shines_by_its_bands(void **state)
     boresight(tau, added, &puff, &air);
     CHECK(effect_volume(&v, &effects, &puff, &air.light.weather, &world.frame));
     const double k = air_k_at(&puff, &air) + v.temp_k - 288.15, column_m = 16.0 / 15 * v.across_m;
-    const HotGasColumn column = {hot_gas_atm_m(v.co2_kg_m3 * column_m, hot_gas_co2_molar_kg, k),
-                                 hot_gas_atm_m(v.h2o_kg_m3 * column_m, hot_gas_h2o_molar_kg, k)};
-    const double want[2] = {hot_gas_emissivity(HOT_GAS_MWIR, column, k) * hot_gas_passed(column.co2_atm_m, k, 500),
-                            hot_gas_emissivity(HOT_GAS_LWIR, column, k)};
+    const HotGasColumn column = {smoke_gas_atm_m(v.co2_kg_m3 * column_m, hot_gas_co2_molar_kg, k),
+                                 smoke_gas_atm_m(v.h2o_kg_m3 * column_m, hot_gas_h2o_molar_kg, k)};
+    const double want[2] = {smoke_gas_emissivity(HOT_GAS_MWIR, column, k) * smoke_gas_passed(column.co2_atm_m, k, 500),
+                            smoke_gas_emissivity(HOT_GAS_LWIR, column, k)};
     const double low_m[2] = {3.4e-6, 8e-6}, high_m[2] = {4.8e-6, 12e-6};
     for (int which = 0; which < 2; which++) {
         const int b = effect_band_mwir + which;
@@ -350,7 +349,7 @@ static void a_host_does_not_see_its_own(void **state)
         for (int k = 0; k < 3; k++) {
             EffectScene scene;
             arena_reset(arena);
-            CHECK(effects_scene(&scene, &snapshot, seen_by[k], &world.frame, &view, &air, ground_rho, all_bands, arena) ==
+            CHECK(smoke_effects_scene(&scene, &snapshot, seen_by[k], &world.frame, &view, &air, ground_rho, all_bands, arena) ==
                   STATUS_OK);
             CHECK(scene.count == (puff.owner && seen_by[k] == 0 ? 0 : 1));
         }

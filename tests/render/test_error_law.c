@@ -1,6 +1,6 @@
 /* The law by which means over n x n samples tell their own error. The budgets of frames: tests/sensor.
  * labels: physics */
-#include "render/frame/error_budget.h"
+#include "render/frame/render.h"
 #include "tests/check.h"
 
 /* Half planes at all angles and places over the turned grid, whose covered area is
@@ -28,7 +28,7 @@ static void the_law_is_that_of_half_planes(void **state)
                 in[s] = nx * (x - 0.5) + ny * (y - 0.5) < d;
                 count += in[s] > 0;
             }
-            law += error_budget_sampling_variance(in, n);
+            law += render_error_variance(in, n);
             const double error = (double)count / (n * n) - covered(nx, ny, d);
             truth += error * error;
         }

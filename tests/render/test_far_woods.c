@@ -2,8 +2,8 @@
  * and sun. labels: physics slow */
 #include "tests/check.h"
 
-#include "render/frame/heat_drive.h"
-#include "render/frame/shade_list.h"
+#include "render/frame/world.h"
+#include "tests/render/shade_list.h"
 #include "terrain/store/store.h"
 
 #include <unistd.h>
@@ -125,7 +125,7 @@ static void mean_of(double out[shown_bands], const World *world, const Air *air,
     ShadeScene     scene;
     for (int c = 0; c < 3; c++) request.view.p_enu[c] = 1000 * to_eye[c];
     assert_int_equal(shade_scene_create(&scene, world, &nobody, air, &request, (1u << AIR_BAND_COUNT) - 1, NULL, place.arena), STATUS_OK);
-    assert_int_equal(samples_create(&block, hits_capacity, place.arena), STATUS_OK);
+    assert_int_equal(shade_samples_create(&block, hits_capacity, place.arena), STATUS_OK);
     assert_int_equal(shaded_rays_create(&shaded, rays, place.arena), STATUS_OK);
     for (int i = 0; i < rays; i++)
         for (int c = 0; c < 3; c++) {

@@ -2,7 +2,7 @@
  * itself without the pyramid, and eight rays against one. */
 #include "tests/check.h"
 
-#include "render/ground/ground.h"
+#include "render/trace/ground/ground.h"
 
 enum { random_rays = 100000 };
 

@@ -2,7 +2,7 @@
  * that); and it must be said of most that stand well over it. labels: physics */
 #include "tests/check.h"
 
-#include "render/ground/ground.h"
+#include "render/trace/ground/ground.h"
 
 static uint64_t draw_count;
 

@@ -3,7 +3,6 @@
  * fitted to these days. labels: physics */
 #include "tests/check.h"
 #include "render/heat/ground_column.h"
-#include "render/heat/soil.h"
 
 enum { most_columns = 24, most_rows = 2000 };
 typedef struct Rows {
@@ -47,7 +46,7 @@ static void miss_alamosa(double *rms_k, double *mean_k, double dry_m)
      * 1998), at its field capacity of 0.207 (Rawls et al. 1982) under a dry layer; roughness of flat ground with sparse
      * low plants 0.01 m (Wieringa 1993). The albedo is measured every minute. */
     static const double emissivity = 0.97;
-    const GroundKind kind = {.layers = 1, .layer = {{dry_m, soil_conductivity_w_mk(0.435, 0.6, 0), soil_capacity_j_m3k(0.435, 0)}},
+    const GroundKind kind = {.layers = 1, .layer = {{dry_m, ground_soil_conductivity_w_mk(0.435, 0.6, 0), ground_soil_capacity_j_m3k(0.435, 0)}},
                              .porosity = 0.435, .quartz = 0.6, .saturation = 0.207 / 0.435, .roughness_m = 0.01,
                              .vapour = GROUND_DRY, .absorptance = 1, .emissivity = emissivity, .melts_k = INFINITY};
     const GroundExposure open = {{0, 0, 1}, 1, 1, 0};

@@ -2,7 +2,7 @@
  * kilometres are those of every triangle, for one ray, eight at a time, and rays together. */
 #include "tests/check.h"
 
-#include "render/ground/ground.h"
+#include "render/trace/ground/ground.h"
 
 #include <stdlib.h>
 

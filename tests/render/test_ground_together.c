@@ -4,7 +4,7 @@
  * labels: physics slow */
 #include "tests/check.h"
 
-#include "render/ground/ground.h"
+#include "render/trace/ground/ground.h"
 #include "render/scene/view.h"
 
 enum { tile = 1024 };
@@ -227,7 +227,7 @@ static void random_view(View *view, const Elevation *e)
     if (pick_of(16) == 0) { /* whose columns and rows are no planes */
         const double half[2] = {0.5 * view->width / view->focal_px, 0.5 * view->height / view->focal_px}, p[2] = {0, 0};
         const double r2 = half[0] * half[0] + half[1] * half[1], k[3] = {uniform(-0.1, 0.2) / r2, 0.02 / (r2 * r2), 0};
-        assert_int_equal(lens_make(&view->lens, k, p, half), STATUS_OK);
+        assert_int_equal(view_lens_make(&view->lens, k, p, half), STATUS_OK);
     }
 }
 

@@ -4,7 +4,7 @@
 
 #include "render/light/hemisphere.h"
 #include "render/light/optical.h"
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 #include "render/light/thermal.h"
 
 enum { model_plane, model_sphere, model_count };

@@ -16,7 +16,7 @@
 #include <zlib.h>
 
 #include "entities/import/model_import.h"
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 
 enum { most_rays = 8192 };
 

@@ -2,7 +2,7 @@
  * and what must hold whatever the figures. labels: physics */
 #include "tests/check.h"
 
-#include "render/smoke/hot_gas.h"
+#include "render/smoke/smoke.h"
 #include "render/materials/planck.h"
 
 /* Narrow-band model with the line-by-line parameters of Soufiani & Taine (1997), evaluated outside this program:
@@ -52,7 +52,7 @@ static void slabs_match_line_by_line_bands(void **state)
     for (size_t i = 0; i < sizeof want / sizeof *want; i++)
         for (int band = 0; band < 2; band++) {
             const HotGasColumn column = {want[i][1], want[i][2]};
-            const double error = hot_gas_emissivity((HotGasBand)band, column, want[i][0]) / want[i][3 + band] - 1;
+            const double error = smoke_gas_emissivity((HotGasBand)band, column, want[i][0]) / want[i][3 + band] - 1;
             worst[band] = fmax(worst[band], fabs(error));
         }
     CHECK_NEAR(worst[0], 0, 0.04);
@@ -61,8 +61,8 @@ static void slabs_match_line_by_line_bands(void **state)
     for (size_t i = 1; i < sizeof want / sizeof *want; i += 5) {
         const HotGasColumn column = {want[i][1], want[i][2]};
         const double t = want[i][0], black = planck_band(8e-6, 12e-6, t, NULL) / planck_band(3.4e-6, 4.8e-6, t, NULL);
-        const double lwir = hot_gas_emissivity(HOT_GAS_LWIR, column, t);
-        const double got = lwir / hot_gas_emissivity(HOT_GAS_MWIR, column, t) * black;
+        const double lwir = smoke_gas_emissivity(HOT_GAS_LWIR, column, t);
+        const double got = lwir / smoke_gas_emissivity(HOT_GAS_MWIR, column, t) * black;
         CHECK_NEAR(got / (want[i][4] / want[i][3] * black), 1, 0.06);
         CHECK(got < 0.25); /* exhaust is a source of the middle infrared */
     }
@@ -103,7 +103,7 @@ static void wide_bands_agree(void **state)
         const double t = temps_k[i], width = edwards_width_per_cm(t, 0.02), head = 2410 - 0.5 * width; /* the band ends at 2410 */
         const double low_m = 1e-2 / (head + 5), high_m = 1e-2 / (head - 5);
         const double want = width * planck_band(low_m, high_m, t, NULL) / 10 / planck_band(3.4e-6, 4.8e-6, t, NULL);
-        const double got = hot_gas_emissivity(HOT_GAS_MWIR, (HotGasColumn){0.02, 0}, t);
+        const double got = smoke_gas_emissivity(HOT_GAS_MWIR, (HotGasColumn){0.02, 0}, t);
         print_message("CO2 of %.0f K: %.4f, by Edwards %.4f: %.3f\n", t, got, want, got / want);
         CHECK_NEAR(got / want, 1, t <= 1100 ? 0.1 : 0.27); /* hotter: his strength is 2160 of HITRAN's 2600 cm-2 atm-1 */
     }
@@ -119,7 +119,7 @@ static void thin_gas_has_the_bands_intensity(void **state)
         const double u = 1e-5, low_m = 1 / 235000.0, high_m = 1 / 233000.0;
         const double per_cm = planck_band(low_m, high_m, temp_k, NULL) / 20; /* W/(m2 sr cm-1) about 2340 cm-1 */
         const double want = intensity * 273.15 / temp_k * u * 100 * per_cm / planck_band(3.4e-6, 4.8e-6, temp_k, NULL);
-        const double got = hot_gas_emissivity(HOT_GAS_MWIR, (HotGasColumn){u, 0}, temp_k);
+        const double got = smoke_gas_emissivity(HOT_GAS_MWIR, (HotGasColumn){u, 0}, temp_k);
         CHECK_NEAR(got / want, 1, temp_k < 1000 ? 0.25 : 0.15); /* hot bands lie at longer waves */
     }
 }
@@ -131,32 +131,32 @@ static void limits_hold(void **state)
         for (double temp_k = 250; temp_k <= 2600; temp_k += 50) {
             double before = 0;
             for (double u = 1e-6; u < 1e5; u *= 3) {
-                const double e = hot_gas_emissivity((HotGasBand)band, (HotGasColumn){u, u}, temp_k);
+                const double e = smoke_gas_emissivity((HotGasBand)band, (HotGasColumn){u, u}, temp_k);
                 CHECK((u < 1 ? e > before : e >= before - 1e-14) && e <= 1);
                 before = e;
             }
-            const double one = hot_gas_emissivity((HotGasBand)band, (HotGasColumn){1e-9, 1e-9}, temp_k);
-            const double two = hot_gas_emissivity((HotGasBand)band, (HotGasColumn){2e-9, 2e-9}, temp_k);
+            const double one = smoke_gas_emissivity((HotGasBand)band, (HotGasColumn){1e-9, 1e-9}, temp_k);
+            const double two = smoke_gas_emissivity((HotGasBand)band, (HotGasColumn){2e-9, 2e-9}, temp_k);
             CHECK_NEAR(two / one, 2, 1e-4);
         }
-    CHECK_NEAR(hot_gas_emissivity(HOT_GAS_LWIR, (HotGasColumn){0, 0}, 900), 0, 0);
+    CHECK_NEAR(smoke_gas_emissivity(HOT_GAS_LWIR, (HotGasColumn){0, 0}, 900), 0, 0);
     /* 1 kg/m2 of CO2 at 0 C: a mole fills 22.414 l */
-    CHECK_NEAR(hot_gas_atm_m(1, hot_gas_co2_molar_kg, 273.15), 0.022414 / 0.04401, 1e-4);
+    CHECK_NEAR(smoke_gas_atm_m(1, hot_gas_co2_molar_kg, 273.15), 0.022414 / 0.04401, 1e-4);
 }
 
 /* Cold air leaves less of cool gas than of hot, less over longer ranges, never more than of a grey body. */
 static void air_takes_the_cold_band(void **state)
 {
     (void)state;
-    CHECK_NEAR(hot_gas_passed(0.02, 700, 0), 1, 0);
-    CHECK_NEAR(hot_gas_passed(0.02, 700, 1000), 0.080, 1e-9);  /* the two-layer narrow-band model */
-    CHECK_NEAR(hot_gas_passed(0.02, 1500, 1000), 0.342, 1e-9);
+    CHECK_NEAR(smoke_gas_passed(0.02, 700, 0), 1, 0);
+    CHECK_NEAR(smoke_gas_passed(0.02, 700, 1000), 0.080, 1e-9);  /* the two-layer narrow-band model */
+    CHECK_NEAR(smoke_gas_passed(0.02, 1500, 1000), 0.342, 1e-9);
     for (double temp_k = 300; temp_k <= 2300; temp_k += 100) {
         double before = 1;
         for (double range_m = 0.1; range_m < 1e5; range_m *= 1.7) {
-            const double now = hot_gas_passed(0.02, temp_k, range_m);
+            const double now = smoke_gas_passed(0.02, temp_k, range_m);
             CHECK(now >= 0 && now <= before);
-            if (temp_k > 300) CHECK(now >= hot_gas_passed(0.02, temp_k - 100, range_m) - 0.002);
+            if (temp_k > 300) CHECK(now >= smoke_gas_passed(0.02, temp_k - 100, range_m) - 0.002);
             before = now;
         }
     }

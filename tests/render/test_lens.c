@@ -27,12 +27,12 @@ static void numbers_of_opencv(void **state)
         {0.02, -0.47, 0.01831476155137672, -0.44211473145735286}};
     const double k[3] = {-0.28, 0.09, -0.012}, p[2] = {0.0011, -0.0023}, half[2] = {0.6, 0.5};
     Lens         lens;
-    assert_int_equal(lens_make(&lens, k, p, half), STATUS_OK);
+    assert_int_equal(view_lens_make(&lens, k, p, half), STATUS_OK);
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
         double image[2], back[2];
-        lens_image(image, &lens, at[i][0], at[i][1]);
+        view_lens_image(image, &lens, at[i][0], at[i][1]);
         for (int c = 0; c < 2; c++) CHECK_NEAR(image[c], at[i][2 + c], 1e-14);
-        lens_back(back, &lens, at[i][2], at[i][3]);
+        view_lens_back(back, &lens, at[i][2], at[i][3]);
         for (int c = 0; c < 2; c++) CHECK_NEAR(back[c], at[i][c], 1e-12);
     }
 }
@@ -46,7 +46,7 @@ static bool draw_lens(Lens *lens, double half[2], int n)
     const double k[3] = {draw(n, 2, -most, most) / r2, draw(n, 3, -most, most) / 3 / (r2 * r2),
                          draw(n, 4, -most, most) / 9 / (r2 * r2 * r2)};
     const double p[2] = {draw(n, 5, -most, most) / 9 / r, draw(n, 6, -most, most) / 9 / r};
-    return lens_make(lens, k, p, half) == STATUS_OK;
+    return view_lens_make(lens, k, p, half) == STATUS_OK;
 }
 
 static void there_and_back(void **state)
@@ -64,13 +64,13 @@ static void there_and_back(void **state)
             const double x = far * half[0] * draw(n * 80 + i, 7, -1, 1),
                          y = far * half[1] * draw(n * 80 + i, 8, -1, 1);
             double       at[2], image[2];
-            lens_back(at, &lens, x, y);
-            lens_image(image, &lens, at[0], at[1]);
+            view_lens_back(at, &lens, x, y);
+            view_lens_image(image, &lens, at[0], at[1]);
             CHECK_NEAR(hypot(image[0] - x, image[1] - y), 0, far > 1 ? 1e-9 : 1e-12);
             /* what is beyond the picture stays out of it */
             const double out = 1.5 + i, u = at[0] * out, v = at[1] * out;
             if (hypot(u, v) < lens.reach) continue;
-            lens_image(image, &lens, u, v);
+            view_lens_image(image, &lens, u, v);
             CHECK(fabs(image[0]) > half[0] || fabs(image[1]) > half[1]);
         }
     }
@@ -82,12 +82,12 @@ static void arrays_give_the_bits_of_single_points(void **state)
     (void)state;
     const double k[3] = {-0.28, 0.09, -0.012}, p[2] = {0.0011, -0.0023}, half[2] = {0.6, 0.5};
     Lens         lens;
-    assert_int_equal(lens_make(&lens, k, p, half), STATUS_OK);
+    assert_int_equal(view_lens_make(&lens, k, p, half), STATUS_OK);
     for (int i = 0; i < 5000; i++) {
         const double x = draw(i, 0, -0.6, 0.6), y = draw(i, 1, -0.5, 0.5);
         double       quick[2], any[2];
         lens_back_within(quick, &lens, x, y);
-        lens_back(any, &lens, x, y);
+        view_lens_back(any, &lens, x, y);
         assert_memory_equal(quick, any, sizeof quick);
     }
 }
@@ -102,15 +102,15 @@ static void lenses_that_fold_are_refused(void **state)
         const double k[3] = {-0.02 * n, 0, 0}, turn = sqrt(1 / (0.06 * n)), highest = 2.0 / 3 * turn;
         const bool   folds = lens_room * hypot(0.5, 0.5) > highest;
         const bool   clearly = lens_room * hypot(0.5, 0.5) < 0.9 * highest;
-        const Status got = lens_make(&lens, k, p, half);
+        const Status got = view_lens_make(&lens, k, p, half);
         if (folds) assert_int_equal(got, STATUS_BAD_VALUE);
         if (clearly) assert_int_equal(got, STATUS_OK);
     }
-    assert_int_equal(lens_make(&lens, (const double[3]){NAN, 0, 0}, p, half), STATUS_BAD_VALUE);
-    assert_int_equal(lens_make(&lens, (const double[3]){0, INFINITY, 0}, p, half), STATUS_BAD_VALUE);
-    assert_int_equal(lens_make(&lens, (const double[3]){0, 0, 0}, (const double[2]){3, 0}, half), STATUS_BAD_VALUE);
+    assert_int_equal(view_lens_make(&lens, (const double[3]){NAN, 0, 0}, p, half), STATUS_BAD_VALUE);
+    assert_int_equal(view_lens_make(&lens, (const double[3]){0, INFINITY, 0}, p, half), STATUS_BAD_VALUE);
+    assert_int_equal(view_lens_make(&lens, (const double[3]){0, 0, 0}, (const double[2]){3, 0}, half), STATUS_BAD_VALUE);
     /* none: a pinhole, to the bit */
-    assert_int_equal(lens_make(&lens, (const double[3]){0, 0, 0}, p, half), STATUS_OK);
+    assert_int_equal(view_lens_make(&lens, (const double[3]){0, 0, 0}, p, half), STATUS_OK);
     CHECK(lens.reach == 0);
 }
 
@@ -128,10 +128,10 @@ static void boxes_hold_what_is_in_them(void **state)
             double       image[4] = {far * half[0] * draw(i, 1, -1, 1), far * half[1] * draw(i, 2, -1, 1)}, box[4];
             image[2] = image[0] + w, image[3] = image[1] + w;
             if (far == 1) image[2] = fmin(image[2], half[0]), image[3] = fmin(image[3], half[1]);
-            lens_box(box, &lens, image);
+            view_lens_box(box, &lens, image);
             for (int k = 0; k < 64; k++) {
                 double at[2];
-                lens_back(at, &lens, image[0] + (image[2] - image[0]) * (k % 8) / 7,
+                view_lens_back(at, &lens, image[0] + (image[2] - image[0]) * (k % 8) / 7,
                           image[1] + (image[3] - image[1]) * (k / 8) / 7);
                 CHECK(at[0] >= box[0] && at[0] <= box[2] && at[1] >= box[1] && at[1] <= box[3]);
                 if (far == 1) CHECK(fabs(at[0]) <= lens.tangent[0] && fabs(at[1]) <= lens.tangent[1]);
@@ -151,7 +151,7 @@ static View distorted_view(int width, int height, double hfov_rad, double corner
     const double r2 = half[0] * half[0] + half[1] * half[1], r = sqrt(r2);
     const double k[3] = {corner_share / r2, 0.2 * fabs(corner_share) / (r2 * r2), 0},
                  p[2] = {0.1 * corner_share / r, -0.07 * corner_share / r};
-    assert_int_equal(lens_make(&view.lens, k, p, half), STATUS_OK);
+    assert_int_equal(view_lens_make(&view.lens, k, p, half), STATUS_OK);
     return view;
 }
 
@@ -176,7 +176,7 @@ static void pixels_fill_the_picture_s_solid_angle(void **state)
             const double column = view.width * (s == 0 ? along : s == 1 ? 1 : s == 2 ? 1 - along : 0);
             const double row = view.height * (s == 0 ? 0 : s == 1 ? along : s == 2 ? 1 : 1 - along);
             double       at[2];
-            lens_back(at, &view.lens, (column - 0.5 * view.width) / view.focal_px,
+            view_lens_back(at, &view.lens, (column - 0.5 * view.width) / view.focal_px,
                       (row - 0.5 * view.height) / view.focal_px);
             const Real length = sqrtl((Real)at[0] * at[0] + (Real)at[1] * at[1] + 1),
                        d[3] = {at[0] / length, at[1] / length, 1 / length};

@@ -3,8 +3,8 @@
  * labels: physics */
 #include "tests/scenes/paper_day.h"
 
-#include "render/heat/jet_path.h"
-#include "render/heat/mark_heat.h"
+#include "render/heat/vehicle_load.h"
+#include "render/heat/heat.h"
 
 static GroundKinds kinds;
 static Arena      *arena;
@@ -136,11 +136,11 @@ static void a_box_that_left(void **state)
         MarkHeat         *heat;
         double            miss2 = 0, most = 0, worst = 0;
         int               count = 0;
-        CHECK(mark_heat_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * until_h[t], now, arena) == STATUS_OK);
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * until_h[t], now, arena) == STATUS_OK);
         for (int p = 0; p < places; p++) {
             const double y = (p - places / 2) * place_m, p_enu[3] = {0, y, 0};
             MarkedGround mark;
-            CHECK(mark_heat_at(&mark, heat, kind, p_enu, (const double[3]){0, 0, 1}, 1));
+            CHECK(heat_marks_at(&mark, heat, kind, p_enu, (const double[3]){0, 0, 1}, 1));
             const double want_k = f.surface_k[p] - f.surface_k[0]; /* against ground 3.6 m away, to the sun's side */
             if (fabs(fabs(y) - 1.7) < 0.4) continue; /* the very edge, where heat flows sideways */
             miss2 += (mark.add_k - want_k) * (mark.add_k - want_k), count++;
@@ -166,9 +166,9 @@ static void a_box_at_night(void **state)
     for (int t = 0; t < 3; t++) {
         MarkHeat    *heat;
         MarkedGround below, aside;
-        CHECK(mark_heat_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hours[t], at(h, hours[t]), arena) == STATUS_OK);
-        CHECK(mark_heat_at(&below, heat, SURFACE_BARE_SOIL, (const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, 1));
-        CHECK(mark_heat_at(&aside, heat, SURFACE_BARE_SOIL, (const double[3]){10, 0, 0}, (const double[3]){0, 0, 1}, 1));
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hours[t], at(h, hours[t]), arena) == STATUS_OK);
+        CHECK(heat_marks_at(&below, heat, SURFACE_BARE_SOIL, (const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, 1));
+        CHECK(heat_marks_at(&aside, heat, SURFACE_BARE_SOIL, (const double[3]){10, 0, 0}, (const double[3]){0, 0, 1}, 1));
         k[t] = below.add_k;
         CHECK(fabs(aside.add_k) < 0.1 * fabs(below.add_k));
     }
@@ -217,9 +217,9 @@ static void exhaust_warms_the_ground(void **state)
         const GroundMarks marks = {.stands = 1, .stand = &stand};
         MarkHeat         *heat;
         MarkedGround      mark, beside;
-        CHECK(mark_heat_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * until_h[t], at(h, until_h[t]), arena) == STATUS_OK);
-        CHECK(mark_heat_at(&mark, heat, kind, p_enu, up, 1));
-        mark_heat_at(&beside, heat, kind, (const double[3]){0, -2, 0}, up, 1); /* behind the outlet */
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * until_h[t], at(h, until_h[t]), arena) == STATUS_OK);
+        CHECK(heat_marks_at(&mark, heat, kind, p_enu, up, 1));
+        heat_marks_at(&beside, heat, kind, (const double[3]){0, -2, 0}, up, 1); /* behind the outlet */
         const double want_k = blown.surface_k[0] - still.surface_k[0];
         print_message("%.2f h: exhaust %.1f K over the air at %.1f m/s: ground %+.2f K, volumes %+.2f K\n", until_h[t], blow_excess_k,
                       speed_mps, mark.add_k, want_k);
@@ -246,10 +246,10 @@ static void a_trail_cools(void **state)
         MarkHeat    *heat;
         MarkedGround in, between, beside;
         const HeatNow *now = at(h, hour);
-        CHECK(mark_heat_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hour, now, arena) == STATUS_OK);
-        CHECK(mark_heat_at(&in, heat, SURFACE_SAND, (const double[3]){0, 1.3, 0}, (const double[3]){0, 0, 1}, 1));
-        CHECK(mark_heat_at(&between, heat, SURFACE_SAND, (const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, 1));
-        CHECK(mark_heat_at(&beside, heat, SURFACE_SAND, (const double[3]){0, 3, 0}, (const double[3]){0, 0, 1}, 1));
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hour, now, arena) == STATUS_OK);
+        CHECK(heat_marks_at(&in, heat, SURFACE_SAND, (const double[3]){0, 1.3, 0}, (const double[3]){0, 0, 1}, 1));
+        CHECK(heat_marks_at(&between, heat, SURFACE_SAND, (const double[3]){0, 0, 0}, (const double[3]){0, 0, 1}, 1));
+        CHECK(heat_marks_at(&beside, heat, SURFACE_SAND, (const double[3]){0, 3, 0}, (const double[3]){0, 0, 1}, 1));
         const double free_k = 20e3 / ((double)now->past[1].effusivity[SURFACE_SAND] * sqrt(pi_rad * ages_s[t]));
         print_message("%.0f s: %.3f K, without losses %.3f K\n", ages_s[t], in.add_k, free_k);
         CHECK(between.add_k == 0 && beside.add_k == 0 && between.loose == 0);
@@ -278,10 +278,10 @@ static void a_burst(void **state)
         const double hour = 10 + 1.0 / 60 + t;
         MarkHeat    *heat;
         MarkedGround in, ring, out;
-        CHECK(mark_heat_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hour, at(h, hour), arena) == STATUS_OK);
-        mark_heat_at(&in, heat, SURFACE_GRASS, (const double[3]){0.5, 0, 0}, (const double[3]){0, 0, 1}, 1);
-        mark_heat_at(&ring, heat, SURFACE_GRASS, (const double[3]){2, 1, 0}, (const double[3]){0, 0, 1}, 1);
-        mark_heat_at(&out, heat, SURFACE_GRASS, (const double[3]){6, 0, 0}, (const double[3]){0, 0, 1}, 1);
+        CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 3600 * hour, at(h, hour), arena) == STATUS_OK);
+        heat_marks_at(&in, heat, SURFACE_GRASS, (const double[3]){0.5, 0, 0}, (const double[3]){0, 0, 1}, 1);
+        heat_marks_at(&ring, heat, SURFACE_GRASS, (const double[3]){2, 1, 0}, (const double[3]){0, 0, 1}, 1);
+        heat_marks_at(&out, heat, SURFACE_GRASS, (const double[3]){6, 0, 0}, (const double[3]){0, 0, 1}, 1);
         CHECK(in.loose == 1 && in.burnt == 0 && ring.burnt > 0.9 && ring.loose == 0);
         CHECK(out.burnt == 0 && out.add_k == 0 && ring.add_k > 0 && ring.add_k < last_k);
         if (t == 0) CHECK(ring.add_k > 3);
@@ -309,13 +309,13 @@ static void bounds(void **state)
     const GroundMarks marks = {.stands = many, .stand = stand, .burns = many, .burn = burn};
     MarkHeat    *heat;
     MarkedGround mark;
-    CHECK(mark_heat_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 36000, now, arena) == STATUS_OK);
+    CHECK(heat_marks_create(&heat, &marks, &frame, paper_unix_s, paper_unix_s + 36000, now, arena) == STATUS_OK);
     CHECK(arena_bytes(arena) < 64 << 20);
-    mark_heat_at(&mark, heat, SURFACE_GRASS, (const double[3]){3, 4, 0}, (const double[3]){0, 0, 1}, 1);
+    heat_marks_at(&mark, heat, SURFACE_GRASS, (const double[3]){3, 4, 0}, (const double[3]){0, 0, 1}, 1);
     CHECK(isfinite(mark.add_k) && mark.burnt >= 0 && mark.burnt <= 1);
-    CHECK(!mark_heat_at(&mark, heat, SURFACE_GRASS, (const double[3]){3e4, 4e4, 0}, (const double[3]){0, 0, 1}, 1));
+    CHECK(!heat_marks_at(&mark, heat, SURFACE_GRASS, (const double[3]){3e4, 4e4, 0}, (const double[3]){0, 0, 1}, 1));
     CHECK(mark.add_k == 0);
-    CHECK(mark_heat_create(&heat, &(GroundMarks){0}, &frame, 0, 0, now, arena) == STATUS_OK && heat == NULL);
+    CHECK(heat_marks_create(&heat, &(GroundMarks){0}, &frame, 0, 0, now, arena) == STATUS_OK && heat == NULL);
     heat_destroy(h);
     arena_reset(arena);
 }

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "entities/import/model_import.h"
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 #include "render/scene/hits.h"
 
 typedef struct Scene {

@@ -2,7 +2,7 @@
  * it is on paper; its edge is warm, and nowhere is there a step. */
 #include "tests/render/hand_world.h"
 
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 
 enum { lengths = 4, width = 128, height = 48 };
 static const double half_y_m = 3, half_z_m = 1, eye_m = 20, focal_px = 384;
@@ -29,7 +29,7 @@ static View show(void)
     hand_attitude(r, 0, 0);
     const int k = hand_add(hand_plate_model, at, r), m = hand.entity[k].model;
     CHECK(tracer_need(hand.world.tracer, m) == STATUS_OK);
-    CHECK(patch_set_need(hand.world.patches, m, tracer_model(hand.world.tracer, m)) == STATUS_OK);
+    CHECK(heat_patches_need(hand.world.patches, m, tracer_model(hand.world.tracer, m)) == STATUS_OK);
     CHECK(hand.world.patches->of[m].count == lengths);
     hand.entity[k].first_patch = 0, hand.entity[k].patches = lengths;
     hand.snapshot.patch_k = warm_k, hand.snapshot.patch_count = lengths;

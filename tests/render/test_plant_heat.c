@@ -1,7 +1,7 @@
 /* Temperatures of leaves against the full, non-linear balance solved by bisection. labels: physics */
 #include "tests/check.h"
 
-#include "render/light/plant_heat.h"
+#include "render/light/thermal.h"
 
 static Material leaf_row(void)
 {
@@ -57,7 +57,7 @@ static void leaf_is_in_balance(void **state)
     for (int k = 0; k < 4 * 3 * 3 * 3; k++) {
         const double   sun = direct[k % 3], air = air_k[k / 3 % 3], share = open[k / 9 % 3];
         const Daylight light = day(sun, sun / 6, 90, wind[k / 27]);
-        const double   found = leaf_temp_k(&light, &m, air, share, share), expected = leaf_by_bisection(&light, &m, air, share);
+        const double   found = thermal_leaf_k(&light, &m, air, share, share), expected = leaf_by_bisection(&light, &m, air, share);
         most = fmax(most, fabs(found - expected));
         warmest = fmax(warmest, found - air), coldest = fmin(coldest, found - air);
         CHECK_NEAR(found, expected, 0.05 + 0.05 * fabs(expected - air));
@@ -66,9 +66,9 @@ static void leaf_is_in_balance(void **state)
     CHECK(warmest < 15 && coldest > -8);
     /* by day warmer in calm air than in wind, and in the open than in the shade; by night colder than the air */
     const Daylight calm = day(800, 120, 90, 0.5), windy = day(800, 120, 90, 8), night = day(0, 0, 90, 2);
-    CHECK(leaf_temp_k(&calm, &m, 295, 1, 1) > leaf_temp_k(&windy, &m, 295, 1, 1));
-    CHECK(leaf_temp_k(&calm, &m, 295, 1, 1) > leaf_temp_k(&calm, &m, 295, 0.1, 0.1));
-    CHECK(leaf_temp_k(&night, &m, 285, 1, 1) < 285);
+    CHECK(thermal_leaf_k(&calm, &m, 295, 1, 1) > thermal_leaf_k(&windy, &m, 295, 1, 1));
+    CHECK(thermal_leaf_k(&calm, &m, 295, 1, 1) > thermal_leaf_k(&calm, &m, 295, 0.1, 0.1));
+    CHECK(thermal_leaf_k(&night, &m, 285, 1, 1) < 285);
 }
 
 int main(void)

@@ -2,7 +2,7 @@
  * the second level of detail. */
 #include "tests/check.h"
 
-#include "render/plants/plants.h"
+#include "render/trace/plants/plants.h"
 
 static Plants *plants;
 

@@ -2,7 +2,7 @@
  * under the same weather, in steps of half the length. labels: physics slow */
 #include "tests/check.h"
 
-#include "render/frame/heat_drive.h"
+#include "render/frame/world.h"
 #include "render/probe.h"
 #include "terrain/probe.h"
 
@@ -82,9 +82,9 @@ static double march(GroundColumn *c, const GroundExposure *e, double begin_s, do
     GroundWeather w[2];
     double        sum = 0;
     const int     steps = (int)round(12 * hours);
-    heat_drive_weather(&w[0], begin_s, &ground.drive);
+    world_heat_weather(&w[0], begin_s, &ground.drive);
     for (int i = 0; i < steps; i++) {
-        heat_drive_weather(&w[1], begin_s + 300 * (i + 1), &ground.drive);
+        world_heat_weather(&w[1], begin_s + 300 * (i + 1), &ground.drive);
         ground_column_step(c, ground_grid_default.tolerance_k, &w[0], &w[1], e, 300);
         sum += c->state.temp_k[0] / steps;
         w[0] = w[1];
@@ -132,7 +132,7 @@ static void level_ground_is_its_column(void **state)
 
             GroundWeather w;
             SurfaceFlux   flux;
-            heat_drive_weather(&w, midnight_s + 3600 * hour[h], &ground.drive);
+            world_heat_weather(&w, midnight_s + 3600 * hour[h], &ground.drive);
             ground_flux(&flux, &column, &w, &level);
             CHECK_NEAR(row[1], w.air.temp_k, 1e-9);
             CHECK_NEAR(row[2], flux.absorbed_w_m2, 0.1);

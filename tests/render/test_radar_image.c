@@ -4,7 +4,7 @@
  * its effective area, over range squared, times the lobe's peak. Effective areas: plate a b cos(tilt); dihedral of
  * square faces 2 a b min(sin, cos); square trihedral on its axis sqrt(3) a^2. labels: physics */
 #include "tests/check.h"
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 #include "render/scattering/radar_image.h"
 
 static const double edge_m = 2, range_m = 1500, lobe_rad = 0.05;

@@ -2,7 +2,7 @@
  * what it is. */
 #include "tests/render/hand_world.h"
 
-#include "render/frame/shade_list.h"
+#include "tests/render/shade_list.h"
 
 enum { all_rays = 5000 };
 static const double sun_enu[3] = {-0.6, 0, 0.8}, eye_enu[3] = {0, 0, 60};
@@ -20,7 +20,7 @@ static int open_world(void **state)
     if (hand_open(true) != 0) return -1;
     arena = arena_create();
     return arena && (shader = arena_alloc(arena, 1, sizeof *shader)) &&
-                   samples_create(&block, hits_capacity, arena) == STATUS_OK
+                   shade_samples_create(&block, hits_capacity, arena) == STATUS_OK
                ? 0
                : -1;
 }

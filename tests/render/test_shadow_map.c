@@ -1,7 +1,7 @@
 /* Shadows over the day on a grid: the length of a ridge's shadow by its height and the sun's, at any azimuth; what an even
  * stand lets through by Beer's law; the ground's own slopes; bounds. */
 #include "tests/check.h"
-#include "render/heat/shadow_map.h"
+#include "render/heat/heat.h"
 
 enum { posts = 201 };
 static const double spacing_m = 8;
@@ -37,7 +37,7 @@ static void length_of_a_shadow(void **state)
     ridge(40);
     for (int s = 0; s < 6; s++) slot(d, s, azimuth[s], high[s]);
     CHECK(pool_create(&pool, 2) == STATUS_OK);
-    CHECK(shadow_map_create(&map, &ground, 8, 6, d, NULL, NULL, pool) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &ground, 8, 6, d, NULL, NULL, pool) == STATUS_OK);
     for (int s = 0; s < 6; s++) {
         /* across the ridge */
         const double reach_m = 40 / tan(high[s] * rad_per_deg) * fabs(sin(azimuth[s] * rad_per_deg));
@@ -45,22 +45,22 @@ static void length_of_a_shadow(void **state)
         uint8_t      shadow[shadow_most_slots];
         double       open, shaded_m = 0;
         for (double x = 12; x < 400; x += 2) {
-            shadow_map_at(shadow, &open, map, away * x, 0);
+            heat_shadow_at(shadow, &open, map, away * x, 0);
             shaded_m += 2 * shadow[s] / 255.0;
             CHECK(open == 1);
         }
-        shadow_map_at(shadow, &open, map, -away * 40, 0);
+        heat_shadow_at(shadow, &open, map, -away * 40, 0);
         CHECK(shadow[s] == 0);
         print_message("sun %g, %g degrees up: shaded to %.0f m, %.0f m by its height\n", azimuth[s], high[s], 12 + shaded_m, reach_m);
         CHECK_NEAR(12 + shaded_m, reach_m, 8);
     }
     uint8_t shadow[shadow_most_slots];
     double  open;
-    shadow_map_at(shadow, &open, map, 5000, 0);
+    heat_shadow_at(shadow, &open, map, 5000, 0);
     CHECK(shadow[0] == 0 && shadow[5] == 0 && open == 1);
-    shadow_map_at(shadow, &open, map, NAN, 0);
+    heat_shadow_at(shadow, &open, map, NAN, 0);
     CHECK(shadow[0] == 0 && open == 1);
-    shadow_map_destroy(map);
+    heat_shadow_destroy(map);
     pool_destroy(pool);
 }
 
@@ -79,20 +79,20 @@ static void light_below_a_stand(void **state)
     slot(d, 0, 90, 50);
     slot(d, 1, 270, 30);
     slot(d, 2, 180, 90);
-    CHECK(shadow_map_create(&map, &ground, 8, 3, d, even_stand, NULL, NULL) == STATUS_OK);
+    CHECK(heat_shadow_create(&map, &ground, 8, 3, d, even_stand, NULL, NULL) == STATUS_OK);
     uint8_t shadow[shadow_most_slots];
     double  open;
-    shadow_map_at(shadow, &open, map, -300, 40);
+    heat_shadow_at(shadow, &open, map, -300, 40);
     for (int s = 0; s < 3; s++) CHECK_NEAR(1 - shadow[s] / 255.0, exp(-0.5 * 3 / (double)d[2][s]), 0.02);
     CHECK_NEAR(open, 0.2, 0.01);
-    shadow_map_at(shadow, &open, map, 300, 40);
+    heat_shadow_at(shadow, &open, map, 300, 40);
     CHECK(shadow[0] == 0 && shadow[1] == 0 && open == 1);
     /* beside it: the sun in the west shines through, and below the crowns */
-    shadow_map_at(shadow, &open, map, 16, 0);
+    heat_shadow_at(shadow, &open, map, 16, 0);
     CHECK(shadow[1] > 100 && shadow[0] == 0);
-    shadow_map_at(shadow, &open, map, 20 / tan(30 * rad_per_deg) + 20, 0);
+    heat_shadow_at(shadow, &open, map, 20 / tan(30 * rad_per_deg) + 20, 0);
     CHECK(shadow[1] == 0);
-    shadow_map_destroy(map);
+    heat_shadow_destroy(map);
 }
 
 static void large_terrain_has_larger_cells(void **state)
@@ -102,11 +102,11 @@ static void large_terrain_has_larger_cells(void **state)
     ShadowMap *map;
     ridge(5);
     slot(d, 0, 90, 50);
-    CHECK(shadow_map_create(&map, &ground, 0.5, 1, d, NULL, NULL, NULL) == STATUS_OK);
-    CHECK(shadow_map_cell_m(map) == 1 && shadow_map_bytes(map) < 9 * (size_t)shadow_most_cells);
-    shadow_map_destroy(map);
-    CHECK(shadow_map_create(&map, &ground, 0, 1, d, NULL, NULL, NULL) == STATUS_BAD_VALUE);
-    CHECK(shadow_map_create(&map, &(Elevation){0}, 8, 1, d, NULL, NULL, NULL) == STATUS_BAD_VALUE);
+    CHECK(heat_shadow_create(&map, &ground, 0.5, 1, d, NULL, NULL, NULL) == STATUS_OK);
+    CHECK(heat_shadow_cell_m(map) == 1 && heat_shadow_bytes(map) < 9 * (size_t)shadow_most_cells);
+    heat_shadow_destroy(map);
+    CHECK(heat_shadow_create(&map, &ground, 0, 1, d, NULL, NULL, NULL) == STATUS_BAD_VALUE);
+    CHECK(heat_shadow_create(&map, &(Elevation){0}, 8, 1, d, NULL, NULL, NULL) == STATUS_BAD_VALUE);
     elevation_destroy(&ground);
 }
 

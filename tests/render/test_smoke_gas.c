@@ -3,7 +3,7 @@
  * labels: physics */
 #include "tests/check.h"
 
-#include "render/smoke/smoke_volume.h"
+#include "render/smoke/smoke.h"
 
 static Rays      rays;
 static double    far_m[hits_capacity];
@@ -18,7 +18,7 @@ static SmokeGas    gas[most_volumes];
 static void put(int i, double z_m, double radius_m, double co2_atm, double h2o_atm, double temp_k, double source)
 {
     gas[i] = (SmokeGas){.co2_atm = co2_atm, .h2o_atm = h2o_atm, .passed = {1, 1, 1}, .source = {source, source}};
-    for (int band = 0; band < 2; band++) hot_gas_weights(gas[i].weight[band], (HotGasBand)band, temp_k);
+    for (int band = 0; band < 2; band++) smoke_gas_weights(gas[i].weight[band], (HotGasBand)band, temp_k);
     volume[i] = (SmokeVolume){.p_enu = {0, 0, z_m}, .axis_enu = {1, 0, 0}, .along_m = radius_m, .across_m = radius_m,
                               .range_m = z_m, .even = true, .d_sun_enu = {0, 0.6, 0.8}, .gas = &gas[i]};
 }
@@ -87,7 +87,7 @@ static void columns_add(void **state)
 {
     (void)state;
     for (int band = 0; band < 2; band++) {
-        const double want = hot_gas_emissivity((HotGasBand)band, (HotGasColumn){0.03, 0.02}, 900);
+        const double want = smoke_gas_emissivity((HotGasBand)band, (HotGasColumn){0.03, 0.02}, 900);
         put(0, 100, 1, 0.015, 0.01, 900, 7);
         look(1, 0);
         CHECK_NEAR(seen(mwir + band), want, 3e-7);
@@ -133,16 +133,16 @@ static double transported(HotGasBand band, const double temp_k[], const double c
 {
     static double weight[8][2][hot_gas_terms];
     double        rate[2][hot_gas_terms], sum = 0;
-    for (int l = 0; l < layers; l++) hot_gas_weights(weight[l], band, temp_k[l]);
+    for (int l = 0; l < layers; l++) smoke_gas_weights(weight[l], band, temp_k[l]);
     for (int g = 0; g < 2; g++) /* rates, from the function itself: a thin column of one term */
         for (int j = 0; j < hot_gas_terms; j++) {
             double one[2][hot_gas_terms] = {{0}};
             const double u = 1e-9;
             HotGasRay    ray;
-            hot_gas_start(&ray);
+            smoke_gas_start(&ray);
             one[g][j] = 1;
             const HotGasColumn thin = {g ? 0 : u, g ? u : 0};
-            rate[g][j] = hot_gas_through(&ray, band, thin, (const double(*)[hot_gas_terms])one) / u;
+            rate[g][j] = smoke_gas_through(&ray, band, thin, (const double(*)[hot_gas_terms])one) / u;
         }
     for (int i = 0; i <= hot_gas_terms; i++)
         for (int j = 0; j <= hot_gas_terms; j++) { /* the last of each: what is transparent */

@@ -1,7 +1,7 @@
 /* Smoke along a ray, against what is known on paper: balls of one density, balls that fall off, two of them in either
  * order, a wall inside, a cavity of one temperature. labels: physics */
 #include "tests/check.h"
-#include "render/smoke/smoke_volume.h"
+#include "render/smoke/smoke.h"
 
 static Rays     rays;
 static double   far_m[hits_capacity];

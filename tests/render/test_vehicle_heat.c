@@ -144,11 +144,11 @@ static void engines_warm_and_stay_warm(void **state)
     const double bore_k = mean_k(heat, &s, HEAT_GUN, NULL);
     VehicleNodes before, after;
     CHECK(vehicle_heat_nodes(&before, heat, s.entity.id));
-    const double held_j = network_heat_j(before.shape->network, before.temp_k), in_j = before.heat_in_j;
+    const double held_j = heat_network_heat_j(before.shape->network, before.temp_k), in_j = before.heat_in_j;
     s.entity.drives.fired_kg[1] = 24;
     run(heat, &s, 2462, 2462);
     CHECK(vehicle_heat_nodes(&after, heat, s.entity.id));
-    const double rise_j = network_heat_j(after.shape->network, after.temp_k) - held_j;
+    const double rise_j = heat_network_heat_j(after.shape->network, after.temp_k) - held_j;
     CHECK_NEAR(rise_j, after.heat_in_j - in_j, 1e-6 * (24 * 180e3)); /* what came from outside is in its nodes */
     run(heat, &s, 2463, 2462 + 300);
     const double shot_k = mean_k(heat, &s, HEAT_GUN, NULL) - bore_k;
@@ -206,14 +206,14 @@ static void a_restart_goes_on(void **state)
     for (int c = 0; c < 3; c++) { /* kept; not; kept too long ago */
         KeptHeat    *file = NULL;
         VehicleHeat *again;
-        CHECK(kept_heat_open(&file, path) == STATUS_OK);
+        CHECK(heat_kept_open(&file, path) == STATUS_OK);
         last_run = c == 1 ? NULL : file;
         again = start(30);
         s.snapshot.t_s = c == 2 ? 40000 : 2400;
         CHECK(vehicle_heat_tick(again, &s.snapshot) == STATUS_OK);
         again_k[c] = mean_k(again, &s, HEAT_TRACK, NULL);
         vehicle_heat_destroy(again);
-        kept_heat_close(file);
+        heat_kept_close(file);
     }
     last_run = NULL;
     print_message("tracks after a restart %.2f K, unbroken %.2f K, with an assumed past %.2f K\n", again_k[0], tracks_k, again_k[1]);
@@ -227,7 +227,7 @@ static void a_restart_goes_on(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         KeptHeat *file = NULL;
         text_file(path, bad[i]);
-        CHECK(kept_heat_open(&file, path) == STATUS_BAD_VALUE && !file);
+        CHECK(heat_kept_open(&file, path) == STATUS_BAD_VALUE && !file);
         remove(path);
     }
     vehicle_heat_destroy(whole);
@@ -244,10 +244,10 @@ static void heat_is_kept(void **state)
     run(heat, &s, 0, 0);
     VehicleNodes n;
     CHECK(vehicle_heat_nodes(&n, heat, s.entity.id));
-    const double held_j = network_heat_j(n.shape->network, n.temp_k), in_j = n.heat_in_j;
+    const double held_j = heat_network_heat_j(n.shape->network, n.temp_k), in_j = n.heat_in_j;
     run(heat, &s, 1, 600);
     CHECK(vehicle_heat_nodes(&n, heat, s.entity.id));
-    const double gained_j = network_heat_j(n.shape->network, n.temp_k) - held_j;
+    const double gained_j = heat_network_heat_j(n.shape->network, n.temp_k) - held_j;
     print_message("gained %.6g J, from outside %.6g J\n", gained_j, n.heat_in_j - in_j);
     CHECK(fabs(gained_j) > 1e5);
     CHECK_NEAR(gained_j, n.heat_in_j - in_j, 1e-6 * held_j);
@@ -453,7 +453,7 @@ static void a_new_model_is_cut_meanwhile(void **state)
     const PatchSet   before = stage.patches;
     enclose(288);
     place(&s, tank, (EntityDrives){.engine = 1});
-    CHECK(patch_set_create(&own, catalog_model_count(stage.catalog)) == STATUS_OK);
+    CHECK(heat_patches_create(&own, catalog_model_count(stage.catalog)) == STATUS_OK);
     stage.patches = own;
     heat[0] = start_limited(30, 3500), heat[1] = start_limited(30, 3500);
     for (int k = 0; k < 2; k++) CHECK(vehicle_heat_tick(heat[k], &none) == STATUS_OK);
@@ -469,7 +469,7 @@ static void a_new_model_is_cut_meanwhile(void **state)
     none.t_s = 5;
     CHECK(vehicle_heat_tick(heat[1], &none) == STATUS_OK);
     for (int k = 0; k < 2; k++) vehicle_heat_destroy(heat[k]);
-    patch_set_destroy(&stage.patches);
+    heat_patches_destroy(&stage.patches);
     stage.patches = before;
 }
 

@@ -5,7 +5,7 @@
 #include "tests/render/vehicle_stage.h"
 
 #include "render/heat/surface_flux.h"
-#include "render/heat/vehicle_near.h"
+#include "render/heat/vehicle_state.h"
 
 static PlaceHeat weather; /* at all times and places */
 
@@ -87,7 +87,7 @@ static void begin_at(KeptHeat **kept, DisEntityId id, DisEntityType type, double
     for (int k = 0; k < n.shape->nodes; k++) node_k[k] = temp_k;
     text_file(path, "");
     const KeptNodes nodes = {id, tracer_model(stage.tracer, c.entity[0].model)->name, 0, n.shape->nodes, node_k};
-    CHECK(kept_heat_save(&nodes, 1, path) == STATUS_OK && kept_heat_open(kept, path) == STATUS_OK);
+    CHECK(heat_kept_save(&nodes, 1, path) == STATUS_OK && heat_kept_open(kept, path) == STATUS_OK);
     remove(path);
     vehicle_heat_destroy(heat);
     last_run = *kept;
@@ -96,7 +96,7 @@ static void begin_at(KeptHeat **kept, DisEntityId id, DisEntityType type, double
 static void forget(KeptHeat *kept)
 {
     last_run = NULL;
-    kept_heat_close(kept);
+    heat_kept_close(kept);
 }
 
 /* Of the patches of an entity that face within 60 degrees of a way (body axes), by area. */
@@ -162,7 +162,7 @@ static void plates_see_each_other_as_published(void **state)
         const PatchPose *other[2] = {NULL, &at[1]}; /* one is gone */
         for (int i = 0; i < patches.count; i++) {
             NearView view;
-            patch_view_near(&view, &at[0], i, other, 2);
+            vehicle_view_near(&view, &at[0], i, other, 2);
             const int all = view.sky + view.ground + view.under + view.own;
             CHECK(view.own == 0 && view.under == 0);
             for (int k = 0; k < view.partners; k++) CHECK(view.slot[k] == 1 && view.patch[k] < patches.count);
@@ -178,7 +178,7 @@ static void plates_see_each_other_as_published(void **state)
     }
 }
 
-/* Towards a direction k of many about a normal, by the cosine; not those of patch_view.c. */
+/* Towards a direction k of many about a normal, by the cosine; not those of heat_patches.c. */
 static void cosine_way(double d[3], const double n[3], int k, int many)
 {
     double u[3], v[3], axis[3] = {0, 0, 0};
@@ -252,7 +252,7 @@ static double facing_k4(const Crowd *c, int at, const double way_enu[3])
     for (int i = 0; i < posed.pose.patches->count; i++) {
         double       n_enu[3];
         const double area_m2 = patch_open_m2(&posed.pose.patches->patch[i]);
-        patch_view_normal(n_enu, &posed.pose, i);
+        vehicle_view_normal(n_enu, &posed.pose, i);
         if (!(v3_dot(n_enu, way_enu) > 0.5)) continue;
         sum += area_m2 * pow((double)c->snapshot.patch_k[c->entity[at].first_patch + i], 4), m2 += area_m2;
     }
@@ -340,9 +340,9 @@ static void a_wall_sends_light(void **state)
     for (int i = 0; i < house.pose.patches->count; i++) { /* the wall that faces it */
         double    n_enu[3];
         PatchView view;
-        patch_view_normal(n_enu, &house.pose, i);
+        vehicle_view_normal(n_enu, &house.pose, i);
         if (!(house.pose.patches->patch[i].facing > 0.5 && n_enu[0] < -0.8)) continue;
-        patch_view_look(&view, &house.pose, i);
+        vehicle_view_look(&view, &house.pose, i);
         const double rho = 1 - of[1].shape->skin[i].absorptance;
         sent_w_m2 += patch_open_m2(&house.pose.patches->patch[i]) * rho * sky_w_m2 * (double)view.sky;
         m2 += patch_open_m2(&house.pose.patches->patch[i]);
@@ -390,7 +390,7 @@ static void what_one_loses_the_other_gains(void **state)
             const PatchPose *near[1] = {&its.pose};
             for (int i = 0; i < own.pose.patches->count; i++) {
                 NearView view;
-                patch_view_near(&view, &own.pose, i, near, 1);
+                vehicle_view_near(&view, &own.pose, i, near, 1);
                 const int all = view.sky + view.ground + view.under + view.own;
                 m2[side] += patch_open_m2(&own.pose.patches->patch[i]) * all / (patch_points * patch_near_rays);
             }
@@ -594,16 +594,16 @@ static void neighbours_are_bounded(void **state)
     const double sun[3] = {0, 0, -1};
     for (int i = 0; i < 16; i++)
         body[i] = (NearBody){.id = {1, 1, (uint16_t)(i + 1)}, .p_enu = {i == 0 ? 0 : 2.5 * (17 - i) + 1.5, 0, 0}, .radius_m = 3};
-    neighbours_find(&found, body, 16, 0, sun, false);
+    vehicle_neighbours_find(&found, body, 16, 0, sun, false);
     CHECK(found.count == near_seen_most && found.left_out == 7);
     for (int k = 0; k < found.count; k++) CHECK(found.of[k].body == 15 - k && found.of[k].why == NEAR_SEEN);
     /* the same share: by id */
     for (int i = 1; i < 16; i++) body[i].p_enu[0] = i % 2 ? 12 : -12;
-    neighbours_find(&found, body, 16, 0, sun, false);
+    vehicle_neighbours_find(&found, body, 16, 0, sun, false);
     for (int k = 0; k < found.count; k++) CHECK(found.of[k].body == k + 1);
     /* a jet, and the sun behind one of them */
     body[15].jet_m = 100;
-    neighbours_find(&found, body, 16, 0, (const double[3]){1, 0, 1e-3}, false);
+    vehicle_neighbours_find(&found, body, 16, 0, (const double[3]){1, 0, 1e-3}, false);
     int jets = 0, suns = 0;
     for (int k = 0; k < found.count; k++) jets += (found.of[k].why & NEAR_JET) != 0, suns += (found.of[k].why & NEAR_SUN) != 0;
     CHECK(jets == 1 && suns == 8 && found.count == 12); /* eight are seen, four more stand in the sun, the last blows too */

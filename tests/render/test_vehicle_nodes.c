@@ -277,11 +277,11 @@ static void energy_closes(void **state)
         place(&s, types[t], (EntityDrives){.engine = 0.7f, .speed_mps = 6});
         run(heat, &s, 0, 0);
         CHECK(vehicle_heat_nodes(&n, heat, s.entity.id));
-        const double held_j = network_heat_j(n.shape->network, n.temp_k), in_j = n.heat_in_j;
+        const double held_j = heat_network_heat_j(n.shape->network, n.temp_k), in_j = n.heat_in_j;
         CHECK((n.shape->fuel >= 0) == (t != 1));
         run(heat, &s, 10, 900);
         CHECK(vehicle_heat_nodes(&n, heat, s.entity.id));
-        const double gained_j = network_heat_j(n.shape->network, n.temp_k) - held_j;
+        const double gained_j = heat_network_heat_j(n.shape->network, n.temp_k) - held_j;
         CHECK(fabs(gained_j) > 1e5);
         CHECK_NEAR((gained_j - (n.heat_in_j - in_j)) / held_j, 0, 1e-6);
         vehicle_heat_destroy(heat);

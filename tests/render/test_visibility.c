@@ -4,8 +4,8 @@
 
 #include <unistd.h>
 
-#include "render/parts/parts.h"
-#include "render/visibility/visibility.h"
+#include "render/trace/parts/parts.h"
+#include "render/trace/visibility/visibility.h"
 
 enum { model_box, model_plate, model_sphere, model_count, most_entities = 240 };
 

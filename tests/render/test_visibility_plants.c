@@ -4,8 +4,8 @@
 #include "tests/render/hand_models.h"
 #include "tests/render/hand_plants.h"
 
-#include "render/parts/parts.h"
-#include "render/visibility/visibility.h"
+#include "render/trace/parts/parts.h"
+#include "render/trace/visibility/visibility.h"
 
 enum { trees = 300, side = 32 };
 

@@ -5,7 +5,7 @@
 #include "tests/check.h"
 
 #include "render/heat/vehicle_heat.h"
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 
 typedef struct Stage {
     Catalog   *catalog;
@@ -28,7 +28,7 @@ static inline int open_stage(void **state)
     CHECK(etc_path(path, sizeof path, "heat.csv") && etc_path(machines, sizeof machines, "heat_machines.csv"));
     CHECK(part_table_open(&stage.table, path, machines) == STATUS_OK);
     CHECK(tracer_create(&stage.tracer, stage.catalog, "avx2") == STATUS_OK);
-    CHECK(patch_set_create(&stage.patches, catalog_model_count(stage.catalog)) == STATUS_OK);
+    CHECK(heat_patches_create(&stage.patches, catalog_model_count(stage.catalog)) == STATUS_OK);
     CHECK(local_frame_at(&stage.frame, &(Geodetic){0.7, 0.2, 0}) == STATUS_OK);
     return (stage.arena = arena_create()) == NULL;
 }
@@ -37,7 +37,7 @@ static inline int close_stage(void **state)
 {
     (void)state;
     arena_destroy(stage.arena);
-    patch_set_destroy(&stage.patches);
+    heat_patches_destroy(&stage.patches);
     tracer_destroy(stage.tracer);
     materials_close(&stage.materials);
     catalog_close(stage.catalog);

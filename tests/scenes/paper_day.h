@@ -4,7 +4,7 @@
 #define TESTS_SCENES_PAPER_DAY_H
 
 #include "tests/check.h"
-#include "render/heat/heat_scene.h"
+#include "render/heat/heat.h"
 
 typedef struct PaperDay {
     double air_k, range_k, wind_mps, declination_rad, direct_w_m2, latitude_rad;

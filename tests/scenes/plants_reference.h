@@ -3,7 +3,7 @@
 #ifndef TESTS_SCENES_PLANTS_REFERENCE_H
 #define TESTS_SCENES_PLANTS_REFERENCE_H
 
-#include "render/forest/forest.h"
+#include "render/trace/plants/forest.h"
 
 /* The worst so far, m. INFINITY: an answer that no tolerance explains. */
 typedef struct PlantErrors {

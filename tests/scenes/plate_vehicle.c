@@ -20,7 +20,7 @@ void plate_vehicle(PlateVehicle *out, int nodes)
 Status plate_vehicle_create(Network **out, const PlateVehicle *vehicle)
 {
     const int flows = vehicle_flows * vehicle->nodes;
-    return network_create(out, &(NetworkShape){vehicle->nodes, flows, flows, vehicle->capacity_j_k, vehicle->link,
+    return heat_network_create(out, &(NetworkShape){vehicle->nodes, flows, flows, vehicle->capacity_j_k, vehicle->link,
                                                vehicle->exchange});
 }
 

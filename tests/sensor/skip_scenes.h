@@ -109,7 +109,7 @@ static inline void keeps_the_bits(int n)
     for (int k = 0; k < SKIP_COUNT; k++) stage.skipped[k] += frame.picture.counters.visibility.skipped[k];
     for (int k = 0; k <= SKIP_COUNT; k++) {
         frame.request.skips_off = k < SKIP_COUNT ? 1u << k : skips_all_off;
-        snprintf(what, sizeof what, "scene %d without skip %s", n, k < SKIP_COUNT ? skip_name((Skip)k) : "all");
+        snprintf(what, sizeof what, "scene %d without skip %s", n, k < SKIP_COUNT ? visibility_skip_name((Skip)k) : "all");
         trial_frame(&frame);
         assert_int_equal(frame.status, STATUS_OK);
         assert_int_equal(trial_frame_hash(other, &frame), STATUS_OK);
@@ -117,7 +117,7 @@ static inline void keeps_the_bits(int n)
         check_targets(target, frame.picture.target, frame.snapshot.count, what);
         for (int j = 0; j < SKIP_COUNT; j++)
             if (!skips(frame.request.skips_off, (Skip)j) && frame.picture.counters.visibility.skipped[j] != 0)
-                fail_msg("%s: still skips %s", what, skip_name((Skip)j));
+                fail_msg("%s: still skips %s", what, visibility_skip_name((Skip)j));
     }
     trial_scene_close(&stage.scene);
 }
@@ -127,7 +127,7 @@ static inline void each_skip_was_taken(void **state)
 {
     (void)state;
     for (int k = 0; k < SKIP_COUNT; k++)
-        if (stage.skipped[k] == 0) fail_msg("%s was never taken: choose other scenes", skip_name((Skip)k));
+        if (stage.skipped[k] == 0) fail_msg("%s was never taken: choose other scenes", visibility_skip_name((Skip)k));
 }
 
 #endif

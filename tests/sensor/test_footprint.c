@@ -115,7 +115,7 @@ static void through_a_lens(void **state)
     View                view = view_at(2100, true, 30);
     const double        k[3] = {-0.8, 0.1, 0}, p[2] = {0.002, -0.001};
     truth_footprint(plain, &lab.world, &view);
-    assert_int_equal(lens_make(&view.lens, k, p, (double[2]){320 / view.focal_px, 240 / view.focal_px}), STATUS_OK);
+    assert_int_equal(view_lens_make(&view.lens, k, p, (double[2]){320 / view.focal_px, 240 / view.focal_px}), STATUS_OK);
     truth_footprint(out, &lab.world, &view);
     for (int n = 0; n < FOOTPRINT_COUNT; n++) {
         double p_enu[3], d_enu[3], p_cam[3], image_px[2];

@@ -325,7 +325,7 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
     const double half = 0.5 * picture_side / (double)c.focal_px, h2 = half * half;
     const double k123[3] = {glass->k1 / h2, glass->k2 / (h2 * h2), glass->k3 / (h2 * h2 * h2)};
     const double p12[2] = {glass->p1 / half, glass->p2 / half}, halves[2] = {half, half};
-    assert_int_equal(lens_make(&request.view.lens, k123, p12, halves), STATUS_OK);
+    assert_int_equal(view_lens_make(&request.view.lens, k123, p12, halves), STATUS_OK);
     undo(glass);
     if (lateral) request.optical = OPTICAL_RGB, memcpy(request.lateral, lateral, sizeof request.lateral);
     double eye_ecef[3], r_ecef_from_cam[9];

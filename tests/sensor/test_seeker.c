@@ -106,7 +106,7 @@ static void straight_up_and_down_still_give_a_camera(void **state)
     for (int sign = -1; sign <= 1; sign += 2) {
         const double d[3] = {0, 0, sign};
         double       r[9];
-        camera_upright(r, d);
+        view_upright(r, d);
         CHECK_NEAR(r[4], -1, 1e-15); /* the picture's down is south: its top is north */
         const double x[3] = {r[0], r[3], r[6]}, y[3] = {r[1], r[4], r[7]};
         double       z[3];
@@ -122,17 +122,17 @@ static void a_direction_may_have_any_length(void **state)
     static const double lengths[] = {1e-150, 1e-9, 0.3, 1, 650, 6.4e6, 1e150};
     static const double d[3] = {0.48, -0.6, 0.64};
     double              want[9], got[9];
-    camera_upright(want, d);
+    view_upright(want, d);
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
         double longer[3];
         v3_scale(longer, lengths[i], d);
-        camera_upright(got, longer);
+        view_upright(got, longer);
         for (int k = 0; k < 9; k++) CHECK_NEAR(got[k], want[k], 1e-15);
     }
     const double none[][3] = {{0, 0, 0}, {NAN, 0, 0}, {INFINITY, 1, 0}};
     for (int i = 0; i < 3; i++) {
         double unit[9];
-        camera_upright(got, none[i]);
+        view_upright(got, none[i]);
         m3_tmul(unit, got, got);
         for (int k = 0; k < 9; k++) CHECK_NEAR(unit[k], k % 4 == 0, 1e-15);
     }
@@ -203,12 +203,12 @@ static void a_dive_through_the_vertical_rolls_steadily(void **state)
         for (int k = 0; k <= 600; k++) {
             const double pitch = (-80 - fmin(20, 0.1 * k)) * rad_per_deg;
             const double x[3] = {sin(beside), cos(pitch) * cos(beside), sin(pitch) * cos(beside)};
-            camera_upright(cam, x); /* any body with that nose */
+            view_upright(cam, x); /* any body with that nose */
             for (int i = 0; i < 3; i++) r[3 * i] = cam[3 * i + 2], r[3 * i + 1] = cam[3 * i], r[3 * i + 2] = cam[3 * i + 1];
             tick(cam, &s, r);
             if (k > 0) most = fmax(most, fabs(roll_between(before, cam)));
             memcpy(before, cam, sizeof before);
-            camera_upright(upright, x);
+            view_upright(upright, x);
         }
         CHECK(most <= seeker_roll_rps / seeker_ticks_per_s * 1.01 + 2e-3); /* and the turn of the boresight about it */
         for (int k = 0; k < 9; k++) CHECK_NEAR(cam[k], upright[k], 1e-12);
@@ -225,7 +225,7 @@ static void beside_the_vertical_the_picture_is_upright(void **state)
             double cam[9], exact[9], meant[9], r[9], d[3];
             test_attitude(meant, heading, -0.5 * pi_rad + off, 0.3);
             for (int i = 0; i < 3; i++) d[i] = meant[3 * i];
-            camera_upright(exact, d);
+            view_upright(exact, d);
             as_sent(r, meant);
             tick(cam, &s, r);
             CHECK(fabs(roll_between(exact, cam)) * 434 < 0.1 * camera_vertical_rad / off);

@@ -1,10 +1,10 @@
-/* What paths from sample points met, kept from frame to frame (render/light/sky_kept.h): frames of a scene that lives on, after
+/* What paths from sample points met, kept from frame to frame (render/light/sky_visibility.h): frames of a scene that lives on, after
  * each thing that may change in it, against the same frames with every path traced, nothing skipped, on one thread: to
  * the bit. That something is kept, and that what moves is asked for again, by the counts; that stale meetings would have
  * shown, by pictures that differ although what moved is not on them. labels: slow */
 #include "tests/check.h"
 
-#include "render/light/sky_kept.h"
+#include "render/light/sky_visibility.h"
 #include "sensor/quality/trial.h"
 #include "terrain/ground/landscape.h"
 

@@ -122,7 +122,7 @@ static void test_near_the_exact(void **state)
         if (of->k1 != 0) {
             const double half[2] = {0.5 * width / view.focal_px, 0.5 * height / view.focal_px};
             const double k[3] = {of->k1}, p[2] = {0};
-            assert_int_equal(lens_make(&view.lens, k, p, half), STATUS_OK);
+            assert_int_equal(view_lens_make(&view.lens, k, p, half), STATUS_OK);
         }
         const RenderRequest request = {
             .view = view,

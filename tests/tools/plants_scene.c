@@ -195,12 +195,12 @@ static Status see_row(float (*radiance)[hits_capacity], Samples *s, World *world
     air_even(&air, sun_enu, sun_w_m2, sky, 0, world->planck_mwir, world->planck_lwir);
     arena_reset(arena);
     Status status = shade_scene_create(&scene, world, &empty, &air, &request, channels, NULL, arena);
-    if (status == STATUS_OK) status = samples_create(s, view->width, arena);
+    if (status == STATUS_OK) status = shade_samples_create(s, view->width, arena);
     if (status == STATUS_OK) {
         fill_rays(s, view, row);
         s->channels = channels, s->per_rad = 1; /* footprints so wide that bark has no relief */
         scene.plants.per_rad = 1;
-        samples_shade(&shader, &scene, s, NULL, -1);
+        shade_samples_shade(&shader, &scene, s, NULL, -1);
         for (int b = 0; b < bands; b++) memcpy(radiance[b], s->radiance[band_of[b]], (size_t)view->width * sizeof(float));
     }
     shade_scene_close(&scene);

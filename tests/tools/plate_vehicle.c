@@ -19,14 +19,14 @@ int main(void)
     /* not a whole number of the loads' own periods: knots unlike one another */
     for (int k = 0; k <= knots; k++) plate_vehicle_loads(load[k], &v, 1.07 * k * knot_s);
     memcpy(temp_k, v.start_k, sizeof temp_k);
-    const double before_j = network_heat_j(network, temp_k);
+    const double before_j = heat_network_heat_j(network, temp_k);
     for (int s = 0; s < knots * steps; s++) {
         NetworkLoad   at[2][nodes];
         const double *from = (const double *)load[s / steps], *to = (const double *)load[s / steps + 1];
         for (int end = 0; end < 2; end++)
             for (int i = 0; i < 4 * nodes; i++)
                 ((double *)at[end])[i] = from[i] + (s % steps + end) / (double)steps * (to[i] - from[i]);
-        if (network_step(temp_k, &heat_j, network, at[0], at[1], knot_s / steps) != STATUS_OK) return 1;
+        if (heat_network_step(temp_k, &heat_j, network, at[0], at[1], knot_s / steps) != STATUS_OK) return 1;
     }
     for (int i = 0; i < nodes; i++)
         printf("node,%d,%.17g,%.17g,%.17g\n", i, v.capacity_j_k[i], v.start_k[i], temp_k[i]);
@@ -39,7 +39,7 @@ int main(void)
             printf("load,%.17g,%d,%.17g,%.17g,%.17g,%.17g\n", k * knot_s, i, l->heat_w, l->film_w_k, l->fluid_k,
                    l->emits_m2);
         }
-    printf("heat,%.17g,%.17g\n", heat_j, network_heat_j(network, temp_k) - before_j);
-    network_destroy(network);
+    printf("heat,%.17g,%.17g\n", heat_j, heat_network_heat_j(network, temp_k) - before_j);
+    heat_network_destroy(network);
     return 0;
 }

@@ -8,7 +8,7 @@
 #ifndef RENDER_SCATTERING_CLUTTER_FOLIAGE_H
 #define RENDER_SCATTERING_CLUTTER_FOLIAGE_H
 
-#include "render/plants/plants.h"
+#include "render/trace/plants/plants.h"
 #include "render/scattering/clutter/clutter_table.h"
 #include "terrain/woods/woods.h"
 

@@ -7,7 +7,7 @@
 #ifndef RENDER_SCATTERING_FIELD_RADAR_TARGET_H
 #define RENDER_SCATTERING_FIELD_RADAR_TARGET_H
 
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 #include "render/scattering/field/edge_field.h"
 #include "render/scattering/radar_surfaces.h"
 

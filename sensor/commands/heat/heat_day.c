@@ -2,9 +2,9 @@
  * MWIR and LWIR. */
 #include "sensor/commands/heat/heat_day.h"
 
-#include "render/frame/world_vehicles.h"
+#include "render/frame/world.h"
 #include "render/materials/planck.h"
-#include "render/scene/upright.h"
+#include "render/scene/view.h"
 #include "sensor/detector/level.h"
 #include "sensor/detector/display_values.h"
 #include "sensor/publish/images/image_file.h"
@@ -51,7 +51,7 @@ static View view_of(const ModelStage *stage)
     model_stage_place(aim, stage);
     aim[2] += 0.45 * tall_m;
     v3_add_scaled(view.p_enu, aim, -away_m, towards);
-    camera_upright(view.r_enu_from_cam, towards);
+    view_upright(view.r_enu_from_cam, towards);
     return view;
 }
 

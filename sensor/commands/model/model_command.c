@@ -4,7 +4,7 @@
 #include "entities/catalog/model_info.h"
 #include "entities/import/sidecar.h"
 #include "pitviper_output.h"
-#include "render/scene/upright.h"
+#include "render/scene/view.h"
 #include "sensor/commands/model/model_stage.h"
 #include "sensor/detector/display_values.h"
 #include "sensor/detector/level.h"
@@ -71,7 +71,7 @@ static View view_of(double *px_per_m, const ModelStage *stage)
     const double towards[3] = {0, cos(down_rad), -sin(down_rad)};
     const double aim[3] = {at[0], at[1], ground_m + 0.5 * (tall_m - low_m)};
     v3_add_scaled(view.p_enu, aim, -away_m, towards);
-    camera_upright(view.r_enu_from_cam, towards);
+    view_upright(view.r_enu_from_cam, towards);
     *px_per_m = view.focal_px / away_m;
     return view;
 }

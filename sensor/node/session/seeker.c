@@ -154,7 +154,7 @@ void seeker_roll(Seeker *seeker, const double r_enu_from_body[9])
     static const double up[3] = {0, 0, 1}, tick_s = 1.0 / seeker_ticks_per_s;
     double              d[3], upright[3], carried[3], side[3];
     boresight(d, seeker, r_enu_from_body);
-    const bool vertical = camera_near_vertical(d);
+    const bool vertical = view_near_vertical(d);
     const bool kept     = seeker->top_known && across(carried, seeker->top_enu, d);
     seeker->upright     = !vertical;
     if (!vertical) {
@@ -186,9 +186,9 @@ void seeker_camera(double r_enu_from_cam[9], const Seeker *seeker, const double 
 {
     double d_enu[3], top_enu[3];
     boresight(d_enu, seeker, r_enu_from_body);
-    const bool upright = !seeker->top_known || (seeker->upright && !camera_near_vertical(d_enu));
-    if (upright || !across(top_enu, seeker->top_enu, d_enu)) camera_upright(r_enu_from_cam, d_enu);
-    else camera_topped(r_enu_from_cam, d_enu, top_enu);
+    const bool upright = !seeker->top_known || (seeker->upright && !view_near_vertical(d_enu));
+    if (upright || !across(top_enu, seeker->top_enu, d_enu)) view_upright(r_enu_from_cam, d_enu);
+    else view_topped(r_enu_from_cam, d_enu, top_enu);
     if (seeker->config.roll_rad == 0) return;
     const double c = cos(seeker->config.roll_rad), s = sin(seeker->config.roll_rad);
     for (int i = 0; i < 3; i++) {

@@ -4,7 +4,7 @@
 #define SENSOR_NODE_SESSION_SEEKER_H
 
 #include "entities/table/snapshot.h"
-#include "render/scene/upright.h"
+#include "render/scene/view.h"
 #include "sensor/settings/config.h"
 
 /* ---- the mount -------------------------------------------------------------------------------------- */

@@ -44,7 +44,7 @@ static Status open_vehicles(Session *s)
     const char  *given = shared->config->heat.given;
     const char  *kept = shared->config->heat.vehicles;
     Status       status = *given ? given_heat_open(&s->given, given) : STATUS_OK;
-    if (status == STATUS_OK && *kept && access(kept, F_OK) == 0) status = kept_heat_open(&s->kept, kept);
+    if (status == STATUS_OK && *kept && access(kept, F_OK) == 0) status = heat_kept_open(&s->kept, kept);
     if (status != STATUS_OK) return status;
     return world_vehicles_create(&s->vehicles, shared->world,
                                  &(WorldVehiclesConfig){.step_s = shared->config->heat.vehicle_step_s,
@@ -294,7 +294,7 @@ Status session_close(Session *s, SessionResult *result)
     session_radar_absent_free(s->radar_absent);
     world_vehicles_destroy(s->vehicles);
     given_heat_close(s->given);
-    kept_heat_close(s->kept);
+    heat_kept_close(s->kept);
     arena_destroy(s->vehicle_arena);
     entity_table_destroy(s->table);
     frame_pool_destroy(s->frames);

@@ -326,7 +326,7 @@ static void observer_camera(double r_enu_from_cam[9], const double p_ecef[3], co
     double p_enu[3], d_enu[3];
     enu_from_ecef(p_enu, frame, p_ecef);
     v3_sub(d_enu, aim_enu, p_enu);
-    camera_upright(r_enu_from_cam, d_enu);
+    view_upright(r_enu_from_cam, d_enu);
 }
 
 static bool observer_eye(Eye *eye, const Session *s, double t_s)
@@ -344,7 +344,7 @@ static bool observer_eye(Eye *eye, const Session *s, double t_s)
     enu_from_ecef(p_enu, frame, eye->state.p_ecef);
     v3_sub(d_enu, aim_enu, p_enu);
     if (!(v3_length(d_enu) > 0)) return false;
-    camera_upright(eye->view.r_enu_from_cam, d_enu);
+    view_upright(eye->view.r_enu_from_cam, d_enu);
     eye->hidden = eye->state.host_index = -1;
     eye->aim_known                      = true;
     memcpy(eye->p_aim_ecef, s->p_aim_ecef, sizeof eye->p_aim_ecef);

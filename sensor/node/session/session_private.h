@@ -2,7 +2,7 @@
 #ifndef SENSOR_NODE_SESSION_SESSION_PRIVATE_H
 #define SENSOR_NODE_SESSION_SESSION_PRIVATE_H
 
-#include "render/frame/world_vehicles.h"
+#include "render/frame/world.h"
 #include "sensor/frame/frame_world.h"
 #include "sensor/node/session/seeker.h"
 #include "sensor/node/player/player.h"

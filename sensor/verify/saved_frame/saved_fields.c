@@ -226,7 +226,7 @@ static void lens_fields(Fields *f, View *view)
     if (!f->from || !has || !fields_good(f)) return;
     const double half[2] = {0.5 * view->width / view->focal_px, 0.5 * view->height / view->focal_px};
     const double k[3] = {view->lens.k[0], view->lens.k[1], view->lens.k[2]}, p[2] = {view->lens.p[0], view->lens.p[1]};
-    if (lens_make(&view->lens, k, p, half) != STATUS_OK) f->fault = "lens";
+    if (view_lens_make(&view->lens, k, p, half) != STATUS_OK) f->fault = "lens";
 }
 
 void saved_fields_request(Fields *f, SavedFrame *file)

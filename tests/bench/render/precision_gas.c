@@ -2,7 +2,7 @@
  * to four times 0.02 atm m. */
 #include "tests/bench/suites.h"
 
-#include "render/smoke/hot_gas.h"
+#include "render/smoke/smoke.h"
 #include "tests/bench/bench.h"
 
 enum { settings = 4, columns = 5, temperatures = 3, rays = columns * temperatures };
@@ -15,7 +15,7 @@ static const double model[temperatures][columns] = {{0.1464, 0.1738, 0.1984, 0.2
                                                     {0.1440, 0.1951, 0.2365, 0.2687, 0.2962}};
 
 typedef struct GasSet {
-    int    gases;                                                           /* hot_gas_terms: hot_gas_through itself */
+    int    gases;                                                           /* hot_gas_terms: smoke_gas_through itself */
     double weight[temperatures][2][hot_gas_terms], rate[temperatures][hot_gas_terms];
     double seen[rays];
 } GasSet;
@@ -27,9 +27,9 @@ static void rates(double rate[hot_gas_terms])
     for (int j = 0; j < hot_gas_terms; j++) {
         double    one[2][hot_gas_terms] = {{0}};
         HotGasRay ray;
-        hot_gas_start(&ray);
+        smoke_gas_start(&ray);
         one[0][j] = 1;
-        rate[j] = hot_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){thin_atm_m, 0},
+        rate[j] = smoke_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){thin_atm_m, 0},
                                   (const double(*)[hot_gas_terms])one) / thin_atm_m;
     }
 }
@@ -40,7 +40,7 @@ static void make_gases(GasSet *s)
     double all[hot_gas_terms];
     rates(all);
     for (int t = 0; t < temperatures; t++) {
-        hot_gas_weights(s->weight[t], HOT_GAS_MWIR, temp_k[t]);
+        smoke_gas_weights(s->weight[t], HOT_GAS_MWIR, temp_k[t]);
         const int each = hot_gas_terms / s->gases;
         for (int g = 0; g < s->gases && s->gases < hot_gas_terms; g++) {
             double weight = 0, seen = 0;
@@ -64,8 +64,8 @@ static void cross(void *user)
             double       seen = 0;
             if (s->gases == hot_gas_terms) {
                 HotGasRay ray;
-                hot_gas_start(&ray);
-                seen = hot_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){atm_m, 0},
+                smoke_gas_start(&ray);
+                seen = smoke_gas_through(&ray, HOT_GAS_MWIR, (HotGasColumn){atm_m, 0},
                                        (const double(*)[hot_gas_terms])s->weight[t]);
             }
             for (int g = 0; g < s->gases && s->gases < hot_gas_terms; g++)
@@ -92,7 +92,7 @@ Status bench_precision_gas(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_tunable(bench, &(BenchTunable){"grey gases of hot gas", "render/smoke/hot_gas.h",
+    bench_tunable(bench, &(BenchTunable){"grey gases of hot gas", "render/smoke/smoke.h",
                                          "emissivity of CO2 on a ray, one band", "%",
                                          "largest, a quarter to four times 0.02 atm m, narrow-band model", 10},
                   work, point, settings);

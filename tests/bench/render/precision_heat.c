@@ -3,7 +3,7 @@
 #include "tests/scenes/heat_day.h"
 #include "tests/bench/suites.h"
 
-#include "render/heat/heat_scene.h"
+#include "render/heat/heat.h"
 #include "tests/bench/bench.h"
 #include "terrain/ground/landscape.h"
 
@@ -257,9 +257,9 @@ static void groves(ShadowStand *out, const void *user, double x_m, double y_m)
 static void cast(void *user)
 {
     ShadeSet *s = user;
-    shadow_map_destroy(s->map);
+    heat_shadow_destroy(s->map);
     s->map = NULL;
-    s->status = shadow_map_create(&s->map, s->elevation, s->cell_m, s->slots, s->d_enu, groves, NULL, s->pool);
+    s->status = heat_shadow_create(&s->map, s->elevation, s->cell_m, s->slots, s->d_enu, groves, NULL, s->pool);
     bench_keep(s->map);
 }
 
@@ -321,17 +321,17 @@ static Status tunable_shade(Bench *bench, const GroundKinds *kinds, Pool *pool)
         compare_shade(&point[k], &set[k], &fine, now, 0.48 * wide_m);
         point[k].setting = name[k], point[k].also_is = "of the places off by over 1 K, %",
         point[k].is_default = cell_m[k] == 16;
-        point[k].bytes = (double)shadow_map_bytes(set[k].map);
+        point[k].bytes = (double)heat_shadow_bytes(set[k].map);
         work[k] = (BenchWork){cast, &set[k], 1};
     }
     if (status == STATUS_OK)
         bench_tunable(bench, &(BenchTunable){"cells of past shade", "heat.shadow_m", "a map of hills and groves", "K",
                                              "rms of grass at 15 h, cells of 2 m", 2.4}, work, point, settings);
     for (int k = 0; k < settings; k++) {
-        shadow_map_destroy(set[k].map);
+        heat_shadow_destroy(set[k].map);
         set[k].map = NULL;
     }
-    shadow_map_destroy(fine.map);
+    heat_shadow_destroy(fine.map);
     heat_destroy(heat);
     if (landscape.elevation.level_count) landscape_destroy(&landscape);
     arena_destroy(arena);

@@ -6,7 +6,7 @@
 #include "render/materials/planck.h"
 #include "render/light/surface_light.h"
 #include "render/light/thermal.h"
-#include "render/smoke/smoke_volume.h"
+#include "render/smoke/smoke.h"
 #include "tests/bench/bench.h"
 
 #include <stdlib.h>
@@ -347,7 +347,7 @@ static void tunable_smoke(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_tunable(bench, &(BenchTunable){"smoke along a ray", "render/smoke/smoke_volume.h", "a ray through ten puffs, one band", "%",
+    bench_tunable(bench, &(BenchTunable){"smoke along a ray", "render/smoke/smoke.h", "a ray through ten puffs, one band", "%",
                                    "largest, even steps of 1 cm", 4}, work, point, settings);
 }
 

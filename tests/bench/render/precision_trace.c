@@ -1,8 +1,8 @@
 /* tests/bench/render/precision_trace.c: errors of the hits of rays on the ground and on parts. */
 #include "tests/bench/suites.h"
 
-#include "render/ground/ground.h"
-#include "render/parts/parts.h"
+#include "render/trace/ground/ground.h"
+#include "render/trace/parts/parts.h"
 #include "terrain/ground/landscape.h"
 #include "tests/bench/bench.h"
 
@@ -184,7 +184,7 @@ static Status tunable_ground(Bench *bench)
         work[k]  = (BenchWork){trace_ground, &set[k], ground_rays};
         point[k] = (BenchSetting){.setting = name[k], .error = error[ground_rays - 1], .is_default = k == settings - 1};
     }
-    bench_tunable(bench, &(BenchTunable){"range to the ground", "render/ground/ground.h", "an eye ray over posts of 1 m", "m",
+    bench_tunable(bench, &(BenchTunable){"range to the ground", "render/trace/ground/ground.h", "an eye ray over posts of 1 m", "m",
                                    "largest, line by line in long double", 1e-9}, work, point, settings);
     landscape_destroy(&landscape);
     return STATUS_OK;
@@ -325,7 +325,7 @@ static void time_parts(Bench *bench, const Model *model, PosedEntity *posed, con
         point[k] = (BenchSetting){.setting = name[k], .error = met > 0 ? error[met * 99 / 100] : NAN,
                                 .is_default = k == 2};
     }
-    bench_tunable(bench, &(BenchTunable){"range to a part", "render/parts/parts_trace.c", "a ray at a tank 3 km away", "m",
+    bench_tunable(bench, &(BenchTunable){"range to a part", "render/trace/parts/parts_trace.c", "a ray at a tank 3 km away", "m",
                                    "p99, the triangle's plane in long double", 1e-9}, work, point, settings);
     rtcReleaseScene(scene);
 }

@@ -4,7 +4,7 @@
 #include "tests/bench/suites.h"
 #include "render/heat/surface_flux.h"
 #include "render/heat/vehicle_heat.h"
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 
 #include <stdlib.h>
 
@@ -32,7 +32,7 @@ static void drive(void *user)
     plate_vehicle_loads(load[0], d->vehicle, 0);
     for (int s = 0; s < steps && d->status == STATUS_OK; s++) {
         plate_vehicle_loads(load[(s + 1) % 2], d->vehicle, (s + 1) * d->step_s);
-        d->status = network_step(temp_k, NULL, d->network, load[s % 2], load[(s + 1) % 2], d->step_s);
+        d->status = heat_network_step(temp_k, NULL, d->network, load[s % 2], load[(s + 1) % 2], d->step_s);
         if ((s + 1) % every == 0) memcpy(d->temp_k[(s + 1) / every - 1], temp_k, size);
     }
     bench_keep(d->temp_k);
@@ -70,7 +70,7 @@ static Status tunable_step(Bench *bench, const PlateVehicle *vehicle, Network *n
         compare(&point[k], &set[k], &fine);
     }
     if (status != STATUS_OK) return status;
-    bench_tunable(bench, &(BenchTunable){"steps of a vehicle's heat", "render/heat/network.h", "a minute of 100 nodes",
+    bench_tunable(bench, &(BenchTunable){"steps of a vehicle's heat", "render/heat/heat_network.h", "a minute of 100 nodes",
                                          "K", "largest, over two hours, steps of 1 s", 0.2}, work, point, settings);
     return STATUS_OK;
 }
@@ -83,7 +83,7 @@ Status bench_precision_network(Bench *bench)
     Status status = plate_vehicle_create(&network, &vehicle);
     if (status == STATUS_OK) status = tunable_step(bench, &vehicle, network);
     if (status != STATUS_OK) log_error("bench: precision: network: %s", status_name(status));
-    network_destroy(network);
+    heat_network_destroy(network);
     return status;
 }
 
@@ -105,7 +105,7 @@ static void steps(void *user)
     Timed *t = user;
     memcpy(t->temp_k, t->vehicle->start_k, sizeof t->temp_k);
     for (int s = 0; s < timed_steps; s++) {
-        const Status status = network_step(t->temp_k, &t->heat_j, t->network, t->load[s], t->load[s + 1], time_step_s);
+        const Status status = heat_network_step(t->temp_k, &t->heat_j, t->network, t->load[s], t->load[s + 1], time_step_s);
         t->failed += status != STATUS_OK;
     }
     bench_keep(t->temp_k);
@@ -125,7 +125,7 @@ Status bench_speed_network(Bench *bench)
     BenchRow row = bench_row_of("heat of a vehicle: a step of 30 s, 100 nodes, 1 thread", &time, "steps/s", 1);
     row.error = t.failed, row.error_limit = 0, row.error_unit = "steps", row.against = "no failure";
     bench_add(bench, &row);
-    network_destroy(t.network);
+    heat_network_destroy(t.network);
     return STATUS_OK;
 }
 
@@ -193,7 +193,7 @@ static Status begin(Morning *m, const Stage *s, int wanted)
     ecef_from_enu(m->entity.p_ecef, &s->frame, p_enu);
     m3_mul(m->entity.r_ecef_from_body, s->frame.r_ecef_from_enu, r_enu_from_body);
     m->snapshot = (Snapshot){.count = 1, .entity = &m->entity, .joints = &m->joints};
-    Status status = patch_set_create(&m->patches, catalog_model_count(s->catalog));
+    Status status = heat_patches_create(&m->patches, catalog_model_count(s->catalog));
     if (status == STATUS_OK) status = patches_create_of(&m->patches.of[s->model], tracer_model(s->tracer, s->model), wanted);
     if (status == STATUS_OK) m->patches.cut[s->model] = true;
     return status;
@@ -280,8 +280,8 @@ static Status tunable_patches(Bench *bench, const Stage *s)
     if (status == STATUS_OK)
         bench_tunable(bench, &(BenchTunable){"patches of a vehicle", "entities/models/patches.h", "half an hour of a tank, with its past",
                                              "K", "rms over its surface, the most patches", 4}, work, point, patch_settings);
-    patch_set_destroy(&fine.patches);
-    for (int i = 0; i < patch_settings; i++) patch_set_destroy(&set[i].patches);
+    heat_patches_destroy(&fine.patches);
+    for (int i = 0; i < patch_settings; i++) heat_patches_destroy(&set[i].patches);
     free(k);
     return status;
 }

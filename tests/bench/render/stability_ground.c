@@ -6,7 +6,7 @@
  * crossings by sorting. */
 #include "tests/bench/suites.h"
 #include "tests/bench/stress.h"
-#include "render/ground/ground.h"
+#include "render/trace/ground/ground.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 #include "tests/bench/suites.h"
 #include "tests/bench/stress.h"
 #include "tests/scenes/heat_day.h"
-#include "render/heat/network.h"
+#include "render/heat/heat_network.h"
 
 #include <stdlib.h>
 
@@ -310,18 +310,18 @@ static void step_once(NetworkStress *worst, Dice *dice)
         link[k] = (NetworkLink){a, another(dice, a), stress_log_uniform(dice, 1e-3, 1e4)};
         exchange[k] = (NetworkExchange){a, another(dice, a), stress_log_uniform(dice, 1e-6, 25)};
     }
-    Status       status = network_create(&n, &(NetworkShape){plates, flows, flows, capacity_j_k, link, exchange});
-    const double dt_s = stress_log_uniform(dice, 1e-3, 1e5), before_j = status == STATUS_OK ? network_heat_j(n, temp_k) : 0;
-    if (status == STATUS_OK) status = network_step(temp_k, &heat_j, n, load, NULL, dt_s);
+    Status       status = heat_network_create(&n, &(NetworkShape){plates, flows, flows, capacity_j_k, link, exchange});
+    const double dt_s = stress_log_uniform(dice, 1e-3, 1e5), before_j = status == STATUS_OK ? heat_network_heat_j(n, temp_k) : 0;
+    if (status == STATUS_OK) status = heat_network_step(temp_k, &heat_j, n, load, NULL, dt_s);
     if (status != STATUS_OK) {
         worst->energy = worst->excess = INFINITY;
     } else {
-        const double lost_j = network_heat_j(n, temp_k) - before_j - heat_j;
+        const double lost_j = heat_network_heat_j(n, temp_k) - before_j - heat_j;
         bench_worse(&worst->energy, fabs(lost_j) / (fabs(heat_j) + gross_w * dt_s + 1e-8 * before_j));
         for (int i = 0; i < plates; i++)
             bench_worse(&worst->excess, fmax(fmax(low_k - temp_k[i], temp_k[i] - high_k), 0));
     }
-    network_destroy(n);
+    heat_network_destroy(n);
 }
 
 static double network_energy(void *user, bool quick)

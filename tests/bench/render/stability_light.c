@@ -5,7 +5,7 @@
 #include "tests/bench/stress.h"
 #include "render/materials/planck.h"
 #include "render/light/surface_light.h"
-#include "render/smoke/smoke_volume.h"
+#include "render/smoke/smoke.h"
 
 #include <stdlib.h>
 
@@ -231,8 +231,8 @@ static double smoke(void *user, bool quick)
             gas[k] = (SmokeGas){.co2_atm = stress_log_uniform(&dice, 1e-300, 1e6), .h2o_atm = k % 4 ? stress_log_uniform(&dice, 1e-300, 1e6) : 0,
                                 .source = {7, 7}};
             const double gas_k = stress_log_uniform(&dice, 1, 1e5);
-            for (int band = 0; band < 2; band++) hot_gas_weights(gas[k].weight[band], (HotGasBand)band, gas_k);
-            hot_gas_passed_at(gas[k].passed, gas_k, stress_log_uniform(&dice, 1e-3, 1e6));
+            for (int band = 0; band < 2; band++) smoke_gas_weights(gas[k].weight[band], (HotGasBand)band, gas_k);
+            smoke_gas_passed_at(gas[k].passed, gas_k, stress_log_uniform(&dice, 1e-3, 1e6));
             if (k % 3 == 0) v[k].gas = &gas[k];
             list[k] = k;
         }

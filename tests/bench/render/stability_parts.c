@@ -2,7 +2,7 @@
  * represent. The reference tests every triangle separately, in long double, without boxes or Embree. */
 #include "tests/bench/suites.h"
 #include "tests/bench/stress.h"
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 
 #include <stdlib.h>
 

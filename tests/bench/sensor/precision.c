@@ -22,7 +22,7 @@ static View view_of(const Precision *p, PrecisionShot shot)
     double              d_enu[3];
     if (shot != SHOT_GROUND && shot != SHOT_HORIZON) return view;
     v3_normalize(d_enu, shot == SHOT_GROUND ? away_enu : level_enu);
-    camera_upright(view.r_enu_from_cam, d_enu);
+    view_upright(view.r_enu_from_cam, d_enu);
     return view;
 }
 
@@ -48,7 +48,7 @@ double precision_go_round(View *view, const Precision *p, int turn)
     v3_sub(d_enu, aim_enu, view->p_enu);
     const double range_m = v3_length(d_enu);
     v3_scale(d_enu, 1 / range_m, d_enu);
-    camera_upright(view->r_enu_from_cam, d_enu);
+    view_upright(view->r_enu_from_cam, d_enu);
     return range_m;
 }
 

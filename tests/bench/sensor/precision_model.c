@@ -2,7 +2,7 @@
 #include "tests/bench/sensor/precision.h"
 
 #include "entities/shapes/parametric.h"
-#include "render/parts/parts.h"
+#include "render/trace/parts/parts.h"
 
 #include <stdlib.h>
 

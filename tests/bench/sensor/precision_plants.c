@@ -2,7 +2,7 @@
  * rays a pixel, light between leaves. Each with its time and its error in small pictures of a wood. */
 #include "tests/bench/sensor/precision.h"
 
-#include "render/scene/upright.h"
+#include "render/scene/view.h"
 #include "tests/scenes/woods_stand.h"
 #include "sensor/settings/config.h"
 #include "terrain/ground/landscape.h"
@@ -44,7 +44,7 @@ static View view_of(const PlantPrecision *p, PlantShot shot)
     static const double low_enu[3] = {0, 0.99, -0.1};
     double              d_enu[3];
     if (shot != SHOT_LOW || !v3_normalize(d_enu, low_enu)) return view;
-    camera_upright(view.r_enu_from_cam, d_enu);
+    view_upright(view.r_enu_from_cam, d_enu);
     return view;
 }
 

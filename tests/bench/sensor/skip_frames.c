@@ -194,7 +194,7 @@ static void say(SkipBench *s, int k)
 {
     const Saving *best = &s->best[k];
     char          what[what_size], to[what_size];
-    snprintf(what, sizeof what, "%s", k == none_left ? "all of them" : skip_what((Skip)k));
+    snprintf(what, sizeof what, "%s", k == none_left ? "all of them" : visibility_skip_what((Skip)k));
     BenchRow row  = bench_row(what);
     snprintf(to, sizeof to, "with it, %s", settings[best->scene].name);
     row.median    = best->with_s;

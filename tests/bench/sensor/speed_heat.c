@@ -1,7 +1,7 @@
 /* tests/bench/sensor/speed_heat.c: what the ground's heat costs: spin-up, steps, shadows, hits, and a frame with it. */
 #include "tests/bench/sensor/speed_private.h"
 
-#include "render/frame/world_vehicles.h"
+#include "render/frame/world.h"
 #include "sensor/settings/config.h"
 #include "terrain/weather/weather.h"
 
@@ -57,9 +57,9 @@ typedef struct Cast {
 static void cast(void *user)
 {
     Cast *c = user;
-    shadow_map_destroy(c->map);
+    heat_shadow_destroy(c->map);
     c->map = NULL;
-    c->status = shadow_map_create(&c->map, c->elevation, config_default().heat.shadow_m, c->slots, c->d_enu, NULL, NULL, c->pool);
+    c->status = heat_shadow_create(&c->map, c->elevation, config_default().heat.shadow_m, c->slots, c->d_enu, NULL, NULL, c->pool);
     bench_keep(c->map);
 }
 
@@ -80,21 +80,21 @@ static Status time_shadows(Speed *s)
         uint8_t shadow[2][shadow_most_slots] = {{0}};
         for (int i = 0; i < 2000; i++) {
             const double x_m = s->east_m * (random_uniform(29, 0, 0, (uint64_t)i) - 0.5), y_m = s->north_m * (random_uniform(29, 1, 0, (uint64_t)i) - 0.5);
-            shadow_map_at(shadow[0], &open[0], many.map, x_m, y_m);
-            shadow_map_at(shadow[1], &open[1], one.map, x_m, y_m);
+            heat_shadow_at(shadow[0], &open[0], many.map, x_m, y_m);
+            heat_shadow_at(shadow[1], &open[1], one.map, x_m, y_m);
             different += memcmp(shadow[0], shadow[1], (size_t)many.slots) != 0 || open[0] != open[1];
         }
         char     against[96];
         BenchRow row = bench_row_of("heat of the ground: shadows of a day, 1 thread", &time[1], NULL, 1);
-        row.rate = 1e-6 * (double)shadow_map_bytes(one.map), row.rate_unit = "MB";
+        row.rate = 1e-6 * (double)heat_shadow_bytes(one.map), row.rate_unit = "MB";
         row.ratio = bench_ratio(&time[1], &time[0]), row.to = all_threads;
         row.error = different, row.error_limit = 0, row.error_unit = "places differ";
         snprintf(against, sizeof against, "all threads; %.0f x %.0f km, cells of %.0f m", 1e-3 * s->east_m, 1e-3 * s->north_m,
-                 shadow_map_cell_m(one.map));
+                 heat_shadow_cell_m(one.map));
         row.against = against;
         bench_add(s->bench, &row);
     }
-    shadow_map_destroy(one.map);
+    heat_shadow_destroy(one.map);
     s->scene.world.shadow = many.map; /* closed with the world */
     return status;
 }

@@ -2,8 +2,8 @@
 #include "tests/bench/sensor/speed_private.h"
 
 #include "tests/bench/bench.h"
-#include "render/ground/ground.h"
-#include "render/parts/parts.h"
+#include "render/trace/ground/ground.h"
+#include "render/trace/parts/parts.h"
 
 #include <stdlib.h>
 

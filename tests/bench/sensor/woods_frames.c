@@ -6,7 +6,7 @@
  * error. */
 #include "tests/bench/suites.h"
 
-#include "render/scene/upright.h"
+#include "render/scene/view.h"
 #include "tests/bench/sensor/speed_private.h"
 #include "tests/scenes/woods_stand.h"
 #include "sensor/settings/config.h"
@@ -145,7 +145,7 @@ static View view_of(const WoodsBench *w, int v)
     const double down = places[v].down_deg * rad_per_deg, d_enu[3] = {0, cos(down), -sin(down)};
     View view = trial_view(&w->scene, fmin(back_m, 0.45 * w->north_m), places[v].above_m,
                            places[v].hfov_deg * rad_per_deg, w->width, w->height);
-    camera_upright(view.r_enu_from_cam, d_enu);
+    view_upright(view.r_enu_from_cam, d_enu);
     return view;
 }
 

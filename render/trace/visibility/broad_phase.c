@@ -1,0 +1,422 @@
+/* render/trace/visibility/broad_phase.c: a bounding-volume tree over spheres. */
+#include "render/trace/visibility/broad_phase.h"
+
+#include <immintrin.h>
+#include <stdlib.h>
+
+enum { leaf_items = 4, morton_bits = 21, deepest = 32, bitmap_bits = 1 << 18 };
+
+typedef struct Box {
+    double low[3], high[3]; /* empty: low > high */
+} Box;
+
+struct BroadPhase {
+    int      count;
+    int      leaves;          /* a power of two */
+    Box     *node;            /* [2 leaves], from 1: the root */
+    int     *item;            /* [count], in the order of the leaves */
+    double (*sphere)[4];      /* [count], likewise: centre and radius */
+    Box     *ray_node, *box;  /* [2 leaves], [count]: those that rays are tested with; within node and sphere */
+};
+
+/* ---- building ----------------------------------------------------------------------------------- */
+
+typedef struct Ordered {
+    uint64_t key;
+    int      of;
+} Ordered;
+
+/* Every third bit. */
+static uint64_t spread(uint64_t x)
+{
+    x &= 0x1fffff;
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+}
+
+/* Radix sort, eleven bits a pass; a pass in which all are alike is left out. Equal keys keep their order. Returns the
+ * array that holds the result. */
+static Ordered *sort_by_key(Ordered *from, Ordered *to, int count)
+{
+    enum { digits = 1 << 11 };
+    for (int shift = 0; shift < 3 * morton_bits; shift += 11) {
+        int start[digits] = {0}, at = 0;
+        for (int i = 0; i < count; i++) start[from[i].key >> shift & (digits - 1)]++;
+        if (start[from[0].key >> shift & (digits - 1)] == count) continue;
+        for (int digit = 0; digit < digits; digit++) {
+            const int here = start[digit];
+            start[digit] = at;
+            at += here;
+        }
+        for (int i = 0; i < count; i++) to[start[from[i].key >> shift & (digits - 1)]++] = from[i];
+        Ordered *const swap = from;
+        from = to;
+        to = swap;
+    }
+    return from;
+}
+
+static bool is_sphere(const double s[4])
+{
+    return isfinite(s[0]) && isfinite(s[1]) && isfinite(s[2]) && isfinite(s[3]) && s[3] >= 0;
+}
+
+static void grow(Box *box, const double s[4])
+{
+    /* a million times the rounding error, at any distance from the origin */
+    const double room_m = s[3] * (1 + 1e-9) + 1e-6 + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
+    for (int c = 0; c < 3; c++) {
+        box->low[c]  = fmin(box->low[c], s[c] - room_m);
+        box->high[c] = fmax(box->high[c], s[c] + room_m);
+    }
+}
+
+static const Box empty_box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+
+static Box box_of_sphere(const double s[4])
+{
+    Box box = empty_box;
+    grow(&box, s);
+    return box;
+}
+
+static void join(Box *box, const Box *a, const Box *b)
+{
+    for (int c = 0; c < 3; c++) {
+        box->low[c]  = a->low[c] < b->low[c] ? a->low[c] : b->low[c];
+        box->high[c] = a->high[c] > b->high[c] ? a->high[c] : b->high[c];
+    }
+}
+
+Status broad_phase_create(BroadPhase **out, const int *item, const double (*sphere)[4], int count, Arena *arena)
+{
+    BroadPhase *tree = arena_alloc(arena, 1, sizeof *tree);
+    Ordered    *order = arena_alloc(arena, (size_t)count + 1, sizeof *order);
+    Ordered    *scratch = arena_alloc(arena, (size_t)count + 1, sizeof *scratch);
+    double      low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, per_m[3];
+    int         kept = 0;
+    if (!tree || !order || !scratch) return STATUS_NO_MEMORY;
+    for (int i = 0; i < count; i++) {
+        if (!is_sphere(sphere[i])) continue;
+        order[kept++].of = i;
+        for (int c = 0; c < 3; c++) {
+            low[c]  = sphere[i][c] < low[c] ? sphere[i][c] : low[c];
+            high[c] = sphere[i][c] > high[c] ? sphere[i][c] : high[c];
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        const double wide_m = high[c] - low[c];
+        per_m[c] = wide_m > 0 && wide_m < INFINITY ? ((1 << morton_bits) - 1) / wide_m : 0;
+    }
+    for (int k = 0; k < kept; k++) {
+        const double *s = sphere[order[k].of];
+        for (int c = 0; c < 3; c++) order[k].key |= spread((uint64_t)((s[c] - low[c]) * per_m[c])) << c;
+    }
+    if (kept > 0) order = sort_by_key(order, scratch, kept);
+
+    tree->count = kept;
+    for (tree->leaves = 1; tree->leaves * leaf_items < kept;) tree->leaves *= 2;
+    tree->node   = arena_alloc(arena, 2 * (size_t)tree->leaves, sizeof *tree->node);
+    tree->item   = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->item);
+    tree->sphere = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->sphere);
+    tree->box    = arena_alloc(arena, (size_t)kept + 1, sizeof *tree->box);
+    tree->ray_node = arena_alloc(arena, 2 * (size_t)tree->leaves, sizeof *tree->ray_node);
+    if (!tree->node || !tree->item || !tree->sphere || !tree->box || !tree->ray_node) return STATUS_NO_MEMORY;
+    for (int k = 0; k < kept; k++) {
+        tree->item[k] = item[order[k].of];
+        memcpy(tree->sphere[k], sphere[order[k].of], sizeof tree->sphere[k]);
+        tree->box[k] = box_of_sphere(tree->sphere[k]);
+    }
+    for (int leaf = 0; leaf < tree->leaves; leaf++) {
+        Box *box = &tree->node[tree->leaves + leaf];
+        *box = empty_box;
+        for (int k = leaf * leaf_items; k < (leaf + 1) * leaf_items && k < kept; k++) join(box, box, &tree->box[k]);
+    }
+    for (int n = tree->leaves - 1; n > 0; n--) join(&tree->node[n], &tree->node[2 * n], &tree->node[2 * n + 1]);
+    memcpy(tree->ray_node, tree->node, 2 * (size_t)tree->leaves * sizeof *tree->node);
+    *out = tree;
+    return STATUS_OK;
+}
+
+void broad_phase_tighten(BroadPhase *tree, BroadBox *box_of, void *user)
+{
+    for (int k = 0; k < tree->count; k++) {
+        Box *box = &tree->box[k], tight;
+        if (!box_of(user, tree->item[k], tight.low, tight.high)) continue;
+        for (int c = 0; c < 3; c++) {
+            const double room_m = 1e-6 + 1e-10 * (fabs(tight.low[c]) + fabs(tight.high[c]));
+            box->low[c]  = tight.low[c] - room_m > box->low[c] ? tight.low[c] - room_m : box->low[c];
+            box->high[c] = tight.high[c] + room_m < box->high[c] ? tight.high[c] + room_m : box->high[c];
+        }
+    }
+    for (int leaf = 0; leaf < tree->leaves; leaf++) {
+        Box *box = &tree->ray_node[tree->leaves + leaf];
+        *box = empty_box;
+        for (int k = leaf * leaf_items; k < (leaf + 1) * leaf_items && k < tree->count; k++) join(box, box, &tree->box[k]);
+    }
+    for (int n = tree->leaves - 1; n > 0; n--)
+        join(&tree->ray_node[n], &tree->ray_node[2 * n], &tree->ray_node[2 * n + 1]);
+}
+
+int broad_phase_count(const BroadPhase *tree) { return tree->count; }
+
+/* ---- volume queries ----------------------------------------------------------------------------- */
+
+static int compare_items(const void *a, const void *b)
+{
+    const int p = *(const int *)a, q = *(const int *)b;
+    return (p > q) - (p < q);
+}
+
+/* By a bitmap of their range where that is short enough. */
+static void sort_items(int *list, int count)
+{
+    uint64_t bitmap[bitmap_bits / 64];
+    if (count < 2) return;
+    if (count <= 16) {
+        for (int i = 1; i < count; i++) {
+            const int here = list[i];
+            int       at = i;
+            for (; at > 0 && list[at - 1] > here; at--) list[at] = list[at - 1];
+            list[at] = here;
+        }
+        return;
+    }
+    int low = list[0], high = list[0];
+    for (int i = 1; i < count; i++) {
+        low  = list[i] < low ? list[i] : low;
+        high = list[i] > high ? list[i] : high;
+    }
+    if ((int64_t)high - low >= bitmap_bits) {
+        qsort(list, (size_t)count, sizeof *list, compare_items);
+        return;
+    }
+    const int words = (high - low) / 64 + 1;
+    memset(bitmap, 0, (size_t)words * sizeof *bitmap);
+    for (int i = 0; i < count; i++) bitmap[(list[i] - low) / 64] |= UINT64_C(1) << ((list[i] - low) % 64);
+    for (int w = 0, at = 0; w < words; w++)
+        for (uint64_t left = bitmap[w]; left; left &= left - 1) list[at++] = low + 64 * w + __builtin_ctzll(left);
+}
+
+/* Whether a box lies beyond a plane. */
+static bool box_beyond(const Box *box, const double plane[4])
+{
+    double farthest = 0;
+    for (int c = 0; c < 3; c++) farthest += plane[c] * (plane[c] > 0 ? box->high[c] : box->low[c]);
+    return farthest < plane[3];
+}
+
+int broad_phase_in_planes(int *list, const BroadPhase *tree, const double (*plane)[4], int planes)
+{
+    int stack[deepest], depth = 0, count = 0;
+    if (tree->count == 0) return 0;
+    stack[depth++] = 1;
+    while (depth > 0) {
+        const int  n = stack[--depth];
+        const Box *box = &tree->node[n];
+        bool       beyond = !(box->low[0] <= box->high[0]);
+        for (int p = 0; p < planes && !beyond; p++) beyond = box_beyond(box, plane[p]);
+        if (beyond) continue;
+        if (n < tree->leaves) {
+            stack[depth++] = 2 * n + 1;
+            stack[depth++] = 2 * n;
+            continue;
+        }
+        const int first = (n - tree->leaves) * leaf_items;
+        for (int k = first; k < first + leaf_items && k < tree->count; k++) {
+            const double *s = tree->sphere[k];
+            const double  room_m = 1e-6 + 1e-9 * s[3] + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
+            beyond = false;
+            for (int p = 0; p < planes && !beyond; p++) beyond = v3_dot(plane[p], s) + s[3] + room_m < plane[p][3];
+            if (!beyond) list[count++] = tree->item[k];
+        }
+    }
+    sort_items(list, count);
+    return count;
+}
+
+static bool boxes_touch(const Box *box, const double low[3], const double high[3], double more_m)
+{
+    for (int c = 0; c < 3; c++)
+        if (!(box->low[c] - more_m <= high[c] && box->high[c] + more_m >= low[c])) return false;
+    return true;
+}
+
+int broad_phase_near_box(int *list, const BroadPhase *tree, const double low[3], const double high[3], double more_m)
+{
+    int stack[deepest], depth = 0, count = 0;
+    if (tree->count == 0) return 0;
+    stack[depth++] = 1;
+    while (depth > 0) {
+        const int n = stack[--depth];
+        if (!boxes_touch(&tree->node[n], low, high, more_m)) continue;
+        if (n < tree->leaves) {
+            stack[depth++] = 2 * n + 1;
+            stack[depth++] = 2 * n;
+            continue;
+        }
+        const int first = (n - tree->leaves) * leaf_items;
+        for (int k = first; k < first + leaf_items && k < tree->count; k++) {
+            const Box box = box_of_sphere(tree->sphere[k]);
+            if (boxes_touch(&box, low, high, more_m)) list[count++] = tree->item[k];
+        }
+    }
+    sort_items(list, count);
+    return count;
+}
+
+/* Whether a ray along d from within a sphere may meet a box, by the sphere round that. */
+static bool swept_may_meet(const Box *box, const double centre[3], double radius_m, const double d[3])
+{
+    double m[3], across[3], square = 0;
+    for (int c = 0; c < 3; c++) {
+        const double half = 0.5 * (box->high[c] - box->low[c]);
+        m[c] = 0.5 * (box->high[c] + box->low[c]) - centre[c];
+        square += half * half;
+    }
+    const double reach_m = (radius_m + sqrt(square)) * (1 + 1e-9) + 1e-6, along = v3_dot(m, d);
+    v3_add_scaled(across, m, -along, d);
+    return along > -reach_m && v3_dot(across, across) < reach_m * reach_m;
+}
+
+int broad_phase_swept(int *list, int most, const BroadPhase *tree, const double centre[3], double radius_m,
+                      const double d[3])
+{
+    int stack[deepest], depth = 0, count = 0;
+    if (tree->count == 0) return 0;
+    stack[depth++] = 1;
+    while (depth > 0) {
+        const int n = stack[--depth];
+        if (!(tree->node[n].low[0] <= tree->node[n].high[0])) continue;
+        if (!swept_may_meet(&tree->node[n], centre, radius_m, d)) continue;
+        if (n < tree->leaves) {
+            stack[depth++] = 2 * n + 1;
+            stack[depth++] = 2 * n;
+            continue;
+        }
+        const int first = (n - tree->leaves) * leaf_items;
+        for (int k = first; k < first + leaf_items && k < tree->count; k++) {
+            const double *s = tree->sphere[k];
+            double        m[3], across[3];
+            v3_sub(m, s, centre);
+            const double room_m = 1e-6 + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
+            const double reach_m = (radius_m + s[3]) * (1 + 1e-9) + room_m;
+            const double along = v3_dot(m, d);
+            v3_add_scaled(across, m, -along, d);
+            if (!(along > -reach_m && v3_dot(across, across) < reach_m * reach_m)) continue;
+            if (count == most) return -1;
+            list[count++] = tree->item[k];
+        }
+    }
+    return count;
+}
+
+/* ---- ray queries -------------------------------------------------------------------------------- */
+
+typedef __m256d Four;
+
+typedef struct Slabs {
+    Four o[3][broad_packet / 4], per[3][broad_packet / 4]; /* 1 / d; 1e30 for a ray along the slab */
+    int  fours;
+} Slabs;
+
+static void slabs_of(Slabs *s, const BroadRays *rays)
+{
+    const Four sign = _mm256_set1_pd(-0.0), one = _mm256_set1_pd(1), least = _mm256_set1_pd(1e-30);
+    s->fours = 0;
+    for (int f = 0; f < broad_packet / 4; f++) {
+        for (int c = 0; c < 3; c++) {
+            const Four d = _mm256_load_pd(rays->d[c] + 4 * f);
+            const Four along = _mm256_cmp_pd(_mm256_andnot_pd(sign, d), least, _CMP_LT_OQ);
+            s->o[c][f]   = _mm256_load_pd(rays->o[c] + 4 * f);
+            s->per[c][f] = _mm256_blendv_pd(one / d, _mm256_set1_pd(1e30), along);
+        }
+        for (int k = 4 * f; k < 4 * f + 4; k++)
+            if (rays->limit_m[k] >= 0) s->fours = f + 1;
+    }
+}
+
+/* Where the first of the rays enters the box within its limit; INFINITY: none does. */
+static double entry_m(const Slabs *s, const BroadRays *rays, const double low[3], const double high[3])
+{
+    Four nearest = _mm256_set1_pd(INFINITY);
+    if (!(low[0] <= high[0])) return INFINITY;
+    for (int f = 0; f < s->fours; f++) {
+        Four in = _mm256_setzero_pd(), out = _mm256_set1_pd(INFINITY);
+        for (int c = 0; c < 3; c++) {
+            const Four a = (_mm256_set1_pd(low[c]) - s->o[c][f]) * s->per[c][f];
+            const Four b = (_mm256_set1_pd(high[c]) - s->o[c][f]) * s->per[c][f];
+            /* the second operand stays where the first is no number */
+            in  = _mm256_max_pd(_mm256_min_pd(a, b), in);
+            out = _mm256_min_pd(_mm256_max_pd(a, b), out);
+        }
+        /* a rounding of the products: nothing is missed by it */
+        in = in * _mm256_set1_pd(1 - 1e-11);
+        const Four limit = _mm256_load_pd(rays->limit_m + 4 * f);
+        const Four meets = _mm256_and_pd(_mm256_cmp_pd(in, out, _CMP_LE_OQ), _mm256_cmp_pd(in, limit, _CMP_LE_OQ));
+        nearest = _mm256_min_pd(nearest, _mm256_blendv_pd(_mm256_set1_pd(INFINITY), in, meets));
+    }
+    double each[4];
+    _mm256_storeu_pd(each, nearest);
+    return fmin(fmin(each[0], each[1]), fmin(each[2], each[3]));
+}
+
+static double largest_limit(const BroadRays *rays)
+{
+    double largest = -1;
+    for (int k = 0; k < broad_packet; k++) largest = rays->limit_m[k] > largest ? rays->limit_m[k] : largest;
+    return largest;
+}
+
+/* Those of a leaf that may be met, nearest first. */
+static void visit_leaf(const BroadPhase *tree, int leaf, const Slabs *slabs, BroadRays *rays, BroadVisit *visit,
+                       void *user)
+{
+    struct { double entry_m; int item; } met[leaf_items];
+    int       count = 0;
+    const int first = leaf * leaf_items;
+    for (int k = first; k < first + leaf_items && k < tree->count; k++) {
+        const double at_m = entry_m(slabs, rays, tree->box[k].low, tree->box[k].high);
+        if (!(at_m < INFINITY)) continue;
+        int to = count++;
+        for (; to > 0 && met[to - 1].entry_m > at_m; to--) met[to] = met[to - 1];
+        met[to].entry_m = at_m, met[to].item = tree->item[k];
+    }
+    for (int k = 0; k < count; k++)
+        if (k == 0 || met[k].entry_m <= largest_limit(rays)) visit(user, met[k].item);
+}
+
+void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit, void *user)
+{
+    struct { double entry_m; int node; } stack[2 * deepest];
+    Slabs slabs;
+    int   depth = 0;
+    if (tree->count == 0) return;
+    slabs_of(&slabs, rays);
+    stack[depth].entry_m = entry_m(&slabs, rays, tree->ray_node[1].low, tree->ray_node[1].high);
+    stack[depth++].node  = 1;
+    while (depth > 0) {
+        const double at_m = stack[--depth].entry_m;
+        const int    n = stack[depth].node;
+        if (!(at_m < INFINITY && at_m <= largest_limit(rays))) continue;
+        if (n >= tree->leaves) {
+            visit_leaf(tree, n - tree->leaves, &slabs, rays, visit, user);
+            continue;
+        }
+        double side_m[2];
+        for (int k = 0; k < 2; k++) {
+            const Box *box = &tree->ray_node[2 * n + k];
+            side_m[k] = entry_m(&slabs, rays, box->low, box->high);
+        }
+        const int first = side_m[1] < side_m[0];
+        for (int k = 0; k < 2; k++) { /* the nearer is taken from the stack first */
+            const int side = k == 0 ? !first : first;
+            if (!(side_m[side] < INFINITY)) continue;
+            stack[depth].entry_m = side_m[side];
+            stack[depth++].node  = 2 * n + side;
+        }
+    }
+}

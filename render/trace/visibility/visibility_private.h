@@ -1,0 +1,113 @@
+/* render/trace/visibility/visibility_private.h: one frame's world, shared by the files visibility*.c. */
+#ifndef RENDER_TRACE_VISIBILITY_VISIBILITY_PRIVATE_H
+#define RENDER_TRACE_VISIBILITY_VISIBILITY_PRIVATE_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "render/trace/ground/ground.h"
+#include "render/trace/parts/parts.h"
+#include "render/trace/visibility/broad_phase.h"
+#include "render/trace/visibility/visibility.h"
+
+/* Up to so many entities are tested one after the other, all rays of a block together; more are traversed by the
+ * tree, in packets. Both give the same bits. */
+enum { crowd_least = 40 };
+
+/* What posing needs beside the snapshot: for one thread at a time. */
+typedef struct Poser {
+    pthread_mutex_t lock;
+    Arena          *arena;
+    NodePose       *node;        /* [most nodes of a model] */
+    double         *joint_value; /* likewise */
+    atomic_bool     lost;        /* no memory for some entity: the frame is incomplete */
+} Poser;
+
+struct Visibility {
+    Tracer          *tracer;
+    const Landscape *landscape;
+    const Materials *materials; /* NULL: hits have no material */
+    const LocalFrame *frame;
+    const Snapshot  *snapshot;
+    Ground           ground;
+    const ForestFrame *plants;   /* NULL: none */
+    bool             full_plants; /* none is simplified */
+    unsigned         skips_off;
+    int              count, drawable;
+    bool            *loose;      /* [count]: may be drawn, as far as is known without its nodes */
+    _Atomic(const PosedEntity *) *posed; /* [count], as in the snapshot; NULL: not posed yet */
+    Poser           *poser;
+    BroadPhase      *tree;       /* of those that may be drawn */
+    double           wider_m;    /* distance by which the sphere of a posed entity may exceed that in the tree */
+};
+
+/* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. */
+void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
+                      const double *limit_m, const double centre[3], double radius_m);
+
+/* visibility_plants.c. Replaces hits by those of plants that are nearer; count, range_m and kind are set. hidden: the
+ * entity that the rays do not see. */
+void plants_first_hits(Hits *hits, const Visibility *v, const Rays *rays, int hidden, VisibilityCounters *counters);
+/* visibility.c. Unit normals of a hit, the shading normal turned to the ray's side. */
+void visibility_store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3]);
+
+/* visibility_crowd.c. First hits by the tree; limit_m, entity (index + 1) and hit are as if all of the list had been
+ * tested one after the other. list: ascending; list_count -1: all but hidden. known: NULL, or of these rays. */
+typedef struct CrowdCounts {
+    uint64_t asked, asked_nodes, nodes; /* ray-entity pairs, ray-node pairs; of the pairs' entities all nodes */
+} CrowdCounts;
+void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v, int count,
+                      const double *const o[3], const double *const d[3], const int *order, const int *list,
+                      int list_count, int hidden, const EntityHits *known);
+/* dark becomes 1 where anything is met. */
+void crowd_any_hits(uint8_t *dark, CrowdCounts *counts, const Visibility *v, int count, const double *const o[3],
+                    const double *const d[3]);
+
+/* ---- rays of a block -------------------------------------------------------------------------- */
+
+/* Rays of a picture's rows in squares of 4 x 4, which are traced as a packet; others as they are. */
+static inline void order_rays(int order[hits_capacity], int count, int columns)
+{
+    const bool squares = columns > 1 && columns <= count && count % columns == 0;
+    const int  width = squares ? columns : count, height = squares ? count / columns : 1;
+    int        at = 0;
+    for (int y0 = 0; y0 < height; y0 += 4)
+        for (int x0 = 0; x0 < width; x0 += 4)
+            for (int y = y0; y < y0 + 4 && y < height; y++)
+                for (int x = x0; x < x0 + 4 && x < width; x++) order[at++] = y * width + x;
+}
+
+/* Indices of the active rays, in that order. */
+static inline int list_asked(int list[hits_capacity], const int order[hits_capacity], const uint8_t *ask, int count)
+{
+    int listed = 0;
+    for (int k = 0; k < count; k++) {
+        list[listed] = order[k];
+        listed += ask[order[k]] != 0;
+    }
+    return listed;
+}
+
+enum { clear_rays = 128 }; /* that are tested together */
+
+static inline void grow_box(double box[2][3], const double p[3])
+{
+    for (int c = 0; c < 3; c++) {
+        box[0][c] = p[c] < box[0][c] ? p[c] : box[0][c];
+        box[1][c] = p[c] > box[1][c] ? p[c] : box[1][c];
+    }
+}
+
+/* First hits with the ground, with the walk that is shared or without. */
+static inline void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
+                               const double *const d[3], const double *far_m, VisibilityCounters *counters)
+{
+    if (skips(v->skips_off, SKIP_GROUND_WALK)) {
+        ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
+        counters->skipped[SKIP_GROUND_WALK] += (uint64_t)count;
+    } else {
+        ground_first_hits(range_m, hit, &v->ground, count, o, d, far_m);
+    }
+}
+
+#endif
